@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the robot was told (or its wheels did) over time: each sample is held until the next one.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "slipwise/vehicle/body_twist.hpp"
+
+namespace slipwise {
+
+/// Sample-and-hold inputs. Before the first sample the robot is taken to be at rest.
+class InputTrack {
+ public:
+  /// Equal lengths, strictly increasing finite times [s]. \throws std::invalid_argument otherwise.
+  InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
+             std::span<const double> omega);
+
+  std::size_t size() const { return t_.size(); }
+  double time(std::size_t i) const { return t_[i]; }
+  BodyTwist sample(std::size_t i) const { return samples_[i]; }
+  /// The number of samples with time <= t: sample (count - 1) is the one held at t.
+  std::size_t count_until(double t) const;
+  /// The twist held at time t [s].
+  BodyTwist at(double t) const;
+
+ private:
+  std::vector<double> t_;
+  std::vector<BodyTwist> samples_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Off-line reference: Levenberg-Marquardt MAP over all segments at once, with a Huber loss.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/segment/segment.hpp"
+
+namespace slipwise {
+
+struct BatchSettings {
+  int iterations = 30;        ///< at most
+  double tolerance = 1e-8;    ///< relative decrease of the cost that counts as converged [-]
+  double huber = 2.5;         ///< a residual of more than this many sigma counts for less [-]
+};
+
+/// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
+struct BatchDatum {
+  const InputTrack* inputs;
+  Segment segment;
+  Eigen::Matrix3d noise;
+};
+
+struct BatchFit {
+  Estimate estimate;
+  double cost;     ///< robust MAP cost at the estimate
+  int iterations;  ///< used
+  Status status;
+};
+
+/// \throws std::invalid_argument when sizes do not fit or there is no datum.
+BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
+                   const BatchSettings& settings = {});
+
+}  // namespace slipwise

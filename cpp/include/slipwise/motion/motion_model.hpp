@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The motion model: a slip basis behind a command chain, and the layout of its parameter vector.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/motion/parameter_block.hpp"
+#include "slipwise/slip/basis.hpp"
+
+namespace slipwise {
+
+/// Which parts of the chain are parameters. What is not learned is the identity.
+struct ChainParameters {
+  bool dynamics = false;      ///< lag and delay per channel
+  bool clock_offset = false;  ///< offset between inputs and poses
+};
+
+/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then clock offset [s].
+/// Logarithms keep lags and delays positive.
+class MotionModel {
+ public:
+  MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {}
+
+  const Basis& basis() const { return basis_; }
+  ChainParameters learned() const { return learned_; }
+  Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
+  Eigen::Index size() const { return slip_size() + (learned_.dynamics ? 4 : 0) + (learned_.clock_offset ? 1 : 0); }
+  std::vector<ParameterInfo> parameters() const;
+
+  CommandChain chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+  /// Derivative of the chain's parameters (rows, in CommandChain's order) by the model's chain parameters (columns).
+  Eigen::MatrixXd chain_jacobian(const CommandChain& chain) const;
+
+  /// \throws std::invalid_argument when the length is not size() or a value is not finite.
+  void check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+
+ private:
+  Basis basis_;
+  ChainParameters learned_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrating the motion model over a segment, step by step and exactly, and its derivative by the parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/lie/se2.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/segment/segment.hpp"
+
+namespace slipwise {
+
+/// Exact: exponential of each step's mean twist. Rk4: the thesis's Runge-Kutta steps, for comparison.
+enum class Integrator : std::uint8_t { Exact, Rk4 };
+
+/// The robot's path seen from its start.
+struct SegmentPath {
+  std::vector<double> times;              ///< [steps + 1], [s], in pose stamps
+  std::vector<Pose2> poses;               ///< [steps + 1], the first is the origin
+  std::vector<Eigen::Vector3d> tangents;  ///< [steps], twist * duration with slip
+  std::vector<DriveStep> drive;           ///< [steps], the drive without slip
+};
+
+/// \throws std::invalid_argument when the parameters do not fit the model.
+SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                              const InputTrack& inputs, const Segment& segment, Integrator integrator = Integrator::Exact);
+
+struct SegmentLinearization {
+  SegmentPath path;
+  Pose2 predicted;                                        ///< T_start_end
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< derivative of the chart (x, y, theta) of `predicted`
+};
+
+/// Value and exact derivative in one pass (prefix scan of method.md, section 3).
+SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                       const InputTrack& inputs, const Segment& segment);
+
+}  // namespace slipwise

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// A segment: two measured poses of one drive, and where the second lies as seen from the first.
+#pragma once
+
+#include <optional>
+
+#include "slipwise/lie/se2.hpp"
+#include "slipwise/vehicle/body_twist.hpp"
+
+namespace slipwise {
+
+struct Segment {
+  double start;                           ///< stamp of the first pose [s]
+  double end;                             ///< stamp of the second pose [s]
+  Pose2 measured = {};                    ///< T_start_end, heading unwrapped
+  std::optional<BodyTwist> initial = {};  ///< the drive's measured twist at the start
+  double gx = 0.0;                        ///< body-frame gravity at the start [m/s^2]
+  double gy = 0.0;                        ///< [m/s^2]
+};
+
+}  // namespace slipwise

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The slip rates that a basis and its parameters predict for a state, and how sure they are.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/slip/basis.hpp"
+
+namespace slipwise {
+
+/// Slip rates (forward [m/s], left [m/s], yaw [rad/s]), ADDED to the commanded twist (thesis 3.1, 6.9).
+Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha, const SlipState& state);
+
+struct SlipRateLinearization {
+  Eigen::Vector3d slip;
+  Eigen::Matrix<double, 3, 2> by_drive;                   ///< slopes by (v, omega)
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< slopes by alpha
+};
+
+SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                          const SlipState& state);
+
+/// Covariance of the slip rates that follows from the covariance of the parameters.
+Eigen::Matrix3d slip_rate_covariance(const Basis& basis, const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                     const SlipState& state);
+
+}  // namespace slipwise

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A slip term: a product of powers of speed, yaw rate, curvature and slope, that vanishes when the robot is parked.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace slipwise {
+
+/// What a slip term may be made of; the body-frame gravity (gx, gy) [m/s^2] is zero on flat ground.
+enum class Quantity : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, GravityX, GravityY };
+inline constexpr std::size_t kQuantities = 8;
+
+/// The state that slip depends on.
+struct SlipState {
+  double v = 0.0;      ///< [m/s]
+  double omega = 0.0;  ///< [rad/s]
+  double gx = 0.0;     ///< gravity along the robot's x axis, positive when it points downhill [m/s^2]
+  double gy = 0.0;     ///< gravity along the robot's y axis [m/s^2]
+};
+
+/// The quantities of one state, computed once for all terms, with their slopes by v and omega.
+struct SlipQuantities {
+  std::array<double, kQuantities> value;
+  std::array<double, kQuantities> by_v;
+  std::array<double, kQuantities> by_omega;
+
+  explicit SlipQuantities(const SlipState& state);
+};
+
+/// A term with its slopes by speed and yaw rate.
+struct TermValue {
+  double value;
+  double by_v;
+  double by_omega;
+};
+
+/// Curvature omega / V is regularised below this speed [m/s]: omega V / (V^2 + kCurvatureSpeed^2).
+inline constexpr double kCurvatureSpeed = 0.01;
+inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
+
+/// coefficient * product of quantities. Written as text: `V*abs(w)`, `sgn(V)*w^2`, `abs(V)*V*w/g`, `kappa*V`, `gx`.
+class Term {
+ public:
+  /// \throws std::invalid_argument: what is wrong in the text; also for a term that is not zero when the robot is parked.
+  static Term parse(std::string_view text);
+
+  /// The term in its canonical spelling; equal terms have equal text.
+  const std::string& text() const { return text_; }
+
+  double value(const SlipQuantities& q) const;
+  TermValue linearize(const SlipQuantities& q) const;
+
+ private:
+  Term(double coefficient, std::vector<Quantity> factors, std::string text);
+
+  double coefficient_;
+  std::vector<Quantity> factors_;
+  std::string text_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The body twist of a planar vehicle, given directly or by its drive kinematics.
+#pragma once
+
+namespace slipwise {
+
+/// Velocity of the robot in its own frame (REP-103: x forward, y left, counter-clockwise).
+struct BodyTwist {
+  double v = 0.0;      ///< forward [m/s]
+  double vy = 0.0;     ///< to the left [m/s]; zero but for omnidirectional drives
+  double omega = 0.0;  ///< yaw rate [rad/s]
+};
+
+}  // namespace slipwise

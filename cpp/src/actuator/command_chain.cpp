@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk over delayed input changes that turns inputs into drive steps.
+#include "slipwise/actuator/command_chain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "slipwise/actuator/first_order_lag.hpp"
+
+namespace slipwise {
+namespace {
+
+using Row = Eigen::Matrix<double, 1, kChainParameters>;
+constexpr Eigen::Index kLagV = 0, kLagOmega = 1, kDelayV = 2, kDelayOmega = 3, kOffset = 4;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kSettledLags = 8.0;  // after this many time constants the start of a lag is forgotten (e^-8)
+
+/// A moment that moves with the chain's parameters.
+struct Moment {
+  double t;
+  Row slope;
+};
+
+/// A lag's output with its total derivative.
+struct LagState {
+  double output = 0.0;
+  Row slope = Row::Zero();
+};
+
+/// The samples of one channel as the drive sees them: delayed.
+class DelayedCursor {
+ public:
+  DelayedCursor(const InputTrack& inputs, double delay, Eigen::Index delay_index, double start, double known_until)
+      : inputs_(inputs), delay_(delay), index_(delay_index), next_(inputs.count_until(start - delay)),
+        end_(std::max(next_, inputs.count_until(known_until))) {}
+
+  BodyTwist held() const { return next_ == 0 ? BodyTwist{} : inputs_.sample(next_ - 1); }
+  double next_change() const { return next_ < end_ ? inputs_.time(next_) + delay_ : kNever; }
+  Moment change_moment() const {
+    Row slope = Row::Zero();
+    slope[index_] = 1.0;
+    return {next_change(), slope};
+  }
+  void advance() { ++next_; }
+
+ private:
+  const InputTrack& inputs_;
+  double delay_;
+  Eigen::Index index_;
+  std::size_t next_;
+  std::size_t end_;
+};
+
+/// Advances one lag over a step whose ends move with the parameters; returns the integral and its slope.
+struct Advance {
+  double integral;
+  Row slope;
+};
+Advance advance(LagState& state, double input, double time_constant, Eigen::Index lag_index, double duration,
+                const Row& duration_slope) {
+  const auto step = linearize_lag_step(state.output, input, time_constant, duration);
+  Advance result{step.value.integral,
+                 step.by_duration.integral * duration_slope + step.by_output.integral * state.slope};
+  result.slope[lag_index] += step.by_time_constant.integral;
+  Row slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope;
+  slope[lag_index] += step.by_time_constant.output;
+  state = {step.value.output, slope};
+  return result;
+}
+
+class ChainWalk {
+ public:
+  ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window)
+      : chain_(chain), window_(window), start_(moment_of(window.start)), end_(moment_of(window.end)),
+        warm_up_(window.initial ? 0.0 : kSettledLags * std::max(chain.lag_v, chain.lag_omega)),
+        cursor_v_(inputs, chain.delay_v, kDelayV, start_.t - warm_up_, window.end),
+        cursor_omega_(inputs, chain.delay_omega, kDelayOmega, start_.t - warm_up_, window.end) {
+    const BodyTwist begin = window.initial ? *window.initial
+                                           : BodyTwist{cursor_v_.held().v, cursor_v_.held().vy, cursor_omega_.held().omega};
+    v_.output = begin.v;
+    vy_.output = begin.vy;
+    omega_.output = begin.omega;
+  }
+
+  DriveSteps run(bool with_jacobians) {
+    DriveSteps silent;
+    if (warm_up_ > 0.0) {
+      cover({start_.t - warm_up_, Row::Zero()}, start_, silent, false);
+    }
+    DriveSteps result;
+    cover(start_, end_, result, with_jacobians);
+    return result;
+  }
+
+ private:
+  Moment moment_of(double stamp) const {
+    Row slope = Row::Zero();
+    slope[kOffset] = -1.0;
+    return {stamp - chain_.clock_offset, slope};
+  }
+
+  void cover(Moment now, const Moment& until, DriveSteps& out, bool with_jacobians) {
+    while (now.t < until.t) {
+      const double change = std::min(cursor_v_.next_change(), cursor_omega_.next_change());
+      Moment next = until;
+      if (change < until.t) {
+        next = cursor_v_.next_change() <= change ? cursor_v_.change_moment() : cursor_omega_.change_moment();
+      }
+      subdivide(now, next, out, with_jacobians);
+      advance_cursors(next.t);
+      now = next;
+    }
+  }
+
+  /// Changes of the two channels are taken one at a time, since they move apart with their delays; without delays, together.
+  void advance_cursors(double t) {
+    const bool v_changes = cursor_v_.next_change() <= t;
+    const bool omega_changes = cursor_omega_.next_change() <= t;
+    const bool together = chain_.delay_v == 0.0 && chain_.delay_omega == 0.0;
+    if (v_changes) {
+      cursor_v_.advance();
+    }
+    if (omega_changes && (together || !v_changes)) {
+      cursor_omega_.advance();
+    }
+  }
+
+  void subdivide(const Moment& from, const Moment& to, DriveSteps& out, bool with_jacobians) {
+    const bool lagging = chain_.lag_v > 0.0 || chain_.lag_omega > 0.0;
+    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / window_.longest_step))) : 1;
+    const double duration = (to.t - from.t) / parts;
+    const Row slope = (to.slope - from.slope) / parts;
+    for (int i = 0; i < parts; ++i) {
+      emit(duration, slope, out, with_jacobians);
+    }
+  }
+
+  void emit(double duration, const Row& slope, DriveSteps& out, bool with_jacobians) {
+    const BodyTwist linear = cursor_v_.held();
+    const Advance forward = advance(v_, linear.v, chain_.lag_v, kLagV, duration, slope);
+    const Advance left = advance(vy_, linear.vy, chain_.lag_v, kLagV, duration, slope);
+    const Advance turn =
+        advance(omega_, cursor_omega_.held().omega, chain_.lag_omega, kLagOmega, duration, slope);
+    out.steps.push_back({duration, forward.integral, left.integral, turn.integral});
+    if (with_jacobians) {
+      DriveStepJacobian& jacobian = out.jacobians.emplace_back();
+      jacobian << slope, forward.slope, left.slope, turn.slope;
+    }
+  }
+
+  const CommandChain& chain_;
+  const DriveWindow& window_;
+  Moment start_;
+  Moment end_;
+  double warm_up_;
+  DelayedCursor cursor_v_;
+  DelayedCursor cursor_omega_;
+  LagState v_, vy_, omega_;
+};
+
+}  // namespace
+
+DriveSteps drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
+  return ChainWalk(inputs, chain, window).run(false);
+}
+
+DriveSteps linearize_drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
+  return ChainWalk(inputs, chain, window).run(true);
+}
+
+}  // namespace slipwise

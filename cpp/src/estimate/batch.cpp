@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// Levenberg-Marquardt on the robust MAP cost of all segments.
+#include "slipwise/estimate/batch.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <stdexcept>
+
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+/// Normal equations of the robust MAP problem at one point.
+struct NormalEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;  ///< of half the cost, downhill
+};
+
+struct HuberLoss {
+  double cost;
+  double weight;
+};
+
+/// Cost of a squared Mahalanobis distance and the weight of its re-weighted least squares.
+HuberLoss huber_loss(double squared, double threshold) {
+  const double distance = std::sqrt(squared);
+  if (distance <= threshold) {
+    return {squared, 1.0};
+  }
+  return {2.0 * threshold * distance - threshold * threshold, threshold / distance};
+}
+
+class BatchProblem {
+ public:
+  BatchProblem(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data, double huber)
+      : model_(model), prior_(prior), data_(data), huber_(huber),
+        prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
+
+  double cost(const Eigen::VectorXd& mean) const {
+    const Eigen::VectorXd away = mean - prior_.mean;
+    double sum = away.dot(prior_information_ * away);
+    for (const BatchDatum& datum : data_) {
+      const Pose2 predicted = integrate_segment(model_, mean, *datum.inputs, datum.segment).poses.back();
+      const Eigen::Vector3d r = datum.segment.measured.vector() - predicted.vector();
+      sum += huber_loss(r.dot(datum.noise.llt().solve(r)), huber_).cost;
+    }
+    return sum;
+  }
+
+  NormalEquations linearize(const Eigen::VectorXd& mean) const {
+    NormalEquations equations{prior_information_, prior_information_ * (prior_.mean - mean)};
+    for (const BatchDatum& datum : data_) {
+      const auto at = linearize_segment(model_, mean, *datum.inputs, datum.segment);
+      const Eigen::Vector3d r = datum.segment.measured.vector() - at.predicted.vector();
+      const Eigen::LLT<Eigen::Matrix3d> noise(datum.noise);
+      const double weight = huber_loss(r.dot(noise.solve(r)), huber_).weight;
+      const Eigen::MatrixXd weighted = noise.solve(at.by_parameter) * weight;
+      equations.information.noalias() += at.by_parameter.transpose() * weighted;
+      equations.gradient.noalias() += weighted.transpose() * r;
+    }
+    return equations;
+  }
+
+ private:
+  const MotionModel& model_;
+  const Estimate& prior_;
+  std::span<const BatchDatum> data_;
+  double huber_;
+  Eigen::MatrixXd prior_information_;
+};
+
+}  // namespace
+
+BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
+                   const BatchSettings& settings) {
+  model.check(prior.mean);
+  if (data.empty()) {
+    throw std::invalid_argument("a batch fit needs at least one segment");
+  }
+  const BatchProblem problem(model, prior, data, settings.huber);
+  Eigen::VectorXd mean = prior.mean;
+  double cost = problem.cost(mean);
+  double damping = 1e-3;
+  BatchFit fit{prior, cost, 0, Status::NotConverged};
+  NormalEquations equations = problem.linearize(mean);
+  while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
+    ++fit.iterations;
+    Eigen::MatrixXd damped = equations.information;
+    damped.diagonal() *= 1.0 + damping;
+    const Eigen::VectorXd candidate = mean + damped.llt().solve(equations.gradient);
+    const double candidate_cost = problem.cost(candidate);
+    if (!(candidate_cost <= cost)) {
+      damping *= 10.0;
+      fit.status = damping > 1e12 ? Status::Converged : fit.status;  // no downhill step is left at working precision
+      continue;
+    }
+    fit.status = cost - candidate_cost <= settings.tolerance * cost ? Status::Converged : fit.status;
+    mean = candidate;
+    cost = candidate_cost;
+    damping = std::max(damping / 10.0, 1e-12);
+    equations = problem.linearize(mean);
+  }
+  fit.cost = cost;
+  fit.estimate = {mean, equations.information.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))};
+  return fit;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// The IEKF update: Gauss-Newton on the MAP cost of one segment, covariance once at the end in Joseph form.
+#include "slipwise/estimate/iekf.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+Eigen::Vector3d residual(const Segment& segment, const Pose2& predicted) {
+  return segment.measured.vector() - predicted.vector();
+}
+
+/// A point of the iteration. The mean is kept as prior + P dual, so that the prior's cost needs no inverse of P.
+struct Iterate {
+  Eigen::VectorXd dual;
+  Eigen::VectorXd mean;
+  SegmentLinearization at;
+  Eigen::Vector3d innovation;
+  double cost;
+};
+
+class MapProblem {
+ public:
+  MapProblem(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
+             const Eigen::Matrix3d& noise)
+      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise) {}
+
+  Iterate evaluate(Eigen::VectorXd dual) const {
+    Eigen::VectorXd mean = prior_.mean + prior_.covariance * dual;
+    SegmentLinearization at = linearize_segment(model_, mean, inputs_, segment_);
+    const Eigen::Vector3d r = residual(segment_, at.predicted);
+    const double cost = dual.dot(prior_.covariance * dual) + r.dot(noise_.llt().solve(r));
+    return {std::move(dual), std::move(mean), std::move(at), r, cost};
+  }
+
+  /// p_{i+1} = p- + K_i [z - h(p_i) - J_i (p- - p_i)], as a dual vector.
+  Eigen::VectorXd gauss_newton_dual(const Iterate& i) const {
+    const auto& jacobian = i.at.by_parameter;
+    const Eigen::Matrix3d s = jacobian * prior_.covariance * jacobian.transpose() + noise_;
+    return jacobian.transpose() * s.llt().solve(i.innovation - jacobian * (prior_.mean - i.mean));
+  }
+
+  /// Steps towards the Gauss-Newton point, halving the step while the MAP cost grows. False when no step helps.
+  bool descend(Iterate& i, int halvings) const {
+    const Eigen::VectorXd full = gauss_newton_dual(i) - i.dual;
+    for (double step = 1.0; halvings >= 0; --halvings, step /= 2.0) {
+      Iterate next = evaluate(i.dual + step * full);
+      if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12)) {
+        i = std::move(next);
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  const MotionModel& model_;
+  const Estimate& prior_;
+  const InputTrack& inputs_;
+  const Segment& segment_;
+  const Eigen::Matrix3d& noise_;
+};
+
+Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Eigen::Matrix<double, 3, Eigen::Dynamic>& jacobian,
+                            const Eigen::Matrix3d& noise) {
+  const Eigen::Matrix3d s = jacobian * prior * jacobian.transpose() + noise;
+  const Eigen::MatrixXd gain = s.llt().solve(jacobian * prior).transpose();
+  const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
+  const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
+  return (posterior + posterior.transpose()) / 2.0;
+}
+
+void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const Eigen::Matrix3d& noise) {
+  model.check(prior.mean);
+  if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
+    throw std::invalid_argument("the prior's covariance must be square with one row per parameter");
+  }
+  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite() || !noise.allFinite()) {
+    throw std::invalid_argument("a segment must end after it starts and have finite measurements and noise");
+  }
+}
+
+}  // namespace
+
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
+                       const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+  check(model, prior, segment, noise);
+  const MapProblem first(model, prior, inputs, segment, noise);
+  Iterate now = first.evaluate(Eigen::VectorXd::Zero(model.size()));
+  IekfUpdate update{prior, now.innovation, noise, 0.0, 1.0, Status::Converged};
+  update.innovation_covariance += now.at.by_parameter * prior.covariance * now.at.by_parameter.transpose();
+  update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
+  if (!(update.nis <= settings.gate)) {
+    update.weight = 0.0;
+    update.status = Status::Rejected;
+    return update;
+  }
+  if (const double sigmas = std::sqrt(update.nis); sigmas > settings.huber) {
+    update.weight = settings.huber / sigmas;
+    update.status = Status::Downweighted;
+  }
+  const Eigen::Matrix3d weighted_noise = noise / update.weight;
+  const MapProblem problem(model, prior, inputs, segment, weighted_noise);
+  now.cost = now.innovation.dot(weighted_noise.llt().solve(now.innovation));
+  for (int i = 0; i < settings.iterations; ++i) {
+    if (!problem.descend(now, settings.halvings)) {
+      update.status = i == 0 ? Status::NotConverged : update.status;
+      break;
+    }
+  }
+  update.estimate.mean = now.mean;
+  update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);
+  return update;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The linear variance equation along a path (thesis 4.2 to 4.8 with dt counted once).
+#include "slipwise/segment/segment_covariance.hpp"
+
+#include <cmath>
+
+namespace slipwise {
+namespace {
+
+/// Derivative of the path's last chart by the tangent of step k: Phi blkdiag(R, 1) E.
+Eigen::Matrix3d end_by_tangent(const SegmentPath& path, std::size_t k) {
+  Eigen::Matrix3d world = chart_jacobian(path.tangents[k]);
+  world.topRows<2>() = rotation(path.poses[k].theta) * world.topRows<2>().eval();
+  return transition(path.poses[k + 1], path.poses.back()) * world;
+}
+
+std::array<double, 3> motion_of(const DriveStep& step) {
+  const double distance = std::hypot(step.forward, step.left);
+  const double turn = std::abs(step.turn);
+  const double wheels = distance + kTurnRadius * turn;
+  return {wheels, wheels, turn + distance / kStraightRadius};
+}
+
+}  // namespace
+
+Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise) {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();  // column c: effect of a slip that is the same fraction all along
+  for (std::size_t k = 0; k < path.tangents.size(); ++k) {
+    const Eigen::Matrix3d by_tangent = end_by_tangent(path, k);
+    const std::array<double, 3> motion = motion_of(path.drive[k]);
+    const double moving_time = motion[0] > 0.0 ? path.drive[k].duration : 0.0;
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      const double variance = noise.psd_time[i] * moving_time + noise.psd_motion[i] * motion[i];
+      covariance += variance * by_tangent.col(c) * by_tangent.col(c).transpose();
+      constant.col(c) += by_tangent.col(c) * (noise.fraction[i] * motion[i]);
+    }
+  }
+  return covariance + constant * constant.transpose();
+}
+
+Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise) {
+  Eigen::Matrix3d from_start = Eigen::Matrix3d::Identity();  // H of method.md, section 5
+  from_start(0, 2) = measured.y;
+  from_start(1, 2) = -measured.x;
+  const double xy = noise.pose_std_xy * noise.pose_std_xy;
+  const double yaw = noise.pose_std_yaw * noise.pose_std_yaw;
+  const Eigen::Matrix3d pose = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+  return from_start * pose * from_start.transpose() + pose;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// The extension module slipwise._core: all of slipwise's mathematics.
+#include "bindings.hpp"
+
+NB_MODULE(_core, m) {
+  using namespace slipwise::bindings;
+  m.doc() = "The mathematics of slipwise: lie, vehicle, slip, actuator, motion, segment, estimate.";
+  bind_lie(m);
+  bind_vehicle(m);
+  bind_slip(m);
+  bind_actuator(m);
+  bind_motion(m);
+  bind_segment(m);
+  bind_estimate(m);
+}

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of cpp/include/slipwise/motion.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "slipwise/motion/motion_model.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+
+void bind_motion(nb::module_& m) {
+  nb::class_<ParameterInfo>(m, "ParameterInfo", "Name, unit and meaning of a parameter.")
+      .def_ro("name", &ParameterInfo::name)
+      .def_ro("unit", &ParameterInfo::unit)
+      .def_ro("description", &ParameterInfo::description);
+  nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind a command chain.")
+      .def(
+          "__init__",
+          [](MotionModel* self, const Basis& basis, bool dynamics, bool clock_offset) {
+            new (self) MotionModel(basis, {dynamics, clock_offset});
+          },
+          "basis"_a, "dynamics"_a, "clock_offset"_a)
+      .def_prop_ro("basis", &MotionModel::basis)
+      .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
+      .def_prop_ro("clock_offset", [](const MotionModel& model) { return model.learned().clock_offset; })
+      .def_prop_ro("size", &MotionModel::size)
+      .def_prop_ro("slip_size", &MotionModel::slip_size)
+      .def_prop_ro("parameters", &MotionModel::parameters)
+      .def(
+          "chain", [](const MotionModel& model, const Eigen::VectorXd& parameters) { return model.chain(parameters); },
+          "parameters"_a);
+}
+
+}  // namespace slipwise::bindings

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of cpp/include/slipwise/segment.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+namespace {
+
+Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
+  Eigen::MatrixX3d matrix(static_cast<Eigen::Index>(poses.size()), 3);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    matrix.row(static_cast<Eigen::Index>(i)) = poses[i].vector();
+  }
+  return matrix;
+}
+
+}  // namespace
+
+void bind_segment(nb::module_& m) {
+  nb::class_<Segment>(m, "Segment", "Two measured poses of one drive.")
+      .def(
+          "__init__",
+          [](Segment* self, double start, double end, const Pose2& measured, std::optional<BodyTwist> initial, double gx,
+             double gy) { new (self) Segment{start, end, measured, initial, gx, gy}; },
+          "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
+      .def_ro("start", &Segment::start)
+      .def_ro("end", &Segment::end)
+      .def_ro("measured", &Segment::measured);
+  nb::enum_<Integrator>(m, "Integrator").value("Exact", Integrator::Exact).value("Rk4", Integrator::Rk4);
+  nb::class_<SegmentPath>(m, "SegmentPath", "The robot's path seen from its start.")
+      .def_prop_ro("times",
+                   [](const SegmentPath& p) -> Eigen::VectorXd {
+                     return Eigen::Map<const Eigen::VectorXd>(p.times.data(), static_cast<Eigen::Index>(p.times.size()));
+                   })
+      .def_prop_ro("poses", [](const SegmentPath& p) { return pose_matrix(p.poses); });
+  nb::class_<SegmentLinearization>(m, "SegmentLinearization", "A path and the derivative of its last pose.")
+      .def_ro("path", &SegmentLinearization::path)
+      .def_ro("predicted", &SegmentLinearization::predicted)
+      .def_ro("by_parameter", &SegmentLinearization::by_parameter);
+  nb::class_<MotionNoise>(m, "MotionNoise", "Noise of slip rates and poses.")
+      .def(
+          "__init__",
+          [](MotionNoise* self, std::array<double, 3> psd_time, std::array<double, 3> psd_motion,
+             std::array<double, 3> fraction, double pose_std_xy, double pose_std_yaw) {
+            new (self) MotionNoise{psd_time, psd_motion, fraction, pose_std_xy, pose_std_yaw};
+          },
+          "psd_time"_a, "psd_motion"_a, "fraction"_a, "pose_std_xy"_a, "pose_std_yaw"_a)
+      .def_ro("psd_time", &MotionNoise::psd_time)
+      .def_ro("psd_motion", &MotionNoise::psd_motion)
+      .def_ro("fraction", &MotionNoise::fraction)
+      .def_ro("pose_std_xy", &MotionNoise::pose_std_xy)
+      .def_ro("pose_std_yaw", &MotionNoise::pose_std_yaw);
+  m.def(
+      "integrate_segment",
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs, const Segment& segment,
+         Integrator integrator) { return integrate_segment(model, parameters, inputs, segment, integrator); },
+      "model"_a, "parameters"_a, "inputs"_a, "segment"_a, "integrator"_a);
+  m.def(
+      "linearize_segment",
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs, const Segment& segment) {
+        return linearize_segment(model, parameters, inputs, segment);
+      },
+      "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
+  m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);
+  m.def("pose_noise_covariance", &pose_noise_covariance, "measured"_a, "noise"_a);
+}
+
+}  // namespace slipwise::bindings

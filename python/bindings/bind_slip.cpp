@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of cpp/include/slipwise/slip.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "slipwise/slip/basis.hpp"
+#include "slipwise/slip/slip_surface.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+namespace {
+
+std::vector<std::string> texts(const Basis& basis, Channel channel) {
+  std::vector<std::string> result;
+  for (std::size_t i = basis.begin(channel); i < basis.end(channel); ++i) {
+    result.push_back(basis.terms()[i].text());
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_slip(nb::module_& m) {
+  using Texts = std::vector<std::string>;
+  nb::class_<SlipState>(m, "SlipState", "What slip depends on: v [m/s], omega [rad/s], gx, gy [m/s^2].")
+      .def(nb::init<double, double, double, double>(), "v"_a, "omega"_a, "gx"_a, "gy"_a);
+  nb::class_<Basis>(m, "Basis", "Terms of the forward, sideways and angular slip rates.")
+      .def(
+          "__init__",
+          [](Basis* self, std::string name, const Texts& lon, const Texts& lat, const Texts& ang) {
+            new (self) Basis(std::move(name), lon, lat, ang);
+          },
+          "name"_a, "lon"_a, "lat"_a, "ang"_a)
+      .def_prop_ro("name", &Basis::name)
+      .def_prop_ro("size", &Basis::size)
+      .def_prop_ro("lon", [](const Basis& b) { return texts(b, Channel::Lon); })
+      .def_prop_ro("lat", [](const Basis& b) { return texts(b, Channel::Lat); })
+      .def_prop_ro("ang", [](const Basis& b) { return texts(b, Channel::Ang); })
+      .def(
+          "features",
+          [](const Basis& b, const SlipState& state) { return b.linearize_features(state).value; }, "state"_a,
+          "Feature of every parameter at one state, [parameters].");
+  m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
+  m.def("basis_names", &basis_names, "Names of all bases that ship.");
+  m.def(
+      "union_basis",
+      [](std::string name, const std::vector<Basis>& bases) { return union_basis(std::move(name), bases); }, "name"_a,
+      "bases"_a, "The basis that has every term of the given ones, each once.");
+  m.def("parameter_places", &parameter_places, "part"_a, "whole"_a, "Where each parameter of part stands in whole.");
+  m.def(
+      "slip_rate",
+      [](const Basis& basis, const Eigen::VectorXd& alpha, const SlipState& state) {
+        return slip_rate(basis, alpha, state);
+      },
+      "basis"_a, "alpha"_a, "state"_a, "Slip rates (m/s, m/s, rad/s) at one state, [3].");
+  m.def(
+      "slip_rate_covariance",
+      [](const Basis& basis, const Eigen::MatrixXd& covariance, const SlipState& state) {
+        return slip_rate_covariance(basis, covariance, state);
+      },
+      "basis"_a, "covariance"_a, "state"_a, "Covariance of the slip rates, [3, 3].");
+}
+
+}  // namespace slipwise::bindings
