@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs: everything a robot recorded, read from tables and bags into one form."""
+
+from slipwise.logs.log import Inputs, LeftOut, Log, Poses, Run, Source, empty_poses
+from slipwise.logs.open_log import open_log
+from slipwise.logs.options import LogOptions
+
+__all__ = [
+    "Inputs",
+    "LeftOut",
+    "Log",
+    "LogOptions",
+    "Poses",
+    "Run",
+    "Source",
+    "empty_poses",
+    "open_log",
+]

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Counts what is left out of a log, so that nothing is ever dropped in silence."""
+
+from __future__ import annotations
+
+from slipwise.logs.log import LeftOut
+
+
+class Tally:
+    """Collects what is left out; equal reasons are added up and keep their first place."""
+
+    def __init__(self) -> None:
+        self._entries: dict[tuple[str, str], tuple[int, str]] = {}
+
+    def add(self, kind: str, reason: str, *, count: int, where: str) -> None:
+        """Count `count` things of one kind, the first of them at `where`; a count of 0 changes nothing."""
+        if count <= 0:
+            return
+        before, first = self._entries.get((kind, reason), (0, where))
+        self._entries[kind, reason] = (before + count, first)
+
+    def result(self) -> tuple[LeftOut, ...]:
+        """Return the entries in the order in which they were met."""
+        return tuple(
+            LeftOut(reason=reason, count=count, where=where, kind=kind)
+            for (kind, reason), (count, where) in self._entries.items()
+        )

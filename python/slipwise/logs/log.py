@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a log is, whatever file it came from: runs of inputs and measured poses, and what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import LogError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Inputs:
+    """Commands, or the body twist measured at the wheels; each sample is held until the next one.
+
+    Raises:
+        LogError: lengths differ, a value is not finite, or the stamps do not increase.
+    """
+
+    t: Floats  # [N] s, strictly increasing
+    v: Floats  # [N] m/s, forward
+    vy: Floats  # [N] m/s, to the left
+    omega: Floats  # [N] rad/s, counter-clockwise
+
+    def __post_init__(self) -> None:
+        _check_series(self, required=("t", "v", "vy", "omega"))
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True, eq=False)
+class Poses:
+    """Measured poses, only the fresh ones; the yaw is as measured, not unwrapped.
+
+    Raises:
+        LogError: lengths differ, a pose is not finite, or the stamps do not increase.
+    """
+
+    t: Floats  # [M] s, strictly increasing
+    x: Floats  # [M] m
+    y: Floats  # [M] m
+    yaw: Floats  # [M] rad, counter-clockwise
+    frame: Ints  # [M] poses are comparable only inside one frame
+    z: Floats | None = None  # [M] m
+    roll: Floats | None = None  # [M] rad
+    pitch: Floats | None = None  # [M] rad
+    std_xy: Floats | None = None  # [M] m, NaN where it is not known
+    std_yaw: Floats | None = None  # [M] rad, NaN where it is not known
+
+    def __post_init__(self) -> None:
+        _check_series(self, required=("t", "x", "y", "yaw"))
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One uninterrupted recording; nothing is ever joined across runs."""
+
+    name: str
+    commands: Inputs | None
+    wheels: Inputs | None
+    poses: Poses
+    extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Something that was in the file and is not in the log."""
+
+    reason: str
+    count: int
+    where: str  # the first place: file and line, row or time
+    kind: str  # a short stable name, such as "duplicate-stamp"
+
+
+@dataclass(frozen=True)
+class Source:
+    """A file that the log came from."""
+
+    path: str
+    sha256: str
+    format: str
+    rows: int  # rows of a table, messages of a bag
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """Everything read from one or several files.
+
+    `notes` say what was guessed or worked out, `left_out` what was wrong with the data.
+    """
+
+    runs: tuple[Run, ...]
+    sources: tuple[Source, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def empty_poses() -> Poses:
+    """Return no poses at all."""
+    none = np.empty(0)
+    return Poses(t=none, x=none, y=none, yaw=none, frame=np.empty(0, np.int64))
+
+
+def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
+    """Refuse a series whose columns do not fit together; the only place where this is checked."""
+    name = type(series).__name__
+    length = len(series.t)
+    for column in fields(series):
+        values = getattr(series, column.name)
+        if values is None:
+            continue
+        expected = np.int64 if column.name == "frame" else np.float64
+        if not isinstance(values, np.ndarray) or values.dtype != expected or values.ndim != 1:
+            raise LogError(f"{name}.{column.name} is not a one-dimensional array of {expected.__name__}")
+        if len(values) != length:
+            raise LogError(f"{name}.{column.name} has {len(values)} entries where t has {length}")
+        if column.name in required and not np.isfinite(values).all():
+            first = int(np.argmin(np.isfinite(values)))
+            raise LogError(f"{name}.{column.name} is not finite", where=f"entry {first}")
+    steps = np.diff(series.t)
+    if length > 1 and not (steps > 0).all():
+        first = int(np.argmin(steps > 0)) + 1
+        raise LogError(f"{name}.t does not increase", where=f"entry {first}", advice="sort and thin the samples")

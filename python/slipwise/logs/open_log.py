@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Opens logs of any kind: `open_log` looks at what a file holds and calls the reader for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from slipwise.errors import LogError
+from slipwise.logs.log import Log
+from slipwise.logs.options import LogOptions
+
+_KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
+
+
+def open_log(*paths: str | Path, options: LogOptions = LogOptions()) -> Log:
+    """Read one or several files as one log; runs of different files are never joined.
+
+    Args:
+        paths: tidy tables (CSV, CSV.gz, Parquet) and bags (rosbag1, rosbag2 folder or .db3, MCAP).
+        options: what cannot be guessed.
+
+    Raises:
+        LogError: a file is missing, damaged, of an unknown kind, or says something impossible.
+    """
+    if not paths:
+        raise LogError("no log was given", advice=_KNOWN)
+    return _joined([_open_one(Path(path), options) for path in paths])
+
+
+def _open_one(path: Path, options: LogOptions) -> Log:
+    if not path.exists():
+        raise LogError("no such file", where=str(path), advice="check the path")
+    try:
+        return _reader(path)(path, options)
+    except PermissionError as error:
+        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+
+
+def _reader(path: Path) -> Callable[[Path, LogOptions], Log]:
+    from slipwise.logs.tidy import read_tidy
+
+    if path.stat().st_size == 0:
+        raise LogError("the file is empty", where=str(path), advice="record or copy it again")
+    return read_tidy
+
+
+def _joined(logs: list[Log]) -> Log:
+    if len(logs) == 1:
+        return logs[0]
+    return Log(
+        runs=tuple(run for log in logs for run in log.runs),
+        sources=tuple(source for log in logs for source in log.sources),
+        left_out=tuple(entry for log in logs for entry in log.left_out),
+        notes=tuple(note for log in logs for note in log.notes),
+    )

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Keeps the samples whose stamps go forward."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipwise.logs.log import Bools, Floats
+
+_SPIKE_FACTOR = 10.0  # a stamp this many usual steps ahead, taken back by the next one, is a fault of its own
+
+
+def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
+    """Sort the samples of a stream by what their stamps do.
+
+    A lone stamp far in the future would turn everything after it into the past, so such a spike is taken out
+    first; of the rest a sample is kept if it is later than all samples before it.
+
+    Args:
+        t: stamps [N] in s, all finite, as they came.
+
+    Returns:
+        (keep, duplicate, backward), each [N]; every sample is in exactly one of them.
+    """
+    step = np.diff(t)
+    if (step > 0).all():
+        none = np.zeros(len(t), bool)
+        return ~none, none, none.copy()
+    spike = _spikes(t, step)
+    steady = np.where(spike, -np.inf, t)
+    latest = np.concatenate([[-np.inf], np.maximum.accumulate(steady)[:-1]])
+    keep = ~spike & (t > latest)
+    duplicate = ~spike & (t == latest)
+    return keep, duplicate, ~keep & ~duplicate
+
+
+def _spikes(t: Floats, step: Floats) -> Bools:
+    usual = np.median(np.abs(step[step != 0.0])) if (step != 0.0).any() else 0.0
+    spike = np.zeros(len(t), bool)
+    if len(t) > 2:
+        ahead = (step[:-1] > _SPIKE_FACTOR * usual) & (step[1:] < 0.0) & (t[2:] > t[:-2])
+        spike[1:-1] = ahead
+    return spike

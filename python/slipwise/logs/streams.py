@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Raw samples of one stream, and how they become clean inputs and poses; used for tables and bags alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.stamps import forward_stamps
+
+
+@dataclass(frozen=True, eq=False)
+class RawStream:
+    """Samples of one stream of one run in the order of the file, before anything is left out.
+
+    `place` says where the sample with a given number in `rows` is.
+    """
+
+    name: str  # "commands", "wheels" or "poses"
+    t: Floats  # [N] s, may hold anything
+    columns: dict[str, Floats]  # [N] each; those in `optional` may be NaN
+    rows: NDArray[np.int64]  # [N]
+    place: Callable[[int], str]
+    optional: frozenset[str] = field(default_factory=frozenset)
+
+    def select(self, keep: Bools) -> RawStream:
+        """Return the samples where `keep` [N] is true."""
+        columns = {name: values[keep] for name, values in self.columns.items()}
+        return RawStream(self.name, self.t[keep], columns, self.rows[keep], self.place, self.optional)
+
+
+def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
+    """Leave out, and count, samples that are not finite and stamps that do not go forward."""
+    finite = np.isfinite(stream.t)
+    for name, values in stream.columns.items():
+        if name not in stream.optional:
+            finite &= np.isfinite(values)
+    stream = _keep(stream, finite, tally, "incomplete", "with a number missing")
+    keep, duplicate, backward = forward_stamps(stream.t)
+    if keep.all():
+        return stream
+    _count(stream, duplicate, tally, "duplicate-stamp", "with the stamp of the one before")
+    _count(stream, backward, tally, "backward-stamp", "whose stamp goes backward")
+    return stream.select(keep)
+
+
+def to_inputs(stream: RawStream, tally: Tally) -> Inputs | None:
+    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left."""
+    clean = clean_stream(stream, tally)
+    if len(clean.t) == 0:
+        return None
+    vy = clean.columns.get("vy", np.zeros(len(clean.t)))
+    return Inputs(t=clean.t, v=clean.columns["v"], vy=vy, omega=clean.columns["omega"])
+
+
+def to_poses(stream: RawStream, tally: Tally) -> Poses:
+    """Make poses of the columns x, y, yaw and whatever else there is; `frame` codes start at 0 in order."""
+    clean = clean_stream(stream, tally)
+    columns = clean.columns
+    frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
+    others = {name: columns.get(name) for name in ("z", "roll", "pitch", "std_xy", "std_yaw")}
+    others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
+    return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
+
+
+def order_codes(values: NDArray[np.float64] | Ints) -> Ints:
+    """Number the distinct values [N] from 0 in the order in which they first appear."""
+    _, first, inverse = np.unique(values, return_index=True, return_inverse=True)
+    rank = np.empty(len(first), np.int64)
+    rank[np.argsort(first)] = np.arange(len(first))
+    return np.asarray(rank[inverse], dtype=np.int64)
+
+
+def _keep(stream: RawStream, keep: Bools, tally: Tally, kind: str, reason: str) -> RawStream:
+    if keep.all():
+        return stream
+    _count(stream, ~keep, tally, kind, reason)
+    return stream.select(keep)
+
+
+def _count(stream: RawStream, wrong: Bools, tally: Tally, kind: str, reason: str) -> None:
+    if wrong.any():
+        where = stream.place(int(stream.rows[np.argmax(wrong)]))
+        tally.add(kind, f"{stream.name} {reason}", count=int(wrong.sum()), where=where)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads tidy logs: tables with one row per stamp, see the column names in `tidy_columns`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import LogError
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Bools, Floats, Inputs, Ints, Log, Run, Source
+from slipwise.logs.options import LogOptions
+from slipwise.logs.streams import RawStream, order_codes, to_inputs, to_poses
+from slipwise.logs.table import Table, read_csv, read_parquet
+from slipwise.logs.tidy_columns import (
+    NUMERIC,
+    POSE_EXTRAS,
+    TEXT,
+    USED,
+    InputColumns,
+    command_columns,
+    require_columns,
+    wheel_columns,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """The meaningful columns of a whole table, row by row."""
+
+    t: Floats
+    commands: InputColumns | None
+    wheels: InputColumns | None
+    pose: dict[str, Floats]
+    fresh: Bools  # a pose was measured in this row
+    extra: dict[str, NDArray[Any]]
+
+
+def read_tidy(path: Path, options: LogOptions, *, parquet: bool = False) -> Log:
+    """Read one tidy table.
+
+    Args:
+        path: a CSV file (compressed with gzip or not), or a Parquet file.
+        options: radius, track and wheelbase are used where the table needs them.
+        parquet: whether it is a Parquet file.
+
+    Raises:
+        LogError: the file cannot be read, or columns are missing.
+    """
+    tally, notes = Tally(), list[str]()
+    table = read_parquet(path) if parquet else read_csv(path, numeric=NUMERIC, text=TEXT, tally=tally)
+    require_columns(table)
+    if len(table) == 0:
+        raise LogError("the table has no rows", where=str(path), advice="record the log again")
+    rows = _rows(table, options, tally, notes)
+    runs = tuple(_run(name, rows, index, table, tally) for name, index in _split_by_run(table, path))
+    source = Source(str(path), table.sha256, table.format, len(table))
+    return Log(runs, (source,), tally.result(), tuple(notes))
+
+
+def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
+    names = table.names
+    pose = {name: table.numbers(name, tally) for name in ("x", "y", "yaw")}
+    pose |= {name: table.numbers(name, tally) for name in POSE_EXTRAS if name in names}
+    if "frame" in names:
+        pose["frame"] = table.codes("frame")[0].astype(np.float64)
+    return _Rows(
+        t=table.numbers("t", tally),
+        commands=command_columns(table, options, tally, notes),
+        wheels=wheel_columns(table, options, tally, notes),
+        pose=pose,
+        fresh=_fresh(table, pose, tally, notes),
+        extra={name: table.other(name) for name in names if name not in USED},
+    )
+
+
+def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]) -> Bools:
+    """Return the rows in which a pose was measured rather than held."""
+    if "pose_new" in table.names:
+        return np.asarray(table.numbers("pose_new", tally) == 1.0)
+    there = np.isfinite(pose["x"]) | np.isfinite(pose["y"]) | np.isfinite(pose["yaw"])
+    where = np.flatnonzero(there)
+    same = np.ones(max(len(where) - 1, 0), bool)
+    for name in ("x", "y", "yaw", *(name for name in ("z", "roll", "pitch", "frame") if name in pose)):
+        values = pose[name][where]
+        same &= (values[1:] == values[:-1]) | (np.isnan(values[1:]) & np.isnan(values[:-1]))
+    if "run" in table.names:
+        codes = table.codes("run")[0][where]
+        same &= codes[1:] == codes[:-1]
+    if same.any():
+        notes.append(
+            f"{table.path.name}: without a pose_new column, {int(same.sum())} rows that repeat the pose before "
+            "are taken as held, not measured"
+        )
+    there[where[1:][same]] = False
+    return np.asarray(there)
+
+
+def _split_by_run(table: Table, path: Path) -> Iterator[tuple[str, slice | Ints]]:
+    """Yield each run's name and rows, in the order in which the runs appear."""
+    if "run" not in table.names:
+        yield run_name(path), slice(0, len(table))
+        return
+    raw, names = table.codes("run")
+    codes = order_codes(raw)
+    starts = np.flatnonzero(np.diff(codes, prepend=-1))
+    labels = [names[raw[i]] or run_name(path) for i in np.unique(codes, return_index=True)[1]]
+    if len(starts) == len(labels):
+        for label, start, stop in zip(labels, starts, [*starts[1:], len(codes)], strict=True):
+            yield label, slice(int(start), int(stop))
+        return
+    order = np.argsort(codes, kind="stable")
+    edges = np.searchsorted(codes[order], np.arange(len(labels) + 1))
+    for label, start, stop in zip(labels, edges[:-1], edges[1:], strict=True):
+        yield label, order[start:stop].astype(np.int64)
+
+
+def run_name(path: Path) -> str:
+    """Return the name of a run that has none: the file's, without its endings."""
+    name = path.name
+    for ending in (".gz", ".csv", ".parquet", ".mcap", ".db3", ".bag"):
+        name = name.removesuffix(ending)
+    return name or "run"
+
+
+def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally) -> Run:
+    numbers = np.arange(index.start, index.stop) if isinstance(index, slice) else index
+    t = rows.t[index]
+    fresh = rows.fresh[index]
+    pose = RawStream(
+        "poses", t, {key: values[index] for key, values in rows.pose.items()}, numbers, table.place,
+        optional=frozenset(POSE_EXTRAS),
+    )
+    extra = {key: values[index] for key, values in rows.extra.items()}
+    return Run(
+        name=name,
+        commands=_inputs("commands", rows.commands, index, t, numbers, table, tally),
+        wheels=_inputs("wheels", rows.wheels, index, t, numbers, table, tally),
+        poses=to_poses(pose.select(fresh), tally),
+        extra={"t": t, **extra} if extra else {},
+    )
+
+
+def _inputs(
+    name: str, columns: InputColumns | None, index: slice | Ints, t: Floats, numbers: Ints, table: Table, tally: Tally
+) -> Inputs | None:
+    if columns is None:
+        return None
+    values = {"v": columns.v[index], "omega": columns.omega[index]}
+    if columns.vy is not None:
+        values["vy"] = columns.vy[index]
+    there = np.zeros(len(t), bool)
+    for value in values.values():
+        there |= np.isfinite(value)
+    return to_inputs(RawStream(name, t, values, numbers, table.place).select(there), tally)

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which columns of a tidy table mean what, and what to say when they are missing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Floats
+from slipwise.logs.options import LogOptions
+from slipwise.logs.table import Table
+
+TEXT = ("run", "frame", "terrain")
+POSE_EXTRAS = ("z", "roll", "pitch", "std_xy", "std_yaw")
+NUMERIC = (
+    *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_steer", "odo_v", "odo_vy", "odo_omega"),
+    *("wheel_left", "wheel_right", "x", "y", "yaw", "pose_new", *POSE_EXTRAS),
+)
+USED = frozenset(
+    ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
+) | frozenset(POSE_EXTRAS)
+_SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
+
+
+@dataclass(frozen=True)
+class InputColumns:
+    """A twist per row [N], NaN where the row has none."""
+
+    v: Floats
+    vy: Floats | None
+    omega: Floats
+
+
+def require_columns(table: Table) -> None:
+    """Check that the table has a time, a pose and some input.
+
+    Raises:
+        LogError: it does not; the error names what is missing and what was found.
+    """
+    names = table.names
+    missing = [name for name in ("t", "x", "y", "yaw") if name not in names]
+    commands = "cmd_v" in names or "cmd_vx" in names
+    wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
+    if not commands and not wheels:
+        missing.append("cmd_v and cmd_omega, or odo_v and odo_omega")
+    if missing:
+        found = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
+        raise LogError(
+            f"missing columns: {'; '.join(missing)}",
+            where=str(table.path),
+            advice=f"found {found}; rename the columns of the table to the names of a tidy log",
+        )
+
+
+def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+    """Return the commanded twist per row, or None where the table has no command.
+
+    `cmd_vy` is the sideways partner of `cmd_vx`. Where a table also has a `cmd_v` that differs from `cmd_vx`,
+    `cmd_v` is the speed along the direction of travel and already holds both, so nothing is added to it.
+    """
+    names = table.names
+    forward = "cmd_v" if "cmd_v" in names else "cmd_vx"
+    if forward not in names:
+        return None
+    v = table.numbers(forward, tally)
+    omega = _command_omega(table, v, options, tally, notes)
+    if omega is None:
+        if "odo_v" in names or "wheel_left" in names:
+            notes.append(f"{table.path.name}: {forward} has no cmd_omega beside it and is not used")
+            return None
+        _raise_no_omega(table, "cmd_omega", "cmd_steer" in names)
+    vy = table.numbers("cmd_vy", tally) if "cmd_vy" in names else None
+    if vy is not None and forward == "cmd_v" and "cmd_vx" in names:
+        apart = np.abs(table.numbers("cmd_vx", tally) - v) > _SAME_SPEED
+        if apart.any():
+            notes.append(
+                f"{table.path.name}: cmd_v differs from cmd_vx, so it is taken as the speed along the direction "
+                "of travel and cmd_vy is not added to it"
+            )
+            vy = None
+    return InputColumns(v, vy, omega)
+
+
+def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
+    """Return the twist measured at the wheels per row, or None where the table has none."""
+    names = table.names
+    if "odo_v" in names and "odo_omega" in names:
+        vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
+        return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
+    if "wheel_left" in names and "wheel_right" in names:
+        if options.wheel_radius is not None and options.track is not None:
+            left, right = table.numbers("wheel_left", tally), table.numbers("wheel_right", tally)
+            v, omega = twist_from_wheels(left, right, wheel_radius=options.wheel_radius, track=options.track)
+            notes.append(f"{table.path.name}: wheel speeds from radius {options.wheel_radius} m, track {options.track} m")
+            return InputColumns(v, None, omega)
+        if "cmd_v" not in names and "cmd_vx" not in names:
+            advice = "give wheel_radius and track, or the columns odo_v and odo_omega"
+            raise LogError("wheel speeds need the wheel radius and the track", where=str(table.path), advice=advice)
+        notes.append(f"{table.path.name}: wheel_left and wheel_right are not used without wheel_radius and track")
+        return None
+    if "odo_v" in names:
+        if "cmd_v" not in names and "cmd_vx" not in names:
+            _raise_no_omega(table, "odo_omega", steer=False)
+        notes.append(f"{table.path.name}: odo_v has no odo_omega beside it and is not used")
+    return None
+
+
+def _command_omega(
+    table: Table, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
+) -> Floats | None:
+    """Take cmd_omega and, where it is empty, the steering angle."""
+    names = table.names
+    omega = table.numbers("cmd_omega", tally) if "cmd_omega" in names else None
+    if "cmd_steer" not in names or options.wheelbase is None:
+        return omega
+    steered = omega_from_steering(v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase)
+    filled = steered if omega is None else np.where(np.isnan(omega), steered, omega)
+    if omega is None or bool((np.isnan(omega) & ~np.isnan(filled)).any()):
+        notes.append(f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m")
+    return filled
+
+
+def _raise_no_omega(table: Table, missing: str, steer: bool) -> None:
+    advice = "give the wheelbase, the table has cmd_steer" if steer else f"add a column {missing} [rad/s]"
+    raise LogError(f"missing columns: {missing}", where=str(table.path), advice=advice)
