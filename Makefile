@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: Apache-2.0
+# The front door: sets everything up below .venv and build, then runs it. `make` lists the targets.
+
+VENV ?= .venv
+ARGS ?=
+
+STAMPS := $(VENV)/.stamps
+PYTHON_IN := $(VENV)/bin/python
+PIP := $(PYTHON_IN) -m pip --disable-pip-version-check
+DOCTEST := $(VENV)/include/third_party
+
+# Everything below uses the environment here, whatever other environment is active.
+export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
+export PYTHONNOUSERSITE := 1
+export PIP_USER := 0
+export VIRTUAL_ENV := $(CURDIR)/$(VENV)
+unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
+export PYTHON CXX
+
+CPP_SOURCES := $(shell find cpp/include cpp/src python/bindings -type f 2>/dev/null)
+CPP_FORMATTED = $$(find cpp python/bindings -name '*.hpp' -o -name '*.cpp')
+PYTHON_CHECKED := python/slipwise tools
+
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+.PHONY: help env build demo test test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+  lint-format lint-tidy format bench clean distclean FORCE
+
+help: ## list the targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
+
+env: $(STAMPS)/run ## create .venv and install what slipwise needs
+
+build: $(STAMPS)/slipwise ## build the C++ core and install slipwise into .venv, editable
+
+demo: build ## simulate a robot, learn its motion model, score it, write a report
+	@$(VENV)/bin/slipwise demo $(ARGS)
+
+test: ## run all C++ and Python tests
+	@$(MAKE) --no-print-directory -k test-cpp test-python
+
+test-cpp: $(STAMPS)/doctest ## run the C++ tests
+	@cmake --preset dev --log-level=WARNING
+	@cmake --build --preset dev
+	@ctest --preset dev
+
+test-python: build $(STAMPS)/dev ## run the Python tests; ARGS="-k name" chooses
+	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile $(ARGS)
+
+asan: $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
+	@cmake --preset asan --log-level=WARNING
+	@cmake --build --preset asan
+	@ctest --preset asan
+
+lint: ## run all checks of style, types, layers and files
+	@$(MAKE) --no-print-directory -k lint-files lint-layers lint-python lint-types lint-format lint-tidy
+	@echo "lint: all checks passed"
+
+lint-files: $(STAMPS)/dev
+	@$(PYTHON_IN) tools/check_files.py
+
+lint-layers: build $(STAMPS)/dev
+	@$(PYTHON_IN) tools/check_includes.py
+	@lint-imports --no-logo
+
+lint-python: $(STAMPS)/dev
+	@ruff check .
+	@ruff format --check .
+
+lint-types: build $(STAMPS)/dev
+	@mypy $(PYTHON_CHECKED)
+
+lint-format: $(STAMPS)/dev
+	@clang-format --dry-run -Werror $(CPP_FORMATTED)
+
+lint-tidy: $(STAMPS)/dev
+	@cmake --preset tidy --log-level=WARNING
+	@cmake --build --preset tidy
+
+format: $(STAMPS)/dev ## lay out all Python and C++ sources
+	@ruff check --select I --fix --quiet .
+	@ruff format .
+	@clang-format -i $(CPP_FORMATTED)
+
+bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
+	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
+
+clean: ## remove build results and caches; .venv stays
+	rm -rf build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -f $(STAMPS)/slipwise
+	find python tools -name __pycache__ -prune -exec rm -rf {} +
+
+distclean: clean ## remove .venv too
+	rm -rf $(VENV)
+
+# A stamp is the time of the last installation of what it names; nothing is fetched while its causes are older.
+
+$(STAMPS)/env: FORCE
+	@sh tools/make_env.sh $(VENV)
+	@test -f $@ || { mkdir -p $(STAMPS) && touch $@; }
+
+$(STAMPS)/run: $(STAMPS)/env pyproject.toml constraints.txt
+	@echo "installing what slipwise needs"
+	@$(PYTHON_IN) tools/requirements.py build run sim > $(STAMPS)/run.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/run.txt
+	@touch $@
+
+$(STAMPS)/dev: $(STAMPS)/run
+	@echo "installing what the tests and checks need"
+	@$(PYTHON_IN) tools/requirements.py dev > $(STAMPS)/dev.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
+	@touch $@
+
+$(STAMPS)/bench: $(STAMPS)/dev
+	@echo "installing what the benchmarks need"
+	@$(PYTHON_IN) tools/requirements.py bench > $(STAMPS)/bench.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/bench.txt
+	@touch $@
+
+$(STAMPS)/doctest: $(STAMPS)/run
+	@$(PYTHON_IN) tools/fetch_doctest.py $(DOCTEST)
+	@touch $@
+
+$(STAMPS)/python-files: $(STAMPS)/env FORCE
+	@find python/slipwise -type f ! -path '*/__pycache__/*' ! -name _core.pyi | sort > $@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+
+$(STAMPS)/slipwise: $(STAMPS)/run $(STAMPS)/python-files CMakeLists.txt $(CPP_SOURCES)
+	@echo "building slipwise"
+	@$(PIP) install --quiet --no-index --no-deps --no-build-isolation --editable .
+	@cp $(VENV)/lib/python3*/site-packages/slipwise/_core.pyi python/slipwise/_core.pyi
+	@touch $@
+
+FORCE:

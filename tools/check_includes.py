@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Checks the C++ core: layers include only lower layers, no include cycle, nothing but the standard and Eigen."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+#: Folders of the core, lowest first; folders of one row do not know each other.
+LAYERS: tuple[tuple[str, ...], ...] = (
+    ("lie",),
+    ("vehicle", "slip", "actuator"),
+    ("motion",),
+    ("segment", "rollout"),
+    ("estimate",),
+    ("online",),
+)
+LEVEL = {folder: level for level, row in enumerate(LAYERS) for folder in row}
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
+OWN = "slipwise/"
+
+
+@dataclass(frozen=True)
+class Include:
+    """One include line of a source file, whose path is relative to the repository."""
+
+    path: str
+    line: int
+    target: str
+
+
+def includes(root: Path) -> Iterator[Include]:
+    """Yield every include of the headers and sources of the core below `root`."""
+    for folder in ("cpp/include/slipwise", "cpp/src"):
+        for path in sorted((root / folder).rglob("*.[ch]pp")):
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), start=1):
+                if found := INCLUDE.match(line):
+                    yield Include(path.relative_to(root).as_posix(), number, found[2])
+
+
+def layer_of(path: str) -> str:
+    """Return the folder of the core that the file or the included header `path` is in, "" outside of one."""
+    parts = re.sub(r"^(cpp/include/slipwise/|cpp/src/|slipwise/)", "", path).split("/")
+    return parts[0] if len(parts) > 1 else ""
+
+
+def layer_fault(include: Include) -> str:
+    """Say what is wrong with one include, or return an empty string."""
+    layer = layer_of(include.path)
+    if layer not in LEVEL:
+        return f"'{layer or '.'}' is not a layer; the layers stand in tools/check_includes.py"
+    if not include.target.startswith(OWN):
+        return foreign_fault(include.target)
+    target = layer_of(include.target)
+    if target not in LEVEL:
+        return f"includes {include.target}, which is in no layer"
+    if layer != target and LEVEL[target] >= LEVEL[layer]:
+        return f"'{layer}' must not include {include.target}: '{target}' is not below it"
+    return ""
+
+
+def foreign_fault(target: str) -> str:
+    """Say why a header from elsewhere may not be included, or return an empty string."""
+    if target.startswith("Eigen/"):
+        return ""
+    if re.fullmatch(r"[a-z0-9_]+", target):  # a header of the standard library has no extension
+        return ""
+    return f"includes {target}; the core uses the standard library, Eigen and \"slipwise/...\" only"
+
+
+def cycles(graph: Mapping[str, set[str]]) -> list[str]:
+    """Return a message for the first include cycle of `graph` (header -> headers it includes)."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return [f"headers include each other: {' <- '.join(error.args[1])}"]
+    return []
+
+
+def check(root: Path) -> list[str]:
+    """Return all faults of the core below `root`, one message each."""
+    faults: list[str] = []
+    graph: dict[str, set[str]] = {}
+    for include in includes(root):
+        if fault := layer_fault(include):
+            faults.append(f"{include.path}:{include.line}: {fault}")
+        if include.path.startswith("cpp/include/"):
+            graph.setdefault(include.path.removeprefix("cpp/include/"), set()).add(include.target)
+    return faults + cycles(graph)
+
+
+def main(root: Path) -> int:
+    """Print the faults; return 1 if there are any."""
+    faults = check(root)
+    print("\n".join(faults) if faults else "C++ layers: no fault")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT))
