@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A simulated robot to learn from: physics, a ground with known slip, and drives that excite it."""
+
+from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
+from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.simulate import Scenario, Simulation, simulate
+from slipwise.simulation.truth import Truth
+from slipwise.simulation.tyre_force import TyreLaw, tyre_force
+
+__all__ = [
+    "DRIVES",
+    "LandTamer",
+    "Scenario",
+    "Simulation",
+    "Truth",
+    "TyreLaw",
+    "dull_drive",
+    "hold",
+    "simulate",
+    "thesis_drive",
+    "tyre_force",
+]

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Runs the vehicle's rigid-body physics under a command script and samples its true states."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.logs.log import Inputs
+from slipwise.simulation.engine import load_mujoco
+from slipwise.simulation.land_tamer import LandTamer, mjcf, wheel_names
+from slipwise.simulation.truth import Truth
+from slipwise.simulation.tyre_force import TyreForceGround, TyreLaw
+
+GROUNDS = ("tyre-force", "contact-friction")
+LONGEST_STEP = 0.002  # [s] short enough for smooth contact friction; tyre forces alone would allow 0.005
+SETTLING_TIME = 1.0  # [s] at rest before the log begins, for the suspension to find its balance
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class World:
+    """The vehicle and what it stands on."""
+
+    vehicle: LandTamer
+    ground: str  # one of GROUNDS
+    law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Times of the true states: t = 0, 1/rate, ..., and the whole number of physics steps between them."""
+
+    count: int  # states
+    rate: float  # [Hz]
+    steps: int  # physics steps from one state to the next
+
+    @staticmethod
+    def over(duration: float, rate: float) -> Sampling:
+        """Sample [0, duration] s at `rate` Hz."""
+        return Sampling(
+            count=math.floor(duration * rate + 1e-9) + 1,
+            rate=rate,
+            steps=math.ceil(1 / (rate * LONGEST_STEP) - 1e-9),
+        )
+
+    @property
+    def time_step(self) -> float:
+        """Length of a physics step [s]."""
+        return 1 / (self.rate * self.steps)
+
+
+def wheel_targets(vehicle: LandTamer, commands: Inputs, sampling: Sampling) -> NDArray[np.float64]:
+    """Left and right wheel rate that the drives aim at in every physics step [rad/s], shape [steps, 2].
+
+    Commands are held until the next one, and arrive late by the vehicle's delay. A step in which a command
+    arrives gets the mean over the step, so that the delay need not be a whole number of steps.
+    """
+    step = sampling.time_step
+    edges = np.arange((sampling.count - 1) * sampling.steps + 1) * step
+    arrivals = commands.t + vehicle.command_delay
+    knots = np.append(arrivals, max(arrivals[-1], edges[-1]) + step)
+    rates = vehicle.side_rates(commands.v, commands.omega)
+    angle = np.concatenate([np.zeros((1, 2)), np.cumsum(rates * np.diff(knots)[:, None], axis=0)])
+    turned = np.stack([np.interp(edges, knots, side) for side in angle.T], axis=-1)
+    targets: NDArray[np.float64] = np.diff(turned, axis=0) / step
+    return targets
+
+
+def run_physics(
+    world: World, commands: Inputs, sampling: Sampling, *, progress: Progress | None = None
+) -> Truth:
+    """Drive the vehicle from rest at the world's origin, facing along x.
+
+    Args:
+        world: the vehicle and the ground.
+        commands: what the vehicle is told; nothing is told before the first.
+        sampling: times of the states.
+        progress: called now and then with the fraction done.
+
+    Raises:
+        SettingsError: the vehicle is impossible.
+        SlipwiseError: MuJoCo is not installed, or the physics became unstable.
+    """
+    mujoco = load_mujoco()
+    names = wheel_names(world.vehicle)
+    friction = None if world.ground == "tyre-force" else world.law.friction
+    xml = mjcf(world.vehicle, time_step=sampling.time_step, friction=friction)
+    try:
+        model = mujoco.MjModel.from_xml_string(xml)
+    except ValueError as error:
+        advice = "use values nearer the defaults"
+        raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
+    data = mujoco.MjData(model)
+    tyres = TyreForceGround(world.law, world.vehicle, model) if friction is None else None
+    advance = _stepper(mujoco, model, data, tyres)
+    for _ in range(math.ceil(SETTLING_TIME / sampling.time_step)):
+        advance()
+    targets = wheel_targets(world.vehicle, commands, sampling)[:, np.arange(len(names)) % 2]
+    position = np.empty((sampling.count, model.nq))
+    velocity = np.empty((sampling.count, model.nv))
+    for sample in range(sampling.count):
+        position[sample], velocity[sample] = data.qpos, data.qvel
+        for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
+            data.ctrl = target
+            advance()
+        if progress is not None and (sample % 100 == 99 or sample == sampling.count - 1):
+            progress((sample + 1) / sampling.count)
+    spins = np.array([model.joint(f"spin_{name}").dofadr[0] for name in names])
+    return _truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
+
+
+def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceGround | None) -> Callable[[], None]:
+    """Return a function that advances the physics by one step."""
+    if tyres is None:
+        return lambda: mujoco.mj_step(model, data)
+    step1, step2, apply = mujoco.mj_step1, mujoco.mj_step2, tyres.apply
+
+    def advance() -> None:
+        step1(model, data)
+        apply(data)
+        step2(model, data)
+
+    return advance
+
+
+def _truth(
+    t: NDArray[np.float64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    spin: NDArray[np.float64],
+) -> Truth:
+    """Planar states from MuJoCo's: world position, quaternion, world velocity, body angular velocity."""
+    if not np.isfinite(position).all():
+        raise SlipwiseError("the physics became unstable", advice="use values nearer the defaults")
+    w, x, y, z = position[:, 3:7].T
+    yaw = np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=-1)
+    return Truth(
+        t=t,
+        x=position[:, 0].copy(),
+        y=position[:, 1].copy(),
+        yaw=yaw,
+        vx=cos * velocity[:, 0] + sin * velocity[:, 1],
+        vy=cos * velocity[:, 1] - sin * velocity[:, 0],
+        omega=np.einsum("ij,ij->i", up, velocity[:, 3:6]),
+        wheel_left=spin[:, 0::2].mean(axis=1),
+        wheel_right=spin[:, 1::2].mean(axis=1),
+    )

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Turns a scenario into a log as a robot would record it, with the truth beside it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.errors import SettingsError
+from slipwise.logs.log import Inputs, Log, Poses, Run
+from slipwise.simulation.drive import DRIVES
+from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.physics import GROUNDS, Progress, Sampling, World, run_physics
+from slipwise.simulation.truth import Truth
+from slipwise.simulation.tyre_force import TyreLaw
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What is simulated, and how it is measured."""
+
+    duration: float = 300.0  # [s]
+    drive: str = "thesis"  # name of a command script in DRIVES
+    commands: Inputs | None = None  # drive by these instead of a script
+    ground: str = "tyre-force"  # or "contact-friction", MuJoCo's own
+    vehicle: LandTamer = LandTamer()
+    tyre: TyreLaw = TyreLaw()
+    pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
+    std_xy: float = 0.01  # [m] of a measured position, as of RTK
+    std_yaw: float = 0.003  # [rad] of a measured heading
+    pose_delay: float = 0.0  # [s] by which the stamps of poses are late, as seen on the clock of the commands
+
+
+@dataclass(frozen=True)
+class Simulation:
+    """A log with commands, wheel speeds and noisy poses, and what was true."""
+
+    log: Log
+    truth: Truth
+
+
+def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None) -> Simulation:
+    """Drive a simulated vehicle and record it. The same scenario and seed give the same bytes.
+
+    Args:
+        scenario: what is simulated.
+        seed: of the command script and, independently, of the pose noise.
+        progress: called now and then with the fraction done.
+
+    Raises:
+        SettingsError: the scenario or the seed makes no sense.
+        SlipwiseError: MuJoCo is not installed, or the physics became unstable.
+    """
+    _check(scenario, seed)
+    commands = scenario.commands
+    if commands is None:
+        commands = DRIVES[scenario.drive](seed, scenario.duration)
+    truth = run_physics(
+        World(scenario.vehicle, scenario.ground, scenario.tyre),
+        commands,
+        Sampling.over(scenario.duration, scenario.pose_rate),
+        progress=progress,
+    )
+    run = Run(
+        name="simulation",
+        commands=commands,
+        wheels=_wheels(scenario.vehicle, truth),
+        poses=_measure(scenario, truth, seed),
+        extra={},
+    )
+    note = f"simulated: {scenario.ground} ground, {scenario.duration:g} s, seed {seed}"
+    return Simulation(log=Log(runs=(run,), sources=(), left_out=(), notes=(note,)), truth=truth)
+
+
+def _wheels(vehicle: LandTamer, truth: Truth) -> Inputs:
+    v, omega = vehicle.odometry(truth.wheel_left, truth.wheel_right)
+    return Inputs(t=truth.t, v=v, vy=np.zeros_like(v), omega=omega)
+
+
+def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
+    """Poses with white noise and late stamps; heading wrapped as a receiver gives it."""
+    stream = np.random.SeedSequence(seed).spawn(1)[0]  # not the command script's stream
+    noise = np.random.Generator(np.random.PCG64(stream)).standard_normal((3, truth.t.size))
+    yaw = truth.yaw + scenario.std_yaw * noise[2]
+    return Poses(
+        t=truth.t + scenario.pose_delay,
+        x=truth.x + scenario.std_xy * noise[0],
+        y=truth.y + scenario.std_xy * noise[1],
+        yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
+        frame=np.zeros(truth.t.size, dtype=np.int64),
+        std_xy=np.full(truth.t.size, scenario.std_xy),
+        std_yaw=np.full(truth.t.size, scenario.std_yaw),
+    )
+
+
+def _check(scenario: Scenario, seed: int) -> None:
+    if seed < 0:
+        raise SettingsError(f"the seed is {seed}", where="seed", advice="give a whole number from 0 up")
+    if scenario.ground not in GROUNDS:
+        advice = "choose one of " + ", ".join(GROUNDS)
+        raise SettingsError(f"unknown ground {scenario.ground!r}", where="ground", advice=advice)
+    if scenario.commands is not None and len(scenario.commands) == 0:
+        raise SettingsError("there are no commands", where="commands", advice="give at least one")
+    if scenario.commands is None and scenario.drive not in DRIVES:
+        advice = "choose one of " + ", ".join(DRIVES)
+        raise SettingsError(f"unknown drive {scenario.drive!r}", where="drive", advice=advice)
+    for name in ("duration", "pose_rate"):
+        value = getattr(scenario, name)
+        if not (math.isfinite(value) and value > 0):
+            raise SettingsError(f"{name} is {value}", where=name, advice="give a positive number")
+    for name in ("std_xy", "std_yaw"):
+        value = getattr(scenario, name)
+        if not (math.isfinite(value) and value >= 0):
+            raise SettingsError(f"{name} is {value}", where=name, advice="give zero or a positive number")
+    if not math.isfinite(scenario.pose_delay):
+        raise SettingsError(f"pose_delay is {scenario.pose_delay}", where="pose_delay", advice="give seconds")
