@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a calibration returns: the model, the verdict, and how the parameters came about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.logs.log import LeftOut
+from slipwise.models.model import Model
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether the model may be used, in words."""
+
+    good: bool
+    sentence: str
+    undetermined: tuple[str, ...] = ()  # parameters that the log does not determine
+    advice: tuple[str, ...] = ()  # the drives that would determine them
+
+    def __str__(self) -> str:
+        return " ".join((self.sentence, *self.advice))
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """The causal run of the filter, one row per learned window, in the order learned."""
+
+    run: NDArray[np.int64]  # [W] index of the run in the log
+    t: Floats  # [W] s, the end of the window: everything in this row was known then
+    names: tuple[str, ...]  # [P] parameter names
+    mean: Floats  # [W, P] parameters after the window
+    std: Floats  # [W, P] their standard deviations
+    nis: Floats  # [W] normalised innovation squared of the window before it was learned, 3 degrees of freedom
+    weight: Floats  # [W] how much the window counted: 1 full, 0 left out
+    bases: tuple[str, ...]  # [B] bases averaged, one where the basis is fixed
+    basis_weight: Floats  # [W, B] their weights after the window
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """The result of `slipwise.calibrate`."""
+
+    model: Model
+    verdict: Verdict
+    history: History | None  # None for a batch fit
+    left_out: tuple[LeftOut, ...]  # of the log and of the segmentation
+    notes: tuple[str, ...]

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A learned motion model: saved as one YAML file, read back strictly, ready for prediction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import yaml
+from numpy.typing import NDArray
+from pydantic import ValidationError
+
+from slipwise import _core
+from slipwise.errors import ModelError
+from slipwise.files import write_text_whole
+from slipwise.models.schema import SCHEMA_VERSION, ModelFile
+from slipwise.models.yaml_file import read_yaml
+
+
+@dataclass(frozen=True)
+class Model:
+    """The only thing that crosses from learning to using.
+
+    Raises:
+        ModelError: the content contradicts itself (terms, names, a covariance that is none).
+    """
+
+    content: ModelFile
+
+    def __post_init__(self) -> None:
+        names = [info.name for info in self.motion.parameters]
+        stated = [parameter.name for parameter in self.content.parameters]
+        if names != stated:
+            raise ModelError(
+                f"the parameters are {', '.join(stated)} where slip and chain have {', '.join(names)}",
+                advice="calibrate again, or restore the file",
+            )
+        covariance = self.covariance
+        scale = np.sqrt(np.outer(np.diag(covariance), np.diag(covariance))) + 1e-300
+        if not np.allclose(covariance, covariance.T) or (
+            len(names) and np.linalg.eigvalsh(covariance / scale).min() < -1e-6
+        ):
+            raise ModelError("the covariance is not symmetric and positive", advice="calibrate again, or restore the file")
+
+    @cached_property
+    def motion(self) -> _core.MotionModel:
+        """The motion model of the core."""
+        slip = self.content.slip
+        try:
+            basis = _core.Basis(slip.basis, slip.lon, slip.lat, slip.ang)
+        except ValueError as problem:
+            raise ModelError(str(problem), advice="calibrate again, or restore the file") from problem
+        return _core.MotionModel(basis, self.content.dynamics, self.content.clock_offset)
+
+    @property
+    def mean(self) -> NDArray[np.float64]:
+        """Parameter values, [parameters], in SI units."""
+        return np.array([parameter.value for parameter in self.content.parameters], dtype=np.float64)
+
+    @property
+    def covariance(self) -> NDArray[np.float64]:
+        """Covariance of the parameters, [parameters, parameters]."""
+        size = len(self.content.parameters)
+        return np.array(self.content.covariance, dtype=np.float64).reshape(size, size)
+
+    @cached_property
+    def noise(self) -> _core.MotionNoise:
+        """Noise of slip rates and poses, before the learned scale."""
+        noise = self.content.noise
+        return _core.MotionNoise(
+            noise.psd_time, noise.psd_motion, noise.fraction, noise.pose_std_xy, noise.pose_std_yaw
+        )
+
+    def save(self, path: str | Path) -> Path:
+        """Write the model file, whole or not at all; return its path.
+
+        Raises:
+            OutputError: the file cannot be written.
+        """
+        target = Path(path)
+        write_text_whole(target, self.to_yaml())
+        return target
+
+    def to_yaml(self) -> str:
+        """Return the text of the model file."""
+        head = f"# slipwise motion model, schema {SCHEMA_VERSION}. SI units; slip rates are added to the commanded twist.\n"
+        body = yaml.safe_dump(self.content.model_dump(mode="json"), sort_keys=False, width=120, default_flow_style=None)
+        return head + body
+
+
+def load_model(path: str | Path) -> Model:
+    """Read a model file.
+
+    Raises:
+        ModelError: the file is missing, not plain YAML, of another schema version, or does not fit the schema.
+    """
+    source = Path(path)
+    content = read_yaml(source)
+    version = content.get("slipwise_model")
+    if version != SCHEMA_VERSION:
+        raise ModelError(
+            f"the file has schema version {version!r}, this slipwise reads {SCHEMA_VERSION}",
+            where=str(source),
+            advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
+        )
+    try:
+        return Model(ModelFile.model_validate(content))
+    except ValidationError as problem:
+        first = problem.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise ModelError(f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file") from problem
+    except ModelError as problem:
+        raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The model file: its schema, version and limits. Unknown keys are refused."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+SCHEMA_VERSION = 1
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
+Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
+InputName = Literal["command", "wheel"]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Slip(_Section):
+    """Terms per channel; slip rates are added to the commanded twist (thesis 3.1)."""
+
+    basis: str
+    lon: list[str]
+    lat: list[str]
+    ang: list[str]
+
+
+class Parameter(_Section):
+    """One learned number, in the order of the covariance."""
+
+    name: str
+    unit: str
+    value: Finite
+    std: NotNegative
+    prior_std: NotNegative
+    determined: bool  # the log told more about it than the prior did
+
+
+class Noise(_Section):
+    """Noise of the slip rates (lon, lat, ang) and of the poses; `scale` multiplies variances of (x, y, yaw)."""
+
+    psd_time: Triple  # white, while moving [m^2/s, m^2/s, rad^2/s]
+    psd_motion: Triple  # white, per unit of motion [m^2/m, m^2/m, rad^2/rad]
+    fraction: Triple  # constant over a prediction, as a fraction of motion [-]
+    pose_std_xy: NotNegative  # [m]
+    pose_std_yaw: NotNegative  # [rad]
+    scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
+    growth: dict[Finite, NotNegative] = {}  # horizon [s] -> further factor of the variances, from held-out predictions
+
+
+class Range(_Section):
+    """What the robot did in the log; the model is not known to hold beyond it."""
+
+    speed: Span  # [m/s]
+    yaw_rate: Span  # [rad/s]
+    slope: NotNegative  # steepest roll or pitch [rad], 0 where it was not measured
+
+
+class LogReference(_Section):
+    """A log the model was learned from."""
+
+    path: str
+    sha256: str
+
+
+class Provenance(_Section):
+    """Where the model comes from."""
+
+    slipwise_version: str
+    logs: list[LogReference]
+    settings: dict[str, object]
+    learned_seconds: NotNegative  # amount of driving learned from [s]
+    learned_windows: int
+
+
+class HeldOut(_Section):
+    """Mean errors of predictions that the model had not learned from, beside the plain model's."""
+
+    horizon: NotNegative  # [s]
+    windows: int
+    position: NotNegative  # [m]
+    heading: NotNegative  # [rad]
+    plain_position: NotNegative  # [m]
+    plain_heading: NotNegative  # [rad]
+
+
+class VerdictSection(_Section):
+    """Whether the model may be used, in words."""
+
+    good: bool
+    sentence: str
+    undetermined: list[str] = []
+    advice: list[str] = []
+    held_out: HeldOut | None = None
+
+
+class ModelFile(_Section):
+    """Everything that crosses from learning to using."""
+
+    slipwise_model: Literal[1]
+    input: InputName
+    slip: Slip
+    dynamics: bool  # lag and delay are parameters
+    clock_offset: bool  # the offset between inputs and poses is a parameter
+    parameters: list[Parameter]
+    covariance: list[list[Finite]]
+    noise: Noise
+    range: Range
+    weights: dict[str, NotNegative] = {}
+    provenance: Provenance
+    verdict: VerdictSection
+
+    @model_validator(mode="after")
+    def _covariance_fits(self) -> ModelFile:
+        size = len(self.parameters)
+        if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
+            raise ValueError(f"covariance must have {size} rows of {size} numbers, one per parameter")
+        return self

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reading YAML that came from anywhere: plain data of a sane size, without aliases, tags or doubled keys."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from slipwise.errors import ModelError, SlipwiseError
+
+MAX_BYTES = 4 * 1024 * 1024
+MAX_DIGITS = 64  # of one number; nothing physical has more
+
+
+class _PlainLoader(yaml.SafeLoader):
+    """SafeLoader that also refuses aliases, explicit tags, doubled keys and endless numbers."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        event = self.peek_event()
+        if isinstance(event, yaml.AliasEvent):
+            raise yaml.constructor.ConstructorError(None, None, "aliases are not allowed", event.start_mark)
+        tag = getattr(event, "tag", None)
+        if tag is not None:
+            raise yaml.constructor.ConstructorError(None, None, f"the tag {tag} is not allowed", event.start_mark)
+        node: yaml.Node | None = super().compose_node(parent, index)
+        return node
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]  # type: ignore[no-untyped-call]
+        if len(keys) != len({repr(key) for key in keys}):
+            raise yaml.constructor.ConstructorError(None, None, "a key stands twice", node.start_mark)
+        return super().construct_mapping(node, deep)
+
+    def construct_number(self, node: yaml.ScalarNode) -> int | float:
+        if len(node.value) > MAX_DIGITS:
+            raise yaml.constructor.ConstructorError(None, None, "a number is too long", node.start_mark)
+        if node.tag.endswith(":int"):
+            return int(self.construct_yaml_int(node))  # type: ignore[no-untyped-call]
+        return float(self.construct_yaml_float(node))  # type: ignore[no-untyped-call]
+
+
+_PlainLoader.add_constructor("tag:yaml.org,2002:int", _PlainLoader.construct_number)
+_PlainLoader.add_constructor("tag:yaml.org,2002:float", _PlainLoader.construct_number)
+
+
+def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[str, Any]:
+    """Return the mapping in the YAML file `path`.
+
+    Raises:
+        SlipwiseError (of type `error`): the file is missing, too large, not YAML, not a mapping, or uses aliases or tags.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except OSError as problem:
+        raise error(f"cannot read: {problem.strerror}", where=str(path), advice="check the path") from problem
+    if len(data) > MAX_BYTES:
+        raise error("the file is too large", where=str(path), advice=f"at most {MAX_BYTES} bytes are read")
+    try:
+        content = yaml.load(data, Loader=_PlainLoader)  # noqa: S506 - a SafeLoader with more refusals
+    except (yaml.YAMLError, ValueError, RecursionError) as problem:
+        mark = getattr(problem, "problem_mark", None)
+        line = f", line {mark.line + 1}" if mark is not None else ""
+        what = getattr(problem, "problem", None) or str(problem).splitlines()[0]
+        raise error(f"not a plain YAML file: {what}", where=f"{path}{line}", advice="write plain keys and values") from problem
+    if not isinstance(content, dict):
+        raise error("the file holds no keys", where=str(path), advice="write `key: value` lines")
+    return content
