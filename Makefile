@@ -41,7 +41,7 @@ test: ## run all C++ and Python tests
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
 test-cpp: $(STAMPS)/doctest ## run the C++ tests
-	@cmake --preset dev --log-level=WARNING
+	@cmake --preset dev > /dev/null
 	@cmake --build --preset dev
 	@ctest --preset dev
 
@@ -49,7 +49,7 @@ test-python: build $(STAMPS)/dev ## run the Python tests; ARGS="-k name" chooses
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile $(ARGS)
 
 asan: $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
-	@cmake --preset asan --log-level=WARNING
+	@cmake --preset asan > /dev/null
 	@cmake --build --preset asan
 	@ctest --preset asan
 
@@ -75,7 +75,7 @@ lint-format: $(STAMPS)/dev
 	@clang-format --dry-run -Werror $(CPP_FORMATTED)
 
 lint-tidy: $(STAMPS)/dev
-	@cmake --preset tidy --log-level=WARNING
+	@cmake --preset tidy > /dev/null
 	@cmake --build --preset tidy
 
 format: $(STAMPS)/dev ## lay out all Python and C++ sources

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the C++ core: layers include only lower layers, no include cycle, nothing but the standard and Eigen."""
+"""Checks what the C++ core includes: lower layers, the standard library and Eigen only, and never in a circle."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def foreign_fault(target: str) -> str:
         return ""
     if re.fullmatch(r"[a-z0-9_]+", target):  # a header of the standard library has no extension
         return ""
-    return f"includes {target}; the core uses the standard library, Eigen and \"slipwise/...\" only"
+    return f'includes {target}; the core uses the standard library, Eigen and "slipwise/..." only'
 
 
 def cycles(graph: Mapping[str, set[str]]) -> list[str]:

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The contract of the Python layers refuses an upward import and a package that has no layer."""
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from tools.requirements import ROOT
+
+LICENCE = "# SPDX-License-Identifier: Apache-2.0\n"
+
+
+def lint(root: Path, modules: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    """Run the repository's contract over a package `slipwise` that holds `modules` (name -> source)."""
+    package = root / "slipwise"
+    package.mkdir()
+    for name in ("__init__", "errors", "files", *modules):
+        (package / f"{name}.py").write_text(LICENCE + modules.get(name, ""), encoding="utf-8")
+    shutil.copy(ROOT / "pyproject.toml", root)
+    code = "import sys; sys.path.insert(0, '.'); from importlinter.cli import lint_imports_command as f; f()"
+    command = [sys.executable, "-c", code, "--no-cache"]
+    return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+
+
+def test_an_upward_import_breaks_the_contract(tmp_path: Path) -> None:
+    result = lint(tmp_path, {"logs": "", "cli": "import slipwise.logs\n", "files": "import slipwise.cli\n"})
+    assert result.returncode == 1
+    assert "slipwise.files is not allowed to import slipwise.cli" in result.stdout
+
+
+def test_a_downward_import_keeps_it(tmp_path: Path) -> None:
+    result = lint(tmp_path, {"logs": "import slipwise.files\n", "cli": "import slipwise.logs\n"})
+    assert result.returncode == 0, result.stdout
+
+
+def test_a_package_without_a_layer_breaks_the_contract(tmp_path: Path) -> None:
+    result = lint(tmp_path, {"extras": ""})
+    assert result.returncode == 1
+    assert "extras" in result.stdout
+
+
+@pytest.mark.parametrize("source", sorted((ROOT / "python/slipwise").iterdir()), ids=lambda path: path.name)
+def test_every_part_of_the_package_has_a_layer(source: Path) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    (contract,) = project["tool"]["importlinter"]["contracts"]
+    layers = {layer.strip("()") for layer in contract["layers"]}
+    if source.suffix == ".py" or source.is_dir():
+        assert source.stem in layers | {"__init__", "__pycache__"}

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `make` installs before the build is read from pyproject.toml, and every version of it is pinned."""
+
+import re
+import tomllib
+
+import pytest
+
+from tools.requirements import ROOT, requirements
+
+PROJECT = {
+    "build-system": {"requires": ["builder>=1"]},
+    "project": {"dependencies": ["numpy>=2"], "optional-dependencies": {"sim": ["mujoco>=3"]}},
+    "dependency-groups": {"dev": ["pytest>=9"]},
+}
+
+
+@pytest.mark.parametrize(
+    ("part", "expected"),
+    [("build", "builder>=1"), ("run", "numpy>=2"), ("sim", "mujoco>=3"), ("dev", "pytest>=9")],
+)
+def test_each_part_is_read_from_its_own_table(part: str, expected: str) -> None:
+    assert requirements(PROJECT, part) == [expected]
+
+
+def test_an_unknown_part_is_refused() -> None:
+    with pytest.raises(KeyError, match="docs"):
+        requirements(PROJECT, "docs")
+
+
+@pytest.mark.parametrize("part", ["build", "run", "sim", "dev", "bench"])
+def test_every_requirement_has_a_pinned_version(part: str) -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pinned = {line.split("==")[0] for line in lines if "==" in line}
+    for requirement in requirements(project, part):
+        name = re.split(r"[<>=!~\[; ]", requirement)[0].lower().replace("_", "-")
+        assert name in pinned
