@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks what the C++ core includes: lower layers, the standard library and Eigen only, and never in a circle."""
+"""Checks what the C++ core includes: lower layers, the standard library, Eigen, and never in a circle."""
 
 from __future__ import annotations
 
