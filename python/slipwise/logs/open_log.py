@@ -12,8 +12,10 @@ from slipwise.logs.options import LogOptions
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
+_GUESS = LogOptions()
 
-def open_log(*paths: str | Path, options: LogOptions = LogOptions()) -> Log:
+
+def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     """Read one or several files as one log; runs of different files are never joined.
 
     Args:
@@ -38,11 +40,25 @@ def _open_one(path: Path, options: LogOptions) -> Log:
 
 
 def _reader(path: Path) -> Callable[[Path, LogOptions], Log]:
-    from slipwise.logs.tidy import read_tidy
+    """Choose the reader by what the file holds; the readers are loaded only when they are needed."""
+    from slipwise.logs.bag_file import is_bag
 
+    if path.is_dir() or is_bag(path):
+        from slipwise.logs.bag import read_bag
+
+        return read_bag
     if path.stat().st_size == 0:
         raise LogError("the file is empty", where=str(path), advice="record or copy it again")
-    return read_tidy
+    if path.suffix in (".mcap", ".db3", ".bag"):
+        advice = f"a {path.suffix} file starts otherwise; copy it again from the robot"
+        raise LogError("not a bag: wrong magic bytes", where=str(path), advice=advice)
+    from slipwise.logs.tidy import read_parquet_log, read_tidy
+
+    with path.open("rb") as file:
+        parquet = file.read(4) == b"PAR1"
+    if path.suffix == ".parquet" and not parquet:
+        raise LogError("not a Parquet file: wrong magic bytes", where=str(path), advice="write it again")
+    return read_parquet_log if parquet else read_tidy
 
 
 def _joined(logs: list[Log]) -> Log:

@@ -41,25 +41,37 @@ class _Rows:
     extra: dict[str, NDArray[Any]]
 
 
-def read_tidy(path: Path, options: LogOptions, *, parquet: bool = False) -> Log:
-    """Read one tidy table.
+def read_tidy(path: Path, options: LogOptions) -> Log:
+    """Read a tidy CSV file, compressed with gzip or not.
 
     Args:
-        path: a CSV file (compressed with gzip or not), or a Parquet file.
+        path: the file.
         options: radius, track and wheelbase are used where the table needs them.
-        parquet: whether it is a Parquet file.
 
     Raises:
         LogError: the file cannot be read, or columns are missing.
     """
-    tally, notes = Tally(), list[str]()
-    table = read_parquet(path) if parquet else read_csv(path, numeric=NUMERIC, text=TEXT, tally=tally)
+    tally = Tally()
+    return _log(read_csv(path, numeric=NUMERIC, text=TEXT, tally=tally), options, tally)
+
+
+def read_parquet_log(path: Path, options: LogOptions) -> Log:
+    """Read a tidy Parquet file; see `read_tidy`.
+
+    Raises:
+        LogError: the file cannot be read, or columns are missing.
+    """
+    return _log(read_parquet(path), options, Tally())
+
+
+def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
+    notes: list[str] = []
     require_columns(table)
     if len(table) == 0:
-        raise LogError("the table has no rows", where=str(path), advice="record the log again")
+        raise LogError("the table has no rows", where=str(table.path), advice="record the log again")
     rows = _rows(table, options, tally, notes)
-    runs = tuple(_run(name, rows, index, table, tally) for name, index in _split_by_run(table, path))
-    source = Source(str(path), table.sha256, table.format, len(table))
+    runs = tuple(_run(name, rows, index, table, tally) for name, index in _split_by_run(table))
+    source = Source(str(table.path), table.sha256, table.format, len(table))
     return Log(runs, (source,), tally.result(), tuple(notes))
 
 
@@ -101,15 +113,15 @@ def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]
     return np.asarray(there)
 
 
-def _split_by_run(table: Table, path: Path) -> Iterator[tuple[str, slice | Ints]]:
+def _split_by_run(table: Table) -> Iterator[tuple[str, slice | Ints]]:
     """Yield each run's name and rows, in the order in which the runs appear."""
     if "run" not in table.names:
-        yield run_name(path), slice(0, len(table))
+        yield run_name(table.path), slice(0, len(table))
         return
     raw, names = table.codes("run")
     codes = order_codes(raw)
     starts = np.flatnonzero(np.diff(codes, prepend=-1))
-    labels = [names[raw[i]] or run_name(path) for i in np.unique(codes, return_index=True)[1]]
+    labels = [names[raw[i]] or run_name(table.path) for i in np.unique(codes, return_index=True)[1]]
     if len(starts) == len(labels):
         for label, start, stop in zip(labels, starts, [*starts[1:], len(codes)], strict=True):
             yield label, slice(int(start), int(stop))
@@ -131,30 +143,24 @@ def run_name(path: Path) -> str:
 def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally) -> Run:
     numbers = np.arange(index.start, index.stop) if isinstance(index, slice) else index
     t = rows.t[index]
-    fresh = rows.fresh[index]
-    pose = RawStream(
-        "poses", t, {key: values[index] for key, values in rows.pose.items()}, numbers, table.place,
-        optional=frozenset(POSE_EXTRAS),
-    )
+
+    def stream(role: str, columns: dict[str, Floats]) -> RawStream:
+        values = {key: column[index] for key, column in columns.items()}
+        return RawStream(role, t, values, numbers, table.place, optional=frozenset(POSE_EXTRAS))
+
     extra = {key: values[index] for key, values in rows.extra.items()}
     return Run(
         name=name,
-        commands=_inputs("commands", rows.commands, index, t, numbers, table, tally),
-        wheels=_inputs("wheels", rows.wheels, index, t, numbers, table, tally),
-        poses=to_poses(pose.select(fresh), tally),
+        commands=_inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None,
+        wheels=_inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None,
+        poses=to_poses(stream("poses", rows.pose).select(rows.fresh[index]), tally),
         extra={"t": t, **extra} if extra else {},
     )
 
 
-def _inputs(
-    name: str, columns: InputColumns | None, index: slice | Ints, t: Floats, numbers: Ints, table: Table, tally: Tally
-) -> Inputs | None:
-    if columns is None:
-        return None
-    values = {"v": columns.v[index], "omega": columns.omega[index]}
-    if columns.vy is not None:
-        values["vy"] = columns.vy[index]
-    there = np.zeros(len(t), bool)
-    for value in values.values():
-        there |= np.isfinite(value)
-    return to_inputs(RawStream(name, t, values, numbers, table.place).select(there), tally)
+def _inputs(stream: RawStream, tally: Tally) -> Inputs | None:
+    """Make inputs of the rows that hold any of the columns."""
+    there = np.zeros(len(stream.t), bool)
+    for values in stream.columns.values():
+        there |= np.isfinite(values)
+    return to_inputs(stream.select(there), tally)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
@@ -33,6 +34,11 @@ class InputColumns:
     v: Floats
     vy: Floats | None
     omega: Floats
+
+    def columns(self) -> dict[str, Floats]:
+        """Return the columns by name, without a sideways speed where there is none."""
+        twist = {"v": self.v, "omega": self.omega}
+        return twist if self.vy is None else {**twist, "vy": self.vy}
 
 
 def require_columns(table: Table) -> None:
@@ -72,7 +78,7 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
         if "odo_v" in names or "wheel_left" in names:
             notes.append(f"{table.path.name}: {forward} has no cmd_omega beside it and is not used")
             return None
-        _raise_no_omega(table, "cmd_omega", "cmd_steer" in names)
+        _raise_no_omega(table, "cmd_omega", steer="cmd_steer" in names)
     vy = table.numbers("cmd_vy", tally) if "cmd_vy" in names else None
     if vy is not None and forward == "cmd_v" and "cmd_vx" in names:
         apart = np.abs(table.numbers("cmd_vx", tally) - v) > _SAME_SPEED
@@ -124,6 +130,6 @@ def _command_omega(
     return filled
 
 
-def _raise_no_omega(table: Table, missing: str, steer: bool) -> None:
+def _raise_no_omega(table: Table, missing: str, *, steer: bool) -> NoReturn:
     advice = "give the wheelbase, the table has cmd_steer" if steer else f"add a column {missing} [rad/s]"
     raise LogError(f"missing columns: {missing}", where=str(table.path), advice=advice)

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads ROS bags: rosbag1, rosbag2 (sqlite3 or MCAP), one file or a folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.bag_file import BagFile, bag_files, files_sha256
+from slipwise.logs.bag_streams import (
+    BagContext,
+    command_stream,
+    fix_stream,
+    needs_receipt,
+    pose_stream,
+    wheel_stream,
+)
+from slipwise.logs.joints import SideSpeeds
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Ints, Log, Run, Source
+from slipwise.logs.messages import (
+    COMMAND_VALUES,
+    IMU_VALUES,
+    JOINT_STATE,
+    NAV_SAT_FIX,
+    POSE_VALUES,
+    TF,
+    TWIST,
+    WHEEL_VALUES,
+    SampleCollector,
+    Samples,
+)
+from slipwise.logs.options import LogOptions
+from slipwise.logs.streams import RawStream, to_inputs, to_poses
+from slipwise.logs.tidy import run_name
+from slipwise.logs.topics import Roles, Topic, choose_topics
+from slipwise.logs.transforms import TransformCollector, chain_poses, choose_frames
+
+RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
+RUN_TYPE = "std_msgs/msg/String"
+
+Consumer = Callable[[Any, int], None]
+
+
+@dataclass(frozen=True)
+class _Collected:
+    """Everything taken out of a bag."""
+
+    samples: dict[str, Samples]  # by role: command, wheel, pose, imu
+    transforms: TransformCollector
+    runs: tuple[tuple[int, str], ...]  # start [ns] and name
+
+
+def read_bag(path: Path, options: LogOptions) -> Log:
+    """Read one bag: a storage file, or the folder of a rosbag2.
+
+    Args:
+        path: the bag.
+        options: topics, frames and sizes that cannot be guessed.
+
+    Raises:
+        LogError: the bag cannot be read, or its topics do not say which is which.
+    """
+    tally = Tally()
+    files = bag_files(path)
+    with BagFile(path, files, tally) as bag:
+        try:
+            roles = choose_topics(bag.topics, options)
+            collected = _collect(bag, roles, options)
+            notes = list(roles.guessed)
+            runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False), notes)
+        except LogError as error:
+            raise error if error.where else LogError(error.what, where=str(path), advice=error.advice) from error
+        count = sum(topic.count for topic in bag.topics)
+        source = Source(str(path), files_sha256(files), bag.format, count)
+    return Log(runs, (source,), tally.result(), tuple(notes))
+
+
+def _collect(bag: BagFile, roles: Roles, options: LogOptions) -> _Collected:
+    """Decode the messages of the chosen topics, each once."""
+    consumers: dict[str, list[Consumer]] = {}
+    collectors: dict[str, SampleCollector] = {}
+    transforms = TransformCollector()
+    starts: list[tuple[int, str]] = []
+    for role, topic, values in _extractors(roles, options):
+        collector = SampleCollector(topic.name, values, has_header=topic.type != TWIST)
+        collectors[role] = collector
+        consumers.setdefault(topic.name, []).append(collector.add)
+    if roles.pose.type == TF:
+        for topic in bag.topics:
+            if topic.type == TF:
+                consumers.setdefault(topic.name, []).append(_transform_consumer(transforms, topic.name))
+    if any(topic.name == RUN_TOPIC and topic.type == RUN_TYPE for topic in bag.topics):
+        consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, message.data))]
+    for message in bag.messages(set(consumers)):
+        decoded = bag.decode(message)
+        for consume in consumers[message.topic]:
+            consume(decoded, message.received_ns)
+    return _Collected(
+        {role: collector.result() for role, collector in collectors.items()}, transforms, tuple(sorted(starts))
+    )
+
+
+def _extractors(roles: Roles, options: LogOptions) -> list[tuple[str, Topic, Callable[[Any], tuple[float, ...]]]]:
+    found: list[tuple[str, Topic, Callable[[Any], tuple[float, ...]]]] = []
+    if roles.command is not None:
+        found.append(("command", roles.command, COMMAND_VALUES[roles.command.type]))
+    if roles.wheel is not None:
+        joints = roles.wheel.type == JOINT_STATE
+        found.append(("wheel", roles.wheel, SideSpeeds(options) if joints else WHEEL_VALUES[roles.wheel.type]))
+    if roles.pose.type != TF:
+        found.append(("pose", roles.pose, POSE_VALUES[roles.pose.type]))
+    if roles.imu is not None:
+        found.append(("imu", roles.imu, IMU_VALUES[roles.imu.type]))
+    return found
+
+
+def _transform_consumer(transforms: TransformCollector, topic: str) -> Consumer:
+    static = topic.endswith("static")
+    return lambda message, received_ns: transforms.add(message, received_ns, static=static)
+
+
+def _runs(
+    path: Path, roles: Roles, collected: _Collected, context: BagContext, notes: list[str]
+) -> tuple[Run, ...]:
+    samples = dict(collected.samples)
+    if roles.pose.type == TF:
+        samples["pose"] = _transform_samples(roles, collected.transforms, context.options, notes)
+    if needs_receipt(list(samples.values())):
+        notes.append("header stamps are on another clock than the bag: everything is dated by the time of receipt")
+        context = BagContext(context.file, context.options, context.tally, True)
+    elif roles.command is not None and roles.command.type == TWIST:
+        notes.append(f"{roles.command.name} has no header: its commands are dated by the time of receipt")
+    commands = wheels = None
+    if roles.command is not None:
+        commands = command_stream(context, samples["command"], roles.command.type)
+    if roles.wheel is not None:
+        wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
+    if roles.pose.type == NAV_SAT_FIX:
+        inputs = next((to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None)
+        poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
+    else:
+        poses = pose_stream(context, samples["pose"])
+    return _split(path, collected.runs, (commands, wheels, poses), context.tally)
+
+
+def _split(
+    path: Path,
+    starts: tuple[tuple[int, str], ...],
+    streams: tuple[RawStream | None, RawStream | None, RawStream],
+    tally: Tally,
+) -> tuple[Run, ...]:
+    """Cut the streams into runs where the bag says so; otherwise a bag is one run."""
+    names = [name for _, name in starts] or [run_name(path)]
+    edges = np.array([start for start, _ in starts][1:], dtype=np.int64) / 1e9
+    runs = []
+    for number, name in enumerate(names):
+        commands, wheels, poses = (
+            stream and stream.select(np.searchsorted(edges, stream.t, side="right") == number) for stream in streams
+        )
+        assert poses is not None
+        runs.append(
+            Run(
+                name=name,
+                commands=to_inputs(commands, tally) if commands else None,
+                wheels=to_inputs(wheels, tally) if wheels else None,
+                poses=to_poses(poses, tally),
+            )
+        )
+    return tuple(runs)
+
+
+def _transform_samples(
+    roles: Roles, transforms: TransformCollector, options: LogOptions, notes: list[str]
+) -> Samples:
+    edges = transforms.edges()
+    frames = choose_frames(edges, options.pose_frame, options.child_frame)
+    if frames is None:
+        known = ", ".join(f"{a} -> {b}" for a, b in sorted(edges)[:8])
+        raise LogError("no usual frames in TF", advice=f"set pose_frame and child_frame; it has {known}")
+    stamps, values = chain_poses(edges, *frames)
+    notes.append(f"poses are the transform {frames[0]} -> {frames[1]}")
+    frame: Ints = np.zeros(len(stamps), np.int64)
+    return Samples(roles.pose.name, stamps, stamps, values, ("",), frame, has_header=True)

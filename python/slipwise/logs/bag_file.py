@@ -1,0 +1,265 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Opens bags of every format and hands out the messages of chosen topics, as far as a damaged file can be read."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import logging
+import struct
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from slipwise.errors import LogError
+from slipwise.logs.left_out import Tally
+from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
+from slipwise.logs.topics import Topic
+
+if TYPE_CHECKING:
+    from rosbags.interfaces import Connection
+    from rosbags.typesys.store import Typestore
+
+MCAP_MAGIC = b"\x89MCAP0\r\n"
+SQLITE_MAGIC = b"SQLite format 3\0"
+ROSBAG1_MAGIC = b"#ROSBAG V2.0\n"
+_ENDINGS = {MCAP_MAGIC: ".mcap", SQLITE_MAGIC: ".db3", ROSBAG1_MAGIC: ".bag"}
+_MCAP_END = struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQQQI", 0x02, 20, 0, 0, 0) + MCAP_MAGIC
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class RawMessage:
+    """One message as it is stored."""
+
+    topic: str
+    type: str
+    received_ns: int
+    data: bytes
+
+
+class BagFile:
+    """An open bag: one storage file, or several of one recording."""
+
+    def __init__(self, path: Path, files: Sequence[Path], tally: Tally) -> None:
+        self._path, self._tally = path, tally
+        self.format = ""
+        self._stack = contextlib.ExitStack()
+        self._sources: list[tuple[Any, Sequence[Connection]]] = []  # readers with their connections
+        try:
+            if not (path.is_dir() and self._open_folder(path, files)):
+                for file in files:
+                    self._open(file)
+        except BaseException:
+            self._stack.close()
+            raise
+        self.topics = self._topics()
+        self._store: Typestore | None = None
+
+    def __enter__(self) -> BagFile:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+    def messages(self, names: set[str]) -> Iterator[RawMessage]:
+        """Yield the messages of the named topics; where a file breaks off, stop there and count the rest."""
+        for reader, connections in self._sources:
+            wanted = [connection for connection in connections if connection.topic in names]
+            if not wanted:
+                continue
+            expected, seen = sum(connection.msgcount for connection in wanted), 0
+            try:
+                for connection, received_ns, data in _all_messages(reader, wanted):
+                    seen += 1
+                    yield RawMessage(connection.topic, connection.msgtype, received_ns, data)
+            except (LogError, GeneratorExit):
+                raise
+            except Exception as error:  # what a reader raises on damaged bytes has no bounds
+                _log.debug("reading %s broke off", self._path, exc_info=True)
+                self._tally.add(
+                    "damaged-bag",
+                    f"messages after the bag breaks off: {_first_line(error)}",
+                    count=max(expected - seen, 1),
+                    where=f"{self._path.name}, message {seen + 1} of the topics that are used",
+                )
+
+    def decode(self, message: RawMessage) -> Any:
+        """Return the message as an object.
+
+        Raises:
+            LogError: it does not fit its type.
+        """
+        store = self._store = self._store or self._typestore()
+        read = store.deserialize_ros1 if self.format == "rosbag1" else store.deserialize_cdr
+        try:
+            return read(message.data, message.type)
+        except Exception as error:  # a damaged message can fail in any way
+            raise LogError(
+                f"a message of {message.topic} cannot be decoded as {message.type}: {_first_line(error)}",
+                where=str(self._path),
+            ) from error
+
+    def _open_folder(self, path: Path, files: Sequence[Path]) -> bool:
+        """Open a rosbag2 folder by its metadata; say whether that went well, its files may still be readable."""
+        if not (path / "metadata.yaml").exists():
+            return False
+        from rosbags.rosbag2 import Reader
+
+        try:
+            reader = self._stack.enter_context(Reader(path))
+        except Exception:  # what a reader raises on damaged bytes has no bounds
+            _log.debug("the metadata of %s cannot be used", path, exc_info=True)
+            return False
+        self.format = "mcap" if any(file.suffix == ".mcap" for file in files) else "rosbag2-sqlite3"
+        self._sources.append((reader, reader.connections))
+        return True
+
+    def _open(self, file: Path) -> None:
+        magic = next((magic for magic in _ENDINGS if _starts_with(file, magic)), None)
+        if magic is None:
+            what = "the file is empty" if file.stat().st_size == 0 else "not a bag: wrong magic bytes"
+            raise LogError(what, where=str(file), advice="copy it again from the robot")
+        named = self._named(file, _ENDINGS[magic])
+        self.format = {MCAP_MAGIC: "mcap", SQLITE_MAGIC: "rosbag2-sqlite3", ROSBAG1_MAGIC: "rosbag1"}[magic]
+        try:
+            if magic == ROSBAG1_MAGIC:
+                from rosbags.rosbag1 import Reader as Reader1
+
+                reader1 = self._stack.enter_context(Reader1(named))
+                self._sources.append((reader1, reader1.connections))
+            elif magic == MCAP_MAGIC and not _ends_with(file, MCAP_MAGIC):
+                self._open_cut_off(file)
+            else:
+                from rosbags.rosbag2 import Reader as Reader2
+
+                reader2 = self._stack.enter_context(Reader2(named))
+                self._sources.append((reader2, reader2.connections))
+        except LogError:
+            raise
+        except Exception as error:  # what a reader raises on damaged bytes has no bounds
+            raise LogError(
+                f"the bag cannot be read: {_first_line(error)}",
+                where=str(file),
+                advice="it may be cut off; copy it again, or repair it with `rosbag reindex`, `mcap recover`"
+                " or `ros2 bag reindex`",
+            ) from error
+
+    def _open_cut_off(self, file: Path) -> None:
+        """Open an MCAP file without an end by giving its whole records one, in a temporary copy."""
+        from rosbags.rosbag2.storage_mcap import McapReader
+
+        copy = Path(self._stack.enter_context(tempfile.TemporaryDirectory())) / "whole.mcap"
+        content = file.read_bytes()
+        whole = _whole_records(content)
+        copy.write_bytes(content[:whole] + _MCAP_END)
+        reader = McapReader(copy)
+        reader.open()
+        self._stack.callback(reader.close)
+        self._sources.append((reader, reader.connections))
+        self._tally.add(
+            "damaged-bag",
+            "bytes after the last whole record of a cut-off MCAP file",
+            count=max(len(content) - whole, 1),
+            where=f"{file.name}, byte {whole}",
+        )
+
+    def _named(self, file: Path, ending: str) -> Path:
+        """Return the file under a name with the right ending, which the readers go by."""
+        if file.suffix == ending:
+            return file
+        link = Path(self._stack.enter_context(tempfile.TemporaryDirectory())) / f"bag{ending}"
+        link.symlink_to(file.resolve())
+        return link
+
+    def _topics(self) -> tuple[Topic, ...]:
+        counts: dict[tuple[str, str], int] = {}
+        for _, connections in self._sources:
+            for connection in connections:
+                key = (connection.topic, connection.msgtype)
+                counts[key] = counts.get(key, 0) + connection.msgcount
+        return tuple(Topic(name, kind, count) for (name, kind), count in counts.items())
+
+    def _typestore(self) -> Typestore:
+        """Return the standard types; definitions in the bag are not needed for them."""
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+        store = get_typestore(Stores.ROS1_NOETIC if self.format == "rosbag1" else Stores.ROS2_HUMBLE)
+        if ACKERMANN not in store.fielddefs:
+            store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
+        return store
+
+
+def bag_files(path: Path) -> list[Path]:
+    """Return the storage files of a bag: the file itself, or those in a rosbag2 folder, by name.
+
+    Raises:
+        LogError: the folder holds no bag.
+    """
+    if not path.is_dir():
+        return [path]
+    files = sorted(file for file in path.iterdir() if file.suffix in (".mcap", ".db3", ".bag"))
+    if not files:
+        packed = any(file.name.endswith(".zstd") for file in path.iterdir())
+        advice = "decompress its .zstd files first" if packed else "name a folder with .mcap, .db3 or .bag files"
+        raise LogError("the folder holds no bag", where=str(path), advice=advice)
+    return sorted(files, key=_split_number)
+
+
+def files_sha256(files: Sequence[Path]) -> str:
+    """Return the SHA-256 of the files' bytes, one after the other."""
+    digest = hashlib.sha256()
+    for file in files:
+        with file.open("rb") as stream:
+            while block := stream.read(1 << 20):
+                digest.update(block)
+    return digest.hexdigest()
+
+
+def is_bag(path: Path) -> bool:
+    """Say whether the file starts like a bag."""
+    return any(_starts_with(path, magic) for magic in _ENDINGS)
+
+
+def _all_messages(reader: Any, wanted: Sequence[Connection]) -> Iterator[tuple[Connection, int, bytes]]:
+    from rosbags.rosbag2.storage_mcap import McapReader
+
+    if isinstance(reader, McapReader):
+        return reader.messages_scan(wanted)
+    found: Iterator[tuple[Connection, int, bytes]] = reader.messages(connections=wanted)
+    return found
+
+
+def _whole_records(content: bytes) -> int:
+    """Return the length of the part of an MCAP file that consists of whole records of the data section."""
+    position = len(MCAP_MAGIC)
+    while position + 9 <= len(content):
+        kind, size = struct.unpack_from("<BQ", content, position)
+        if position + 9 + size > len(content) or kind in (0x0F, 0x02):
+            break
+        position += 9 + size
+    return position
+
+
+def _split_number(file: Path) -> tuple[str, int, str]:
+    """Sort recording_2 before recording_10."""
+    stem, _, number = file.stem.rpartition("_")
+    return (stem, int(number), file.suffix) if number.isdigit() else (file.stem, -1, file.suffix)
+
+
+def _starts_with(file: Path, magic: bytes) -> bool:
+    with file.open("rb") as stream:
+        return stream.read(len(magic)) == magic
+
+
+def _ends_with(file: Path, magic: bytes) -> bool:
+    with file.open("rb") as stream:
+        stream.seek(-min(len(magic), file.stat().st_size), 2)
+        return stream.read() == magic
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error) or type(error).__name__).splitlines()[0][:200]

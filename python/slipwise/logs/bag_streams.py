@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Turns the messages collected from a bag into raw streams of inputs and poses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Bools, Floats, Inputs
+from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
+from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_track
+from slipwise.logs.options import LogOptions
+from slipwise.logs.rotation import angles_of, unit_quaternions
+from slipwise.logs.streams import RawStream
+
+POSE_OPTIONAL = frozenset(("z", "roll", "pitch", "std_xy", "std_yaw"))
+_CLOCKS_APART = 10.0  # [s] header stamps this far from the time of receipt are on a clock of their own
+_TINY = 1e-12  # heights and tilts below this were never measured
+
+
+@dataclass(frozen=True)
+class BagContext:
+    """What every stream of a bag needs to know."""
+
+    file: str
+    options: LogOptions
+    tally: Tally
+    by_receipt: bool  # date everything by when it was received
+
+    def seconds(self, samples: Samples, role: str) -> Floats:
+        """Return the stamps [N] in s: of the headers where there are any, else of receipt."""
+        if self.by_receipt or not samples.has_header:
+            return samples.received_ns / 1e9
+        zero = samples.stamp_ns == 0
+        if zero.any() and (samples.received_ns[zero] != 0).any():
+            self.tally.add(
+                "zero-stamp",
+                f"{role} stamps that are zero, replaced by the time of receipt",
+                count=int(zero.sum()),
+                where=f"{self.file}, {samples.topic} message {int(np.argmax(zero)) + 1}",
+            )
+        return np.where(zero, samples.received_ns, samples.stamp_ns) / 1e9
+
+    def stream(self, role: str, samples: Samples, columns: dict[str, Floats], keep: Bools | None = None) -> RawStream:
+        """Make a raw stream of the samples where `keep` [N] is true."""
+        count = len(samples.received_ns)
+        place = f"{self.file}, {samples.topic} message"
+        whole = RawStream(
+            role,
+            self.seconds(samples, role),
+            columns,
+            np.arange(count),
+            lambda row: f"{place} {row + 1}",
+            POSE_OPTIONAL,
+        )
+        return whole if keep is None else whole.select(keep)
+
+
+def needs_receipt(streams: list[Samples]) -> bool:
+    """Say whether headers run on another clock than the bag while some messages have no header."""
+    if all(samples.has_header for samples in streams):
+        return False
+    for samples in streams:
+        dated = samples.stamp_ns != 0
+        if dated.any():
+            apart = np.median(np.abs((samples.received_ns - samples.stamp_ns)[dated])) / 1e9
+            if apart > _CLOCKS_APART:
+                return True
+    return False
+
+
+def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
+    """Make the command stream of twists, or of a car's speed and steering angle.
+
+    Raises:
+        LogError: a steering angle came without a wheelbase.
+    """
+    if kind != ACKERMANN:
+        v, vy, omega = samples.values.T
+        return context.stream("commands", samples, {"v": v, "vy": vy, "omega": omega})
+    if context.options.wheelbase is None:
+        raise LogError("steering commands need the wheelbase", where=samples.topic, advice="set wheelbase in metres")
+    v, steer = samples.values.T
+    omega = omega_from_steering(v, steer, wheelbase=context.options.wheelbase)
+    return context.stream("commands", samples, {"v": v, "omega": omega})
+
+
+def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
+    """Make the wheel stream of an odometry's twist, or of wheel speeds.
+
+    Raises:
+        LogError: wheel speeds came without radius and track.
+    """
+    if kind != JOINT_STATE:
+        v, vy, omega = samples.values.T
+        return context.stream("wheels", samples, {"v": v, "vy": vy, "omega": omega})
+    radius, track = context.options.wheel_radius, context.options.track
+    if radius is None or track is None:
+        raise LogError(
+            "wheel speeds need the wheel radius and the track", where=samples.topic, advice="set wheel_radius and track"
+        )
+    left, right = samples.values.T
+    v, omega = twist_from_wheels(left, right, wheel_radius=radius, track=track)
+    return context.stream("wheels", samples, {"v": v, "omega": omega})
+
+
+def pose_stream(context: BagContext, samples: Samples) -> RawStream:
+    """Make the pose stream of (x, y, z, quaternion[, variances]) [N, 7 or 10]; bad quaternions are counted."""
+    values = samples.values
+    q, good = unit_quaternions(values[:, 3:7])
+    roll, pitch, yaw = angles_of(q)
+    columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
+    for name, column in (("z", values[:, 2]), ("roll", roll), ("pitch", pitch)):
+        if np.nanmax(np.abs(column), initial=0.0) > _TINY:
+            columns[name] = column
+    if values.shape[1] > 7:
+        columns["std_xy"] = _deviation(values[:, 7:9])
+        columns["std_yaw"] = _deviation(values[:, 9:10])
+    finite = np.isfinite(values[:, 3:7]).all(axis=1)
+    _count(context, samples, finite & ~good, "bad-quaternion", "poses whose quaternion is not a rotation")
+    return context.stream("poses", samples, columns, good | ~finite)
+
+
+def fix_stream(context: BagContext, samples: Samples, imu: Samples | None, inputs: Inputs | None) -> RawStream:
+    """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
+
+    The heading is the IMU's where there is one, else the direction of the track while the robot moves.
+    """
+    values = samples.values
+    position = np.isfinite(values[:, :2]).all(axis=1)
+    good = position & (values[:, 3] >= 0.0)
+    _count(context, samples, ~good, "no-fix", "satellite messages without a fix")
+    altitude = np.nan_to_num(values[:, 2])
+    x, y, z = (np.full(len(values), np.nan) for _ in range(3))
+    if good.any():
+        x[good], y[good], z[good] = east_north_up(values[good, 0], values[good, 1], altitude[good]).T
+    yaw, known = np.full(len(values), np.nan), np.zeros(len(values), bool)
+    t = context.seconds(samples, "poses")
+    if imu is not None and len(imu.values):
+        q, upright = unit_quaternions(imu.values)
+        if upright.any():
+            yaw, known = heading_from_imu(t, context.seconds(imu, "imu")[upright], angles_of(q[upright])[2])
+        _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
+    if not known.any():
+        yaw[good], known[good] = heading_from_track(t[good], x[good], y[good], inputs)
+    _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
+    columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": _deviation(values[:, 4:6])}
+    return context.stream("poses", samples, columns, good & known)
+
+
+def _deviation(variances: Floats) -> Floats:
+    """Return the standard deviation [N] of variances [N, K], NaN unless all are positive and finite."""
+    known = (np.isfinite(variances) & (variances > 0.0)).all(axis=1)
+    return np.sqrt(np.where(known, np.nan_to_num(variances).mean(axis=1).clip(0.0), np.nan))
+
+
+def _count(context: BagContext, samples: Samples, wrong: Bools, kind: str, reason: str) -> None:
+    where = f"{context.file}, {samples.topic} message {int(np.argmax(wrong)) + 1}"
+    context.tally.add(kind, reason, count=int(wrong.sum()), where=where)

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Satellite fixes: WGS-84 to a local tangent plane, and headings from an IMU or from the track."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipwise.logs.log import Bools, Floats, Inputs
+
+_A = 6378137.0  # [m] WGS-84 semi-major axis
+_F = 1.0 / 298.257223563  # WGS-84 flattening
+_E2 = _F * (2.0 - _F)  # first eccentricity squared
+_MAX_IMU_AGE = 0.5  # [s] an IMU sample further away says nothing about a fix
+_MIN_CHORD = 0.3  # [m] a shorter piece of track has no course
+_MAX_CHORD_TIME = 3.0  # [s] a piece of track that takes longer is not one course
+
+
+def ecef(latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
+    """Return earth-centred positions [N, 3] in m of fixes [N] in degrees and metres above the ellipsoid."""
+    phi, lam = np.radians(latitude), np.radians(longitude)
+    normal = _A / np.sqrt(1.0 - _E2 * np.sin(phi) ** 2)
+    x = (normal + altitude) * np.cos(phi) * np.cos(lam)
+    y = (normal + altitude) * np.cos(phi) * np.sin(lam)
+    z = (normal * (1.0 - _E2) + altitude) * np.sin(phi)
+    return np.stack([x, y, z], axis=-1)
+
+
+def east_north_up(latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
+    """Return positions [N, 3] in m (x east, y north, z up) in the tangent plane at the first fix."""
+    points = ecef(latitude, longitude, altitude)
+    phi, lam = np.radians(latitude[0]), np.radians(longitude[0])
+    east = np.array([-np.sin(lam), np.cos(lam), 0.0])
+    north = np.array([-np.sin(phi) * np.cos(lam), -np.sin(phi) * np.sin(lam), np.cos(phi)])
+    up = np.array([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)])
+    return np.asarray((points - points[0]) @ np.stack([east, north, up], axis=1))
+
+
+def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats, Bools]:
+    """Interpolate the IMU's yaw [M] at the fixes.
+
+    Returns:
+        yaw [N] in rad, and whether there was an IMU sample near enough [N].
+    """
+    if len(imu_t) == 0:
+        return np.full(len(t), np.nan), np.zeros(len(t), bool)
+    after = np.clip(np.searchsorted(imu_t, t), 0, len(imu_t) - 1)
+    before = np.maximum(after - 1, 0)
+    near = np.minimum(np.abs(imu_t[after] - t), np.abs(imu_t[before] - t)) <= _MAX_IMU_AGE
+    yaw = np.interp(t, imu_t, np.unwrap(imu_yaw))
+    return np.arctan2(np.sin(yaw), np.cos(yaw)), np.asarray(near)
+
+
+def heading_from_track(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> tuple[Floats, Bools]:
+    """Take the direction from the fix before to the fix after as heading, turned about when driving backward.
+
+    Args:
+        t: stamps [N] in s, increasing.
+        x: positions [N] in m.
+        y: positions [N] in m.
+        inputs: say whether the robot drove backward; without them it is taken to drive forward.
+
+    Returns:
+        yaw [N] in rad, and whether the robot moved enough to have a course [N].
+    """
+    count = len(t)
+    i, j = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
+    dx, dy = x[j] - x[i], y[j] - y[i]
+    moved = (np.hypot(dx, dy) >= _MIN_CHORD) & (t[j] - t[i] <= _MAX_CHORD_TIME)
+    yaw = np.arctan2(dy, dx)
+    if inputs is not None:
+        held = inputs.v[np.clip(np.searchsorted(inputs.t, t, side="right") - 1, 0, None)]
+        yaw = np.where(held < 0.0, np.arctan2(-dy, -dx), yaw)
+        moved &= held != 0.0
+    return yaw, np.asarray(moved)

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Writes a log as one MCAP file with the usual ROS 2 topics, which Foxglove and `open_log` read."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.files import write_whole
+from slipwise.logs.bag import RUN_TOPIC, RUN_TYPE
+from slipwise.logs.log import Floats, Ints, Log, Run
+from slipwise.logs.messages import ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
+from slipwise.logs.rotation import quaternions_of
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+COMMAND_TOPIC = "/cmd_vel"
+WHEEL_TOPIC = "/odom"
+POSE_TOPIC = "/ground_truth/pose"
+
+_RUN_GAP_NS = 10_000_000_000  # between runs whose own times do not keep them apart
+_UNKNOWN_VARIANCE = 1e6  # of an odometry's pose that nobody measured
+
+Entry = tuple[int, str, bytes | memoryview]  # stamp [ns], topic, serialised message
+
+
+def write_mcap(log: Log, path: Path) -> None:
+    """Write the log to `path`, whole or not at all; other columns are not carried along.
+
+    Runs are laid one after the other: a run keeps its own time if it starts after the one before has ended.
+
+    Raises:
+        OutputError: the file cannot be written.
+        LogError: the log holds no sample at all.
+    """
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    entries: list[Entry] = []
+    end = -1
+    for run in log.runs:
+        start, stop = _span(run)
+        shift = max(0, -start) if end < 0 else max(0, end + _RUN_GAP_NS - start)
+        entries.append((start + shift, RUN_TOPIC, _string(store, run.name)))
+        entries.extend(_run_entries(run, shift, store))
+        end = stop + shift
+    if not log.runs:
+        raise LogError("there is no run to write")
+    entries.sort(key=lambda entry: entry[0])
+    write_whole(path, lambda temporary: _write(entries, temporary, store))
+
+
+def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
+    from rosbags.rosbag2 import StoragePlugin, Writer
+
+    with tempfile.TemporaryDirectory(dir=temporary.parent, prefix=".bag-") as folder:
+        bag = Path(folder) / "bag"
+        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            types = {
+                RUN_TOPIC: RUN_TYPE,
+                COMMAND_TOPIC: TWIST_STAMPED,
+                WHEEL_TOPIC: ODOMETRY,
+                POSE_TOPIC: POSE_WITH_COVARIANCE,
+            }
+            used = {topic for _, topic, _ in entries}
+            connections = {
+                topic: writer.add_connection(topic, kind, typestore=store)
+                for topic, kind in types.items()
+                if topic in used
+            }
+            for stamp, topic, data in entries:
+                writer.write(connections[topic], stamp, data)
+        shutil.move(bag / "bag.mcap", temporary)
+
+
+def _span(run: Run) -> tuple[int, int]:
+    """Return the first and last stamp of a run in ns."""
+    times = [series.t for series in (run.commands, run.wheels, run.poses) if series is not None and len(series)]
+    if not times:
+        raise LogError("a run without any sample cannot be written", where=run.name)
+    return _ns(min(t[0] for t in times)), _ns(max(t[-1] for t in times))
+
+
+def _ns(t: float) -> int:
+    return round(t * 1e9)
+
+
+def _stamps(t: Floats, shift: int) -> list[int]:
+    """Return stamps [N] in ns; whole seconds apart, so that nothing is lost in large numbers."""
+    whole = np.floor(t)
+    return list((whole.astype(np.int64) * 1_000_000_000 + np.rint((t - whole) * 1e9).astype(np.int64) + shift).tolist())
+
+
+def _run_entries(run: Run, shift: int, store: Typestore) -> Iterator[Entry]:
+    make = _Messages(store)
+    if run.commands is not None:
+        c = run.commands
+        rows = zip(_stamps(c.t, shift), c.v.tolist(), c.vy.tolist(), c.omega.tolist(), strict=True)
+        for stamp, v, vy, omega in rows:
+            yield stamp, COMMAND_TOPIC, make.command(stamp, make.twist(v, vy, omega))
+    if run.wheels is not None:
+        w = run.wheels
+        rows = zip(_stamps(w.t, shift), w.v.tolist(), w.vy.tolist(), w.omega.tolist(), strict=True)
+        for stamp, v, vy, omega in rows:
+            yield stamp, WHEEL_TOPIC, make.odometry(stamp, make.twist(v, vy, omega))
+    p = run.poses
+    zero = np.zeros(len(p))
+    z, roll, pitch = (zero if column is None else np.nan_to_num(column) for column in (p.z, p.roll, p.pitch))
+    variance = [zero if s is None else np.nan_to_num(s) ** 2 for s in (p.std_xy, p.std_yaw)]
+    values = np.column_stack([p.x, p.y, z, quaternions_of(roll, pitch, p.yaw), *variance]).tolist()
+    for stamp, frame, row in zip(_stamps(p.t, shift), p.frame.tolist(), values, strict=True):
+        yield stamp, POSE_TOPIC, make.pose(stamp, "map" if frame == 0 else f"map_{frame}", row)
+
+
+def _string(store: Typestore, text: str) -> memoryview:
+    return store.serialize_cdr(store.types[RUN_TYPE](data=text), RUN_TYPE)
+
+
+class _Messages:
+    """Makes serialised messages."""
+
+    def __init__(self, store: Typestore) -> None:
+        self._store = store
+        types: dict[str, Callable[..., Any]] = dict(store.types)
+        self._header, self._time = types["std_msgs/msg/Header"], types["builtin_interfaces/msg/Time"]
+        self._vector, self._twist = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Twist"]
+        self._point, self._quaternion = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
+        self._pose, self._pose_covariance = (
+            types["geometry_msgs/msg/Pose"],
+            types["geometry_msgs/msg/PoseWithCovariance"],
+        )
+        self._twist_covariance = types["geometry_msgs/msg/TwistWithCovariance"]
+        self._types = types
+        unknown = np.zeros(36)
+        unknown[[0, 7, 14, 21, 28, 35]] = _UNKNOWN_VARIANCE
+        nowhere = self._pose(self._point(0.0, 0.0, 0.0), self._quaternion(0.0, 0.0, 0.0, 1.0))
+        self._nowhere = self._pose_covariance(nowhere, unknown)
+        self._no_covariance = np.zeros(36)
+
+    def header(self, stamp: int, frame: str) -> Any:
+        return self._header(self._time(stamp // 1_000_000_000, stamp % 1_000_000_000), frame)
+
+    def twist(self, v: float, vy: float, omega: float) -> Any:
+        return self._twist(self._vector(v, vy, 0.0), self._vector(0.0, 0.0, omega))
+
+    def command(self, stamp: int, twist: Any) -> memoryview:
+        message = self._types[TWIST_STAMPED](self.header(stamp, "base_link"), twist)
+        return self._store.serialize_cdr(message, TWIST_STAMPED)
+
+    def odometry(self, stamp: int, twist: Any) -> memoryview:
+        with_covariance = self._twist_covariance(twist, self._no_covariance)
+        message = self._types[ODOMETRY](self.header(stamp, "odom"), "base_link", self._nowhere, with_covariance)
+        return self._store.serialize_cdr(message, ODOMETRY)
+
+    def pose(self, stamp: int, frame: str, row: list[float]) -> memoryview:
+        x, y, z, qx, qy, qz, qw, variance_xy, variance_yaw = row
+        covariance = np.zeros(36)
+        covariance[0] = covariance[7] = variance_xy
+        covariance[35] = variance_yaw
+        pose = self._pose(self._point(x, y, z), self._quaternion(qx, qy, qz, qw))
+        message = self._types[POSE_WITH_COVARIANCE](
+            self.header(stamp, frame), self._pose_covariance(pose, covariance)
+        )
+        return self._store.serialize_cdr(message, POSE_WITH_COVARIANCE)
