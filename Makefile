@@ -15,7 +15,6 @@ export PYTHONNOUSERSITE := 1
 export PIP_USER := 0
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
-export PYTHON CXX
 
 CPP_SOURCES := $(shell find cpp/include cpp/src python/bindings -type f 2>/dev/null)
 CPP_FORMATTED = $$(find cpp python/bindings -name '*.hpp' -o -name '*.cpp')
@@ -102,7 +101,7 @@ $(STAMPS)/env: FORCE
 
 $(STAMPS)/run: $(STAMPS)/env pyproject.toml constraints.txt
 	@echo "installing what slipwise needs"
-	@$(PYTHON_IN) tools/requirements.py build run sim > $(STAMPS)/run.txt
+	@$(PYTHON_IN) tools/requirements.py build native run sim > $(STAMPS)/run.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/run.txt
 	@touch $@
 

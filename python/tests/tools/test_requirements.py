@@ -28,7 +28,7 @@ def test_an_unknown_part_is_refused() -> None:
         requirements(PROJECT, "docs")
 
 
-@pytest.mark.parametrize("part", ["build", "run", "sim", "dev", "bench"])
+@pytest.mark.parametrize("part", ["build", "native", "run", "sim", "dev", "bench"])
 def test_every_requirement_has_a_pinned_version(part: str) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
