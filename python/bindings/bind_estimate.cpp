@@ -1,19 +1,61 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/estimate.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "slipwise/estimate/batch.hpp"
+#include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/iekf.hpp"
+#include "slipwise/estimate/model_average.hpp"
+#include "slipwise/estimate/observability.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 
 namespace slipwise::bindings {
+namespace {
 
-void bind_estimate(nb::module_& m) {
+void bind_settings(nb::module_& m) {
+  nb::class_<IekfSettings>(m, "IekfSettings")
+      .def(nb::init<>())
+      .def_rw("iterations", &IekfSettings::iterations)
+      .def_rw("halvings", &IekfSettings::halvings)
+      .def_rw("huber", &IekfSettings::huber)
+      .def_rw("gate", &IekfSettings::gate);
+  nb::class_<PriorSettings>(m, "PriorSettings")
+      .def(nb::init<>())
+      .def_rw("slip_fraction", &PriorSettings::slip_fraction)
+      .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
+      .def_rw("lag", &PriorSettings::lag)
+      .def_rw("delay", &PriorSettings::delay)
+      .def_rw("log_std", &PriorSettings::log_std);
+  nb::class_<NoiseSettings>(m, "NoiseSettings")
+      .def(nb::init<>())
+      .def_rw("shape", &NoiseSettings::shape)
+      .def_rw("adapt", &NoiseSettings::adapt)
+      .def_rw("prior_segments", &NoiseSettings::prior_segments)
+      .def_rw("largest", &NoiseSettings::largest);
+  nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
+      .def(nb::init<>())
+      .def_rw("prior", &CausalFilterSettings::prior)
+      .def_rw("iekf", &CausalFilterSettings::iekf)
+      .def_rw("noise", &CausalFilterSettings::noise);
+  nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
+      .def(nb::init<>())
+      .def_rw("learning_rate", &ModelAverageSettings::learning_rate)
+      .def_rw("share", &ModelAverageSettings::share);
+  nb::class_<BatchSettings>(m, "BatchSettings")
+      .def(nb::init<>())
+      .def_rw("iterations", &BatchSettings::iterations)
+      .def_rw("tolerance", &BatchSettings::tolerance)
+      .def_rw("huber", &BatchSettings::huber);
+}
+
+void bind_results(nb::module_& m) {
   nb::class_<Estimate>(m, "Estimate", "Gaussian belief about a parameter vector.")
       .def(nb::init<Eigen::VectorXd, Eigen::MatrixXd>(), "mean"_a, "covariance"_a)
       .def_ro("mean", &Estimate::mean)
@@ -24,20 +66,79 @@ void bind_estimate(nb::module_& m) {
       .value("Rejected", Status::Rejected)
       .value("NotConverged", Status::NotConverged);
   m.def("advice", &advice, "status"_a, "What the status means and what to do about it.");
-  nb::class_<IekfSettings>(m, "IekfSettings")
-      .def(nb::init<>())
-      .def_rw("iterations", &IekfSettings::iterations)
-      .def_rw("halvings", &IekfSettings::halvings)
-      .def_rw("huber", &IekfSettings::huber)
-      .def_rw("gate", &IekfSettings::gate);
-  nb::class_<IekfUpdate>(m, "IekfUpdate")
+  nb::class_<IekfUpdate>(m, "IekfUpdate", "One segment's update.")
       .def_ro("estimate", &IekfUpdate::estimate)
       .def_ro("innovation", &IekfUpdate::innovation)
       .def_ro("innovation_covariance", &IekfUpdate::innovation_covariance)
       .def_ro("nis", &IekfUpdate::nis)
       .def_ro("weight", &IekfUpdate::weight)
       .def_ro("status", &IekfUpdate::status);
+  nb::class_<BatchFit>(m, "BatchFit", "The result of a batch fit.")
+      .def_ro("estimate", &BatchFit::estimate)
+      .def_ro("cost", &BatchFit::cost)
+      .def_ro("iterations", &BatchFit::iterations)
+      .def_ro("status", &BatchFit::status);
+  nb::class_<AverageState>(m, "AverageState", "The average of several models over the union of their terms.")
+      .def_ro("estimate", &AverageState::estimate)
+      .def_ro("prior_std", &AverageState::prior_std)
+      .def_ro("noise_scale", &AverageState::noise_scale)
+      .def_ro("weights", &AverageState::weights);
+  nb::class_<Observability>(m, "Observability", "Posterior against prior variance.")
+      .def_ro("ratio", &Observability::ratio)
+      .def_ro("weakest", &Observability::weakest)
+      .def_ro("weakest_ratio", &Observability::weakest_ratio);
+}
+
+BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior, const std::vector<const InputTrack*>& inputs,
+                            const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise,
+                            const BatchSettings& settings) {
+  if (inputs.size() != segments.size() || noise.size() != segments.size()) {
+    throw std::invalid_argument("a batch fit needs inputs and noise for every segment");
+  }
+  std::vector<BatchDatum> data;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    data.push_back({inputs[i], segments[i], noise[i]});
+  }
+  return batch_fit(model, prior, data, settings);
+}
+
+}  // namespace
+
+void bind_estimate(nb::module_& m) {
+  bind_settings(m);
+  bind_results(m);
   m.def("iekf_update", &iekf_update, "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
+  m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
+  m.def(
+      "prior_estimate",
+      [](const MotionModel& model, double v, double omega, const PriorSettings& settings) {
+        return prior_estimate(model, {v, omega}, settings);
+      },
+      "model"_a, "v"_a, "omega"_a, "settings"_a, "The belief before any data, at reference speeds v [m/s], omega [rad/s].");
+  m.def(
+      "prediction_covariance",
+      [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
+         const Eigen::Vector3d& scale) { return prediction_covariance(at, parameters, shape, scale); },
+      "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
+  m.def(
+      "observability",
+      [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
+      "posterior"_a, "prior_std"_a);
+  nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighed by how well they predict.")
+      .def(
+          "__init__",
+          [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,
+             const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
+            new (self) ModelAverage(std::move(name), bases, {dynamics, clock_offset}, filter, settings);
+          },
+          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
+      .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
+      .def("state", &ModelAverage::state)
+      .def_prop_ro("model", &ModelAverage::model)
+      .def_prop_ro("reference_speeds", [](const ModelAverage& average) {
+        const ReferenceSpeeds speeds = average.reference_speeds();
+        return std::pair(speeds.v, speeds.omega);
+      });
 }
 
 }  // namespace slipwise::bindings

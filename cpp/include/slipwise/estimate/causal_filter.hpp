@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning one model segment by segment: prior that follows the speeds, IEKF update, noise that follows the residuals.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/estimate/iekf.hpp"
+#include "slipwise/estimate/prior.hpp"
+#include "slipwise/estimate/speed_range.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+
+/// Noise of segments: a shape that grows with the motion, and a learned factor of the variances of (x, y, theta).
+struct NoiseSettings {
+  MotionNoise shape{.psd_time = {0.0, 0.0, 0.0},
+                    .psd_motion = {1e-3, 1e-3, 1e-3},
+                    .fraction = {0.05, 0.05, 0.05},
+                    .pose_std_xy = 0.02,
+                    .pose_std_yaw = 0.01};
+  bool adapt = true;           ///< learn the factor from the residuals
+  double prior_segments = 5.0; ///< the shape counts as much as this many segments [-]
+  double largest = 9.0;        ///< a squared residual counts at most this many times its expected value [-]
+};
+
+struct CausalFilterSettings {
+  PriorSettings prior = {};
+  IekfSettings iekf = {};
+  NoiseSettings noise = {};
+};
+
+/// A segment as learned, and how well it had been predicted.
+struct Learned {
+  IekfUpdate update;
+  double log_score;  ///< Student-t log density of the innovation before the update, without constants
+};
+
+class CausalFilter {
+ public:
+  CausalFilter(MotionModel model, const CausalFilterSettings& settings);
+
+  /// Learns one segment. `speeds` are those seen up to the segment's end.
+  Learned learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
+
+  const MotionModel& model() const { return model_; }
+  const Estimate& estimate() const { return estimate_; }
+  /// Standard deviations of the prior now in force, [parameters].
+  Eigen::VectorXd prior_std() const;
+  /// Learned factor of the noise variances of (x, y, theta).
+  Eigen::Vector3d noise_scale() const { return noise_scale_; }
+  const NoiseSettings& noise() const { return settings_.noise; }
+
+ private:
+  void follow(const ReferenceSpeeds& speeds);
+  void adapt_noise(const InputTrack& inputs, const Segment& segment, const Eigen::Vector3d& expected);
+
+  MotionModel model_;
+  CausalFilterSettings settings_;
+  ReferenceSpeeds speeds_{};
+  bool started_ = false;
+  Estimate estimate_;
+  Eigen::VectorXd slip_std_;
+  Eigen::Vector3d noise_scale_ = Eigen::Vector3d::Ones();
+  Eigen::Vector3d noise_sum_ = Eigen::Vector3d::Zero();
+  double segments_ = 0.0;
+};
+
+/// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                      const MotionNoise& shape, const Eigen::Vector3d& scale);
+
+}  // namespace slipwise

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weighing several models by how well they predict, and their average as one model over all their terms.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "slipwise/estimate/causal_filter.hpp"
+
+namespace slipwise {
+
+struct ModelAverageSettings {
+  double learning_rate = 0.5;  ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
+  double share = 0.02;         ///< part of the weight that is spread anew each segment, so that a model can come back [-]
+};
+
+/// Parameters, covariance and noise of the average, over the union of all terms.
+struct AverageState {
+  Estimate estimate;
+  Eigen::VectorXd prior_std;
+  Eigen::Vector3d noise_scale;
+  Eigen::VectorXd weights;  ///< one per model, they sum to 1
+};
+
+/// Runs one causal filter per basis. Slip is linear in its parameters, so that the weighted mean of the models is
+/// again a model of the same kind: the mean parameters over the union of the terms, with the spread in the covariance.
+class ModelAverage {
+ public:
+  /// \throws std::invalid_argument when there is no basis.
+  ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
+               const CausalFilterSettings& filter, const ModelAverageSettings& settings);
+
+  /// Learns one segment with every model. Returns the update of the model that weighed most before.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+
+  const MotionModel& model() const { return model_; }
+  AverageState state() const;
+  ReferenceSpeeds reference_speeds() const;
+
+ private:
+  void see_speeds(const InputTrack& inputs, const Segment& segment);
+  void weigh(const Eigen::VectorXd& log_scores);
+
+  MotionModel model_;
+  std::vector<CausalFilter> filters_;
+  std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
+  ModelAverageSettings settings_;
+  Eigen::VectorXd weights_;
+  SpeedRange speeds_;
+  SpeedRange yaw_rates_;
+};
+
+}  // namespace slipwise

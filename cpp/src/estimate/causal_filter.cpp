@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The causal filter of one model.
+#include "slipwise/estimate/causal_filter.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace slipwise {
+namespace {
+
+constexpr double kTailDegrees = 5.0;      // degrees of freedom of the predictive Student-t: real residuals have heavy tails
+constexpr double kSpeedChange = 0.1;      // the prior follows the speeds when their logarithm moves by more than this
+
+Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
+  const Eigen::Vector3d root = scale.cwiseSqrt();
+  return root.asDiagonal() * covariance * root.asDiagonal();
+}
+
+double student_log_score(double nis, const Eigen::Matrix3d& covariance) {
+  return -0.5 * std::log(covariance.determinant()) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);
+}
+
+bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
+
+}  // namespace
+
+CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
+    : model_(std::move(model)), settings_(settings) {
+  follow({.v = 1.0, .omega = 1.0});
+  started_ = false;
+}
+
+void CausalFilter::follow(const ReferenceSpeeds& speeds) {
+  Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
+  if (!started_) {
+    estimate_ = prior_estimate(model_, speeds, settings_.prior);
+  } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
+    estimate_ = change_slip_prior(estimate_, slip_std_, std);
+  } else {
+    return;
+  }
+  started_ = true;
+  speeds_ = speeds;
+  slip_std_ = std::move(std);
+}
+
+Eigen::VectorXd CausalFilter::prior_std() const {
+  Estimate prior = prior_estimate(model_, speeds_, settings_.prior);
+  return prior.covariance.diagonal().cwiseSqrt();
+}
+
+Learned CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
+  follow(speeds);
+  const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
+  const Eigen::Matrix3d expected =
+      slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
+  Learned learned{iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_), settings_.iekf), 0.0};
+  learned.log_score = student_log_score(learned.update.nis, learned.update.innovation_covariance);
+  estimate_ = learned.update.estimate;
+  if (settings_.noise.adapt) {
+    adapt_noise(inputs, segment, expected.diagonal());
+  }
+  return learned;
+}
+
+/// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
+void CausalFilter::adapt_noise(const InputTrack& inputs, const Segment& segment, const Eigen::Vector3d& expected) {
+  const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
+  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
+  const Eigen::Matrix3d open = at.by_parameter * estimate_.covariance * at.by_parameter.transpose();
+  const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
+  noise_sum_ += squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_);
+  segments_ += 1.0;
+  noise_scale_ = (noise_sum_.array() + settings_.noise.prior_segments) / (segments_ + settings_.noise.prior_segments);
+}
+
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
+                                      const MotionNoise& shape, const Eigen::Vector3d& scale) {
+  const Eigen::Matrix3d noise = slip_covariance(at.path, shape) + pose_noise_covariance(at.predicted, shape);
+  return at.by_parameter * parameters * at.by_parameter.transpose() + scaled(noise, scale);
+}
+
+}  // namespace slipwise

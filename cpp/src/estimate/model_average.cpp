@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Causal model averaging with a fixed share (Herbster and Warmuth 1998) of a tempered predictive density (Gruenwald 2012).
+#include "slipwise/estimate/model_average.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+constexpr double kReferenceShare = 0.9;   // reference speeds are the 90th percentile of those driven so far
+constexpr double kLeastSpeed = 0.05;      // [m/s] and [rad/s]; slower references would make priors meaningless
+
+const std::vector<Basis>& some(const std::vector<Basis>& bases) {
+  if (bases.empty()) {
+    throw std::invalid_argument("a model average needs at least one slip basis");
+  }
+  return bases;
+}
+
+std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& whole) {
+  std::vector<Eigen::Index> places;
+  for (const std::size_t place : parameter_places(part.basis(), whole.basis())) {
+    places.push_back(static_cast<Eigen::Index>(place));
+  }
+  for (Eigen::Index i = part.slip_size(); i < part.size(); ++i) {
+    places.push_back(whole.slip_size() + i - part.slip_size());
+  }
+  return places;
+}
+
+}  // namespace
+
+ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
+                           const CausalFilterSettings& filter, const ModelAverageSettings& settings)
+    : model_(some(bases).size() == 1 ? bases.front() : union_basis(std::move(name), bases), learned), settings_(settings),
+      weights_(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))) {
+  for (const Basis& basis : bases) {
+    filters_.emplace_back(MotionModel(basis, learned), filter);
+    places_.push_back(places_of(filters_.back().model(), model_));
+  }
+}
+
+void ModelAverage::see_speeds(const InputTrack& inputs, const Segment& segment) {
+  for (const DriveStep& step : drive_steps(inputs, {}, {.start = segment.start, .end = segment.end}).steps) {
+    if (step.duration > 0.0) {
+      speeds_.add(step.forward / step.duration, step.duration);
+      yaw_rates_.add(step.turn / step.duration, step.duration);
+    }
+  }
+}
+
+ReferenceSpeeds ModelAverage::reference_speeds() const {
+  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed), .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
+}
+
+IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
+  see_speeds(inputs, segment);
+  Eigen::VectorXd log_scores(weights_.size());
+  std::vector<IekfUpdate> updates;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    Learned learned = filters_[i].learn(inputs, segment, reference_speeds());
+    log_scores[static_cast<Eigen::Index>(i)] = learned.log_score;
+    updates.push_back(std::move(learned.update));
+  }
+  Eigen::Index heaviest = 0;
+  weights_.maxCoeff(&heaviest);
+  weigh(log_scores);
+  return updates[static_cast<std::size_t>(heaviest)];
+}
+
+void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
+  const Eigen::ArrayXd tempered = settings_.learning_rate * (log_scores.array() - log_scores.maxCoeff());
+  weights_ = weights_.array() * tempered.exp();
+  weights_ /= weights_.sum();
+  const double equal = 1.0 / static_cast<double>(weights_.size());
+  weights_ = ((1.0 - settings_.share) * weights_.array() + settings_.share * equal).matrix();
+}
+
+AverageState ModelAverage::state() const {
+  const Eigen::Index size = model_.size();
+  AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
+                     Eigen::VectorXd::Zero(size), Eigen::Vector3d::Zero(), weights_};
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const double weight = weights_[static_cast<Eigen::Index>(i)];
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    mean(places_[i]) = filters_[i].estimate().mean;
+    state.estimate.mean += weight * mean;
+    state.estimate.covariance(places_[i], places_[i]) += weight * filters_[i].estimate().covariance;
+    state.estimate.covariance += weight * mean * mean.transpose();
+    state.prior_std(places_[i]) = filters_[i].prior_std();
+    state.noise_scale += weight * filters_[i].noise_scale();
+  }
+  state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
+  return state;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Posterior against prior, in units of the prior (method.md, section 6).
+#include "slipwise/estimate/observability.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+namespace slipwise {
+
+Observability observability(const Estimate& posterior, const Eigen::Ref<const Eigen::VectorXd>& prior_std) {
+  if (prior_std.size() != posterior.covariance.rows() || !(prior_std.array() > 0.0).all()) {
+    throw std::invalid_argument("observability needs one positive prior standard deviation per parameter");
+  }
+  if (prior_std.size() == 0) {
+    return {.ratio = {}, .weakest = {}, .weakest_ratio = 0.0};
+  }
+  const Eigen::VectorXd inverse = prior_std.cwiseInverse();
+  const Eigen::MatrixXd relative = inverse.asDiagonal() * posterior.covariance * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative);
+  const Eigen::Index last = prior_std.size() - 1;
+  return {.ratio = relative.diagonal(), .weakest = solver.eigenvectors().col(last), .weakest_ratio = solver.eigenvalues()[last]};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Priors in physical units (method.md, section 10).
+#include "slipwise/estimate/prior.hpp"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+#include "slipwise/slip/slip_surface.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kSteepSlope = 0.2 * kStandardGravity;  // gravity components of a slope of 11.5 degrees
+constexpr double kLeastFeature = 1e-9;
+
+}  // namespace
+
+Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, double fraction) {
+  const Eigen::VectorXd features =
+      basis.linearize_features({.v = speeds.v, .omega = speeds.omega, .gx = kSteepSlope, .gy = kSteepSlope}).value;
+  Eigen::VectorXd std(features.size());
+  for (Eigen::Index i = 0; i < std.size(); ++i) {
+    const double channel = basis.channel(static_cast<std::size_t>(i)) == Channel::Ang ? speeds.omega : speeds.v;
+    std[i] = fraction * channel / std::max(std::abs(features[i]), kLeastFeature);
+  }
+  return std;
+}
+
+Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds, const PriorSettings& settings) {
+  Estimate prior{Eigen::VectorXd::Zero(model.size()), Eigen::MatrixXd::Zero(model.size(), model.size())};
+  Eigen::VectorXd std(model.size());
+  std.head(model.slip_size()) = slip_prior_std(model.basis(), speeds, settings.slip_fraction);
+  Eigen::Index at = model.slip_size();
+  if (model.learned().dynamics) {
+    prior.mean.segment<2>(at).setConstant(std::log(settings.lag));
+    prior.mean.segment<2>(at + 2).setConstant(std::log(settings.delay));
+    std.segment<4>(at).setConstant(settings.log_std);
+    at += 4;
+  }
+  if (model.learned().clock_offset) {
+    std[at] = settings.clock_offset_std;
+  }
+  prior.covariance.diagonal() = std.cwiseAbs2();
+  return prior;
+}
+
+Estimate change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+  const Eigen::Index size = estimate.mean.size();
+  const Eigen::Index slip = old_std.size();
+  const Eigen::MatrixXd information = estimate.covariance.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::VectorXd evidence = information * estimate.mean;
+  Eigen::MatrixXd changed = information;
+  changed.diagonal().head(slip) += (new_std.cwiseAbs2().cwiseInverse() - old_std.cwiseAbs2().cwiseInverse());
+  const Eigen::LLT<Eigen::MatrixXd> factor(changed);
+  return {factor.solve(evidence), factor.solve(Eigen::MatrixXd::Identity(size, size))};
+}
+
+}  // namespace slipwise
