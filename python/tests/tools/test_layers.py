@@ -4,6 +4,7 @@
 import shutil
 import subprocess
 import sys
+import sysconfig
 import tomllib
 from pathlib import Path
 
@@ -21,8 +22,10 @@ def lint(root: Path, modules: dict[str, str]) -> subprocess.CompletedProcess[str
     for name in ("__init__", "errors", "files", *modules):
         (package / f"{name}.py").write_text(LICENCE + modules.get(name, ""), encoding="utf-8")
     shutil.copy(ROOT / "pyproject.toml", root)
-    code = "import sys; sys.path.insert(0, '.'); from importlinter.cli import lint_imports_command as f; f()"
-    command = [sys.executable, "-c", code, "--no-cache"]
+    # Without site (-S) no editable installation stands before the package here.
+    paths = [str(root), sysconfig.get_path("purelib"), sysconfig.get_path("platlib")]
+    code = f"import sys; sys.path[:0] = {paths}; from importlinter.cli import lint_imports_command as f; f()"
+    command = [sys.executable, "-S", "-c", code, "--no-cache"]
     return subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
 
 
