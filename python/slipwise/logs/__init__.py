@@ -4,6 +4,7 @@
 from slipwise.logs.log import Inputs, LeftOut, Log, Poses, Run, Source, empty_poses
 from slipwise.logs.open_log import open_log
 from slipwise.logs.options import LogOptions
+from slipwise.logs.save_log import save_log
 
 __all__ = [
     "Inputs",
@@ -15,4 +16,5 @@ __all__ = [
     "Source",
     "empty_poses",
     "open_log",
+    "save_log",
 ]

@@ -75,7 +75,9 @@ def read_bag(path: Path, options: LogOptions) -> Log:
             notes = list(roles.guessed)
             runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False), notes)
         except LogError as error:
-            raise error if error.where else LogError(error.what, where=str(path), advice=error.advice) from error
+            raise (
+                error if error.where else LogError(error.what, where=str(path), advice=error.advice)
+            ) from error
         count = sum(topic.count for topic in bag.topics)
         source = Source(str(path), files_sha256(files), bag.format, count)
     return Log(runs, (source,), tally.result(), tuple(notes))
@@ -102,17 +104,23 @@ def _collect(bag: BagFile, roles: Roles, options: LogOptions) -> _Collected:
         for consume in consumers[message.topic]:
             consume(decoded, message.received_ns)
     return _Collected(
-        {role: collector.result() for role, collector in collectors.items()}, transforms, tuple(sorted(starts))
+        {role: collector.result() for role, collector in collectors.items()},
+        transforms,
+        tuple(sorted(starts)),
     )
 
 
-def _extractors(roles: Roles, options: LogOptions) -> list[tuple[str, Topic, Callable[[Any], tuple[float, ...]]]]:
+def _extractors(
+    roles: Roles, options: LogOptions
+) -> list[tuple[str, Topic, Callable[[Any], tuple[float, ...]]]]:
     found: list[tuple[str, Topic, Callable[[Any], tuple[float, ...]]]] = []
     if roles.command is not None:
         found.append(("command", roles.command, COMMAND_VALUES[roles.command.type]))
     if roles.wheel is not None:
         joints = roles.wheel.type == JOINT_STATE
-        found.append(("wheel", roles.wheel, SideSpeeds(options) if joints else WHEEL_VALUES[roles.wheel.type]))
+        found.append(
+            ("wheel", roles.wheel, SideSpeeds(options) if joints else WHEEL_VALUES[roles.wheel.type])
+        )
     if roles.pose.type != TF:
         found.append(("pose", roles.pose, POSE_VALUES[roles.pose.type]))
     if roles.imu is not None:
@@ -132,7 +140,9 @@ def _runs(
     if roles.pose.type == TF:
         samples["pose"] = _transform_samples(roles, collected.transforms, context.options, notes)
     if needs_receipt(list(samples.values())):
-        notes.append("header stamps are on another clock than the bag: everything is dated by the time of receipt")
+        notes.append(
+            "header stamps are on another clock than the bag: everything is dated by the time of receipt"
+        )
         context = BagContext(context.file, context.options, context.tally, True)
     elif roles.command is not None and roles.command.type == TWIST:
         notes.append(f"{roles.command.name} has no header: its commands are dated by the time of receipt")
@@ -142,7 +152,9 @@ def _runs(
     if roles.wheel is not None:
         wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
     if roles.pose.type == NAV_SAT_FIX:
-        inputs = next((to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None)
+        inputs = next(
+            (to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None
+        )
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
     else:
         poses = pose_stream(context, samples["pose"])
@@ -161,7 +173,8 @@ def _split(
     runs = []
     for number, name in enumerate(names):
         commands, wheels, poses = (
-            stream and stream.select(np.searchsorted(edges, stream.t, side="right") == number) for stream in streams
+            stream and stream.select(np.searchsorted(edges, stream.t, side="right") == number)
+            for stream in streams
         )
         assert poses is not None
         runs.append(

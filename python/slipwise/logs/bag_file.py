@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Opens bags of every format and hands out the messages of chosen topics, as far as a damaged file can be read."""
+"""Opens bags of every format and hands out the messages of chosen topics, also of damaged files."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ class BagFile:
             ) from error
 
     def _open_folder(self, path: Path, files: Sequence[Path]) -> bool:
-        """Open a rosbag2 folder by its metadata; say whether that went well, its files may still be readable."""
+        """Open a rosbag2 folder by its metadata; say whether that went well, else its files may still do."""
         if not (path / "metadata.yaml").exists():
             return False
         from rosbags.rosbag2 import Reader
@@ -204,7 +204,9 @@ def bag_files(path: Path) -> list[Path]:
     files = sorted(file for file in path.iterdir() if file.suffix in (".mcap", ".db3", ".bag"))
     if not files:
         packed = any(file.name.endswith(".zstd") for file in path.iterdir())
-        advice = "decompress its .zstd files first" if packed else "name a folder with .mcap, .db3 or .bag files"
+        advice = (
+            "decompress its .zstd files first" if packed else "name a folder with .mcap, .db3 or .bag files"
+        )
         raise LogError("the folder holds no bag", where=str(path), advice=advice)
     return sorted(files, key=_split_number)
 

@@ -10,14 +10,13 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Bools, Floats, Inputs
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
 from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_track
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 
-POSE_OPTIONAL = frozenset(("z", "roll", "pitch", "std_xy", "std_yaw"))
 _CLOCKS_APART = 10.0  # [s] header stamps this far from the time of receipt are on a clock of their own
 _TINY = 1e-12  # heights and tilts below this were never measured
 
@@ -45,7 +44,9 @@ class BagContext:
             )
         return np.where(zero, samples.received_ns, samples.stamp_ns) / 1e9
 
-    def stream(self, role: str, samples: Samples, columns: dict[str, Floats], keep: Bools | None = None) -> RawStream:
+    def stream(
+        self, role: str, samples: Samples, columns: dict[str, Floats], keep: Bools | None = None
+    ) -> RawStream:
         """Make a raw stream of the samples where `keep` [N] is true."""
         count = len(samples.received_ns)
         place = f"{self.file}, {samples.topic} message"
@@ -55,7 +56,7 @@ class BagContext:
             columns,
             np.arange(count),
             lambda row: f"{place} {row + 1}",
-            POSE_OPTIONAL,
+            frozenset(OPTIONAL_POSE_COLUMNS),
         )
         return whole if keep is None else whole.select(keep)
 
@@ -83,7 +84,9 @@ def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStrea
         v, vy, omega = samples.values.T
         return context.stream("commands", samples, {"v": v, "vy": vy, "omega": omega})
     if context.options.wheelbase is None:
-        raise LogError("steering commands need the wheelbase", where=samples.topic, advice="set wheelbase in metres")
+        raise LogError(
+            "steering commands need the wheelbase", where=samples.topic, advice="set wheelbase in metres"
+        )
     v, steer = samples.values.T
     omega = omega_from_steering(v, steer, wheelbase=context.options.wheelbase)
     return context.stream("commands", samples, {"v": v, "omega": omega})
@@ -101,7 +104,9 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     radius, track = context.options.wheel_radius, context.options.track
     if radius is None or track is None:
         raise LogError(
-            "wheel speeds need the wheel radius and the track", where=samples.topic, advice="set wheel_radius and track"
+            "wheel speeds need the wheel radius and the track",
+            where=samples.topic,
+            advice="set wheel_radius and track",
         )
     left, right = samples.values.T
     v, omega = twist_from_wheels(left, right, wheel_radius=radius, track=track)
@@ -109,14 +114,14 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
 
 
 def pose_stream(context: BagContext, samples: Samples) -> RawStream:
-    """Make the pose stream of (x, y, z, quaternion[, variances]) [N, 7 or 10]; bad quaternions are counted."""
+    """Make the pose stream of (x, y, z, quaternion[, variances]) [N, 7 or 10]; counts bad quaternions."""
     values = samples.values
     q, good = unit_quaternions(values[:, 3:7])
     roll, pitch, yaw = angles_of(q)
     columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
     for name, column in (("z", values[:, 2]), ("roll", roll), ("pitch", pitch)):
         if np.nanmax(np.abs(column), initial=0.0) > _TINY:
-            columns[name] = column
+            columns |= {name: column}
     if values.shape[1] > 7:
         columns["std_xy"] = _deviation(values[:, 7:9])
         columns["std_yaw"] = _deviation(values[:, 9:10])
@@ -125,7 +130,9 @@ def pose_stream(context: BagContext, samples: Samples) -> RawStream:
     return context.stream("poses", samples, columns, good | ~finite)
 
 
-def fix_stream(context: BagContext, samples: Samples, imu: Samples | None, inputs: Inputs | None) -> RawStream:
+def fix_stream(
+    context: BagContext, samples: Samples, imu: Samples | None, inputs: Inputs | None
+) -> RawStream:
     """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
 
     The heading is the IMU's where there is one, else the direction of the track while the robot moves.

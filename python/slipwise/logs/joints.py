@@ -16,7 +16,7 @@ _NOT_DRIVEN = re.compile(r"steer|caster|pan|tilt|arm|gripper|suspension|rocker",
 
 
 class SideSpeeds:
-    """Takes the mean velocity of the left and of the right wheels [rad/s] from sensor_msgs/JointState messages."""
+    """Takes the mean speed of the left and of the right wheels [rad/s] from JointState messages."""
 
     def __init__(self, options: LogOptions) -> None:
         self._options = options
@@ -47,5 +47,8 @@ class SideSpeeds:
         right = [i for i, name in wheels if _RIGHT.search(name) and not _LEFT.search(name)]
         if not left or not right:
             shown = ", ".join(names[:12]) or "none"
-            raise LogError("cannot tell left from right wheels", advice=f"set left_joints and right_joints; joints: {shown}")
+            raise LogError(
+                "cannot tell left from right wheels",
+                advice=f"set left_joints and right_joints; joints: {shown}",
+            )
         return left, right

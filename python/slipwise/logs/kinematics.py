@@ -8,7 +8,9 @@ import numpy as np
 from slipwise.logs.log import Floats
 
 
-def twist_from_wheels(left: Floats, right: Floats, *, wheel_radius: float, track: float) -> tuple[Floats, Floats]:
+def twist_from_wheels(
+    left: Floats, right: Floats, *, wheel_radius: float, track: float
+) -> tuple[Floats, Floats]:
     """Return (v [m/s], omega [rad/s]) of a differential drive from its wheel speeds [N] in rad/s."""
     return 0.5 * wheel_radius * (right + left), wheel_radius * (right - left) / track
 

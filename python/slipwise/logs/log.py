@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
+OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw")
+
 
 @dataclass(frozen=True, eq=False)
 class Inputs:
@@ -61,6 +63,10 @@ class Poses:
 
     def __len__(self) -> int:
         return len(self.t)
+
+    def optional(self) -> dict[str, Floats | None]:
+        """Return the columns that not every log has, by name."""
+        return {name: getattr(self, name) for name in OPTIONAL_POSE_COLUMNS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,4 +138,6 @@ def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
     steps = np.diff(series.t)
     if length > 1 and not (steps > 0).all():
         first = int(np.argmin(steps > 0)) + 1
-        raise LogError(f"{name}.t does not increase", where=f"entry {first}", advice="sort and thin the samples")
+        raise LogError(
+            f"{name}.t does not increase", where=f"entry {first}", advice="sort and thin the samples"
+        )

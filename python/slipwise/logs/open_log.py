@@ -9,6 +9,7 @@ from pathlib import Path
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
+from slipwise.logs.quality import checked
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -34,7 +35,7 @@ def _open_one(path: Path, options: LogOptions) -> Log:
     if not path.exists():
         raise LogError("no such file", where=str(path), advice="check the path")
     try:
-        return _reader(path)(path, options)
+        return checked(_reader(path)(path, options))
     except PermissionError as error:
         raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
 

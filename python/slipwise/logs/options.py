@@ -34,5 +34,6 @@ class LogOptions:
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise SettingsError(
-                    f"{name} must be a positive number of metres, not {value}", advice="measure it on the robot"
+                    f"{name} must be a positive number of metres, not {value}",
+                    advice="measure it on the robot",
                 )

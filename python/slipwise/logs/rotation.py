@@ -22,7 +22,7 @@ def unit_quaternions(q: Floats) -> tuple[Floats, Bools]:
 
 
 def angles_of(q: Floats) -> tuple[Floats, Floats, Floats]:
-    """Return (roll, pitch, yaw) [N] in rad of unit quaternions [N, 4], rotations about fixed x, then y, then z."""
+    """Return (roll, pitch, yaw) [N] in rad of unit quaternions [N, 4]: about fixed x, then y, then z."""
     x, y, z, w = q.T
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - z * x), -1.0, 1.0))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
 from slipwise.logs.stamps import forward_stamps
 
 
@@ -63,7 +63,7 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     clean = clean_stream(stream, tally)
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
-    others = {name: columns.get(name) for name in ("z", "roll", "pitch", "std_xy", "std_yaw")}
+    others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
     return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
 

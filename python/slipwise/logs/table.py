@@ -47,7 +47,7 @@ class Table:
         return f"{self.path.name}, {unit} {row + self.first_line}"
 
     def numbers(self, name: str, tally: Tally) -> Floats:
-        """Return a column as numbers, NaN where the cell is empty; cells that are NaN or infinite are counted.
+        """Return a column as numbers, NaN where the cell is empty; counts cells that are NaN or infinite.
 
         Raises:
             LogError: the column holds something else.
@@ -145,7 +145,9 @@ def read_parquet(path: Path) -> Table:
     try:
         arrow = parquet.read_table(pa.BufferReader(raw))
     except (pa.ArrowInvalid, pa.ArrowException, OSError) as error:
-        raise LogError(f"not a readable Parquet file: {error}", where=str(path), advice="copy it again") from error
+        raise LogError(
+            f"not a readable Parquet file: {error}", where=str(path), advice="copy it again"
+        ) from error
     return Table(path, "parquet", hashlib.sha256(raw).hexdigest(), arrow.unify_dictionaries(), first_line=1)
 
 
@@ -156,7 +158,9 @@ def _unpack(raw: pa.Buffer, path: Path) -> pa.Buffer:
         with pa.CompressedInputStream(pa.BufferReader(raw), "gzip") as stream:
             return stream.read_buffer()
     except OSError as error:
-        raise LogError("the gzip file is cut off or damaged", where=str(path), advice="copy it again") from error
+        raise LogError(
+            "the gzip file is cut off or damaged", where=str(path), advice="copy it again"
+        ) from error
 
 
 def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
@@ -167,13 +171,19 @@ def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
     try:
         line = start.split(b"\n", 1)[0].decode("utf-8-sig").strip()
     except UnicodeDecodeError as error:
-        raise LogError("not a text file", where=str(path), advice="give a CSV, Parquet or bag file") from error
+        raise LogError(
+            "not a text file", where=str(path), advice="give a CSV, Parquet or bag file"
+        ) from error
     names = [name.strip() for name in next(csv.reader([line]), [])]
     if len(names) < 2 and (";" in line or "\t" in line):
-        raise LogError("the columns are not separated by commas", where=str(path), advice="save it as plain CSV")
+        raise LogError(
+            "the columns are not separated by commas", where=str(path), advice="save it as plain CSV"
+        )
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
-        raise LogError(f"column {twice[0]} is there twice", where=f"{path}, line 1", advice="rename one of them")
+        raise LogError(
+            f"column {twice[0]} is there twice", where=f"{path}, line 1", advice="rename one of them"
+        )
     return names, 1
 
 

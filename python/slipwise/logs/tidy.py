@@ -13,13 +13,12 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Bools, Floats, Inputs, Ints, Log, Run, Source
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Log, Run, Source
 from slipwise.logs.options import LogOptions
 from slipwise.logs.streams import RawStream, order_codes, to_inputs, to_poses
 from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
     NUMERIC,
-    POSE_EXTRAS,
     TEXT,
     USED,
     InputColumns,
@@ -78,7 +77,7 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
 def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
     names = table.names
     pose = {name: table.numbers(name, tally) for name in ("x", "y", "yaw")}
-    pose |= {name: table.numbers(name, tally) for name in POSE_EXTRAS if name in names}
+    pose |= {name: table.numbers(name, tally) for name in OPTIONAL_POSE_COLUMNS if name in names}
     if "frame" in names:
         pose["frame"] = table.codes("frame")[0].astype(np.float64)
     return _Rows(
@@ -106,8 +105,8 @@ def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]
         same &= codes[1:] == codes[:-1]
     if same.any():
         notes.append(
-            f"{table.path.name}: without a pose_new column, {int(same.sum())} rows that repeat the pose before "
-            "are taken as held, not measured"
+            f"{table.path.name}: without a pose_new column, {int(same.sum())} rows that repeat the pose "
+            "before are taken as held, not measured"
         )
     there[where[1:][same]] = False
     return np.asarray(there)
@@ -146,7 +145,7 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
 
     def stream(role: str, columns: dict[str, Floats]) -> RawStream:
         values = {key: column[index] for key, column in columns.items()}
-        return RawStream(role, t, values, numbers, table.place, optional=frozenset(POSE_EXTRAS))
+        return RawStream(role, t, values, numbers, table.place, optional=frozenset(OPTIONAL_POSE_COLUMNS))
 
     extra = {key: values[index] for key, values in rows.extra.items()}
     return Run(

@@ -11,19 +11,18 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Floats
+from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.options import LogOptions
 from slipwise.logs.table import Table
 
 TEXT = ("run", "frame", "terrain")
-POSE_EXTRAS = ("z", "roll", "pitch", "std_xy", "std_yaw")
 NUMERIC = (
     *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_steer", "odo_v", "odo_vy", "odo_omega"),
-    *("wheel_left", "wheel_right", "x", "y", "yaw", "pose_new", *POSE_EXTRAS),
+    *("wheel_left", "wheel_right", "x", "y", "yaw", "pose_new", *OPTIONAL_POSE_COLUMNS),
 )
 USED = frozenset(
     ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
-) | frozenset(POSE_EXTRAS)
+) | frozenset(OPTIONAL_POSE_COLUMNS)
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
 
@@ -84,8 +83,8 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
         apart = np.abs(table.numbers("cmd_vx", tally) - v) > _SAME_SPEED
         if apart.any():
             notes.append(
-                f"{table.path.name}: cmd_v differs from cmd_vx, so it is taken as the speed along the direction "
-                "of travel and cmd_vy is not added to it"
+                f"{table.path.name}: cmd_v differs from cmd_vx, so it is taken as the speed along the "
+                "direction of travel and cmd_vy is not added to it"
             )
             vy = None
     return InputColumns(v, vy, omega)
@@ -101,12 +100,18 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
         if options.wheel_radius is not None and options.track is not None:
             left, right = table.numbers("wheel_left", tally), table.numbers("wheel_right", tally)
             v, omega = twist_from_wheels(left, right, wheel_radius=options.wheel_radius, track=options.track)
-            notes.append(f"{table.path.name}: wheel speeds from radius {options.wheel_radius} m, track {options.track} m")
+            notes.append(
+                f"{table.path.name}: odo from wheel radius {options.wheel_radius} m, track {options.track} m"
+            )
             return InputColumns(v, None, omega)
         if "cmd_v" not in names and "cmd_vx" not in names:
             advice = "give wheel_radius and track, or the columns odo_v and odo_omega"
-            raise LogError("wheel speeds need the wheel radius and the track", where=str(table.path), advice=advice)
-        notes.append(f"{table.path.name}: wheel_left and wheel_right are not used without wheel_radius and track")
+            raise LogError(
+                "wheel speeds need the wheel radius and the track", where=str(table.path), advice=advice
+            )
+        notes.append(
+            f"{table.path.name}: wheel_left and wheel_right are not used without wheel_radius and track"
+        )
         return None
     if "odo_v" in names:
         if "cmd_v" not in names and "cmd_vx" not in names:

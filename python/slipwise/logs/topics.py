@@ -23,7 +23,7 @@ from slipwise.logs.messages import (
 )
 from slipwise.logs.options import LogOptions
 
-# (pattern, score): the first pattern that is found in the lower-case topic name counts; a score below 0 excludes.
+# (pattern, score): the first pattern found in the lower-case topic name counts; a score below 0 excludes.
 _COMMAND_NAMES = (
     (r"odom|measured|feedback|vrpn|mocap|gps|imu|wheel_vel|estimate|ground_truth|state", -1),
     (r"cmd_vel_out$", 6),
@@ -86,11 +86,16 @@ def choose_topics(topics: Sequence[Topic], options: LogOptions) -> Roles:
     """Choose the topics by name and type, or take the ones given.
 
     Raises:
-        LogError: a given topic is not there or has the wrong type, or the guess is unclear; with the candidates.
+        LogError: a given topic is not there or has the wrong type, or the guess is unclear.
     """
     live = {topic.name: topic for topic in topics if topic.count > 0}
     wheel = _choose(live, "wheel_topic", options.wheel_topic, WHEEL_TYPES, _WHEEL_NAMES)
-    if wheel is not None and wheel.type == JOINT_STATE and options.wheel_topic is None and not _wheel_sizes(options):
+    if (
+        wheel is not None
+        and wheel.type == JOINT_STATE
+        and options.wheel_topic is None
+        and not _wheel_sizes(options)
+    ):
         wheel = None
     command = _choose(live, "command_topic", options.command_topic, COMMAND_TYPES, _COMMAND_NAMES)
     pose = _choose_pose(live, options)
@@ -98,7 +103,8 @@ def choose_topics(topics: Sequence[Topic], options: LogOptions) -> Roles:
         raise LogError("no topic with a measured pose", advice=_pose_advice(live))
     if command is None and wheel is None:
         raise LogError(
-            "no topic with a command or with wheel speeds", advice=f"set command_topic or wheel_topic; {_listing(live)}"
+            "no topic with a command or with wheel speeds",
+            advice=f"set command_topic or wheel_topic; {_listing(live)}",
         )
     imu = _imu(live, options) if pose.type == NAV_SAT_FIX else None
     guesses = (
@@ -107,7 +113,11 @@ def choose_topics(topics: Sequence[Topic], options: LogOptions) -> Roles:
         ("wheel", wheel, options.wheel_topic),
         ("imu", imu, options.imu_topic),
     )
-    notes = [f"{role} topic: {t.name} ({t.type.replace('/msg/', '/')})" for role, t, given in guesses if t and not given]
+    notes = [
+        f"{role} topic: {t.name} ({t.type.replace('/msg/', '/')})"
+        for role, t, given in guesses
+        if t and not given
+    ]
     if options.pose_topic is None and re.search(_FUSED, pose.name.lower()):
         notes.append(f"{pose.name} is fused: it shows slip only if more than wheels and an IMU went into it")
     return Roles(pose, command, wheel, imu, tuple(notes))
@@ -140,7 +150,10 @@ def _choose(
     winners = [topic for score, topic in scored if score == best]
     if len(winners) > 1:
         listing = ", ".join(f"{topic.name} ({topic.count} messages)" for topic in winners)
-        raise LogError(f"several topics could be the {option.removesuffix('_topic')}", advice=f"set {option} to one of {listing}")
+        raise LogError(
+            f"several topics could be the {option.removesuffix('_topic')}",
+            advice=f"set {option} to one of {listing}",
+        )
     return winners[0]
 
 
@@ -186,5 +199,7 @@ def _pose_advice(live: Mapping[str, Topic]) -> str:
 def _listing(live: Mapping[str, Topic]) -> str:
     if not live:
         return "the bag has no messages"
-    shown = [f"{topic.name} ({topic.type.split('/')[-1]})" for topic in sorted(live.values(), key=lambda t: t.name)]
+    shown = [
+        f"{topic.name} ({topic.type.split('/')[-1]})" for topic in sorted(live.values(), key=lambda t: t.name)
+    ]
     return "the bag has " + ", ".join(shown[:15]) + (", ..." if len(shown) > 15 else "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Poses from TF: the chain of transforms from a fixed frame to the robot, at the stamps of the one that localises."""
+"""Poses from TF: the chain of transforms from a fixed frame to the robot."""
 
 from __future__ import annotations
 
@@ -49,7 +49,9 @@ class TransformCollector:
         return sorted_edges
 
 
-def choose_frames(edges: Mapping[Edge, object], fixed: str | None, robot: str | None) -> tuple[str, str] | None:
+def choose_frames(
+    edges: Mapping[Edge, object], fixed: str | None, robot: str | None
+) -> tuple[str, str] | None:
     """Return the fixed frame and the robot's frame, given or usual; None if there are none."""
     names = {name for edge in edges for name in edge}
     fixed = fixed or next((name for name in _FIXED if name in names), None)
@@ -60,8 +62,8 @@ def choose_frames(edges: Mapping[Edge, object], fixed: str | None, robot: str | 
 def chain_poses(edges: Mapping[Edge, tuple[Ints, Floats]], fixed: str, robot: str) -> tuple[Ints, Floats]:
     """Compose the transforms from `fixed` down to `robot`.
 
-    Of several moving transforms the one nearest to the fixed frame is the localiser's: it gives the stamps, and
-    the others are interpolated there.
+    Of several moving transforms the one nearest to the fixed frame is the localiser's: it gives the stamps,
+    and the others are interpolated there.
 
     Returns:
         stamps [N] in ns and (x, y, z, qx, qy, qz, qw) [N, 7].
@@ -93,7 +95,10 @@ def _chain(edges: Mapping[Edge, object], fixed: str, robot: str) -> list[Edge]:
         parent = parent_of.get(child)
         if parent is None or len(chain) > len(edges):
             known = ", ".join(f"{a} -> {b}" for a, b in sorted(edges)[:8])
-            raise LogError(f"TF does not connect {fixed} to {robot}", advice=f"set pose_frame and child_frame; it has {known}")
+            raise LogError(
+                f"TF does not connect {fixed} to {robot}",
+                advice=f"set pose_frame and child_frame; it has {known}",
+            )
         chain.insert(0, (parent, child))
         child = parent
     if not chain:
@@ -115,4 +120,4 @@ def _interpolate(stamps: Ints, at: Ints, rows: Floats) -> Floats:
     norm = np.linalg.norm(mixed[:, 3:], axis=1, keepdims=True)
     exact = (part[:, 0] == 0.0) | (part[:, 0] == 1.0)
     mixed[~exact, 3:] /= np.where(norm[~exact] > 0.0, norm[~exact], 1.0)
-    return mixed
+    return np.asarray(mixed)

@@ -14,7 +14,7 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.files import write_whole
 from slipwise.logs.bag import RUN_TOPIC, RUN_TYPE
-from slipwise.logs.log import Floats, Ints, Log, Run
+from slipwise.logs.log import Floats, Log, Run
 from slipwise.logs.messages import ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
 from slipwise.logs.rotation import quaternions_of
 
@@ -82,7 +82,9 @@ def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
 
 def _span(run: Run) -> tuple[int, int]:
     """Return the first and last stamp of a run in ns."""
-    times = [series.t for series in (run.commands, run.wheels, run.poses) if series is not None and len(series)]
+    times = [
+        series.t for series in (run.commands, run.wheels, run.poses) if series is not None and len(series)
+    ]
     if not times:
         raise LogError("a run without any sample cannot be written", where=run.name)
     return _ns(min(t[0] for t in times)), _ns(max(t[-1] for t in times))
@@ -95,7 +97,11 @@ def _ns(t: float) -> int:
 def _stamps(t: Floats, shift: int) -> list[int]:
     """Return stamps [N] in ns; whole seconds apart, so that nothing is lost in large numbers."""
     whole = np.floor(t)
-    return list((whole.astype(np.int64) * 1_000_000_000 + np.rint((t - whole) * 1e9).astype(np.int64) + shift).tolist())
+    return list(
+        (
+            whole.astype(np.int64) * 1_000_000_000 + np.rint((t - whole) * 1e9).astype(np.int64) + shift
+        ).tolist()
+    )
 
 
 def _run_entries(run: Run, shift: int, store: Typestore) -> Iterator[Entry]:
@@ -131,7 +137,10 @@ class _Messages:
         types: dict[str, Callable[..., Any]] = dict(store.types)
         self._header, self._time = types["std_msgs/msg/Header"], types["builtin_interfaces/msg/Time"]
         self._vector, self._twist = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Twist"]
-        self._point, self._quaternion = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Quaternion"]
+        self._point, self._quaternion = (
+            types["geometry_msgs/msg/Point"],
+            types["geometry_msgs/msg/Quaternion"],
+        )
         self._pose, self._pose_covariance = (
             types["geometry_msgs/msg/Pose"],
             types["geometry_msgs/msg/PoseWithCovariance"],
@@ -156,7 +165,9 @@ class _Messages:
 
     def odometry(self, stamp: int, twist: Any) -> memoryview:
         with_covariance = self._twist_covariance(twist, self._no_covariance)
-        message = self._types[ODOMETRY](self.header(stamp, "odom"), "base_link", self._nowhere, with_covariance)
+        message = self._types[ODOMETRY](
+            self.header(stamp, "odom"), "base_link", self._nowhere, with_covariance
+        )
         return self._store.serialize_cdr(message, ODOMETRY)
 
     def pose(self, stamp: int, frame: str, row: list[float]) -> memoryview:

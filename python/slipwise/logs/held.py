@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Sums of held inputs over time, for comparing what a robot was told with where it went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.logs.log import Floats, Inputs
+
+MAX_HOLD = 0.5  # [s] an input is unknown once it is older than this
+
+
+@dataclass(frozen=True, eq=False)
+class HeldSum:
+    """The integral over time of a held quantity, and of the time for which it is known."""
+
+    _t: Floats  # [K] knots
+    _sum: Floats  # [K]
+    _known: Floats  # [K] s
+
+    @classmethod
+    def of(cls, inputs: Inputs, values: Floats) -> HeldSum:
+        """Integrate `values` [N], held from each stamp to the next, at most for `MAX_HOLD`."""
+        hold = np.minimum(np.diff(inputs.t, append=np.inf), MAX_HOLD)
+        knots = np.stack([inputs.t, inputs.t + hold], axis=1).ravel()
+        total, known = np.cumsum(values * hold), np.cumsum(hold)
+        return cls(knots, _steps(total), _steps(known))
+
+    def between(self, start: Floats, stop: Floats) -> Floats:
+        """Return the integral from start [M] to stop [M]."""
+        return np.asarray(np.interp(stop, self._t, self._sum) - np.interp(start, self._t, self._sum))
+
+    def known(self, start: Floats, stop: Floats) -> Floats:
+        """Return the time between start [M] and stop [M] for which there is an input, in s."""
+        return np.asarray(np.interp(stop, self._t, self._known) - np.interp(start, self._t, self._known))
+
+
+def _steps(total: Floats) -> Floats:
+    before = np.concatenate([[0.0], total[:-1]])
+    return np.stack([before, total], axis=1).ravel()

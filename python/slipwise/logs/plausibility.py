@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Refuses logs whose poses and inputs contradict each other: wrong units, swapped columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.log import Floats
+from slipwise.logs.motion_windows import MotionWindows
+
+_ENOUGH = 15  # windows; with fewer nothing is said
+_ENOUGH_TURN = 3.0  # [rad] in total
+_DEGREES = 180.0 / np.pi
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How well poses and inputs agree; correlations are about 0 (1 at best), ratios 1 at best."""
+
+    windows: int
+    moving: int  # windows in which the robot moved enough to have a course
+    turning: float  # [rad] total commanded turn
+    yaw_inputs: float  # correlation of turns with the inputs' omega
+    yaw_ratio: float  # measured turns over the inputs'
+    yaw_degrees: float  # the two above if yaw is in degrees
+    yaw_ratio_degrees: float
+    yaw_v: float  # correlation of turns with the inputs' v
+    distance_v: float  # correlation of distances with the inputs' speed
+    distance_omega: float  # correlation of distances with the inputs' |omega|
+    distance_ratio: float
+    course: float  # mean cos 2(course - heading), 1 where the robot moves along its heading
+    course_degrees: float  # the same if yaw is in degrees
+    course_mirrored: float  # mean cos 2(course + heading), 1 for yaw clockwise, -1 for x and y swapped
+    largest_yaw: float
+
+
+def agreement(windows: MotionWindows) -> Agreement:
+    """Compare poses and inputs over all windows of one kind of input."""
+    w = windows
+    speed = np.hypot(w.forward, w.sideways)
+    usual = np.median(w.distance) if len(w) else 0.0
+    moving = (w.distance > max(0.05, 0.5 * usual)) & (np.abs(w.rotation) < 2.0)
+    body = np.arctan2(w.sideways, w.forward)
+    heading = w.start_yaw + 0.5 * w.turn + body
+    heading_degrees = np.radians(w.start_yaw + 0.5 * w.turn_degrees) + body
+    mirrored = w.start_yaw + 0.5 * w.turn - body
+    return Agreement(
+        windows=len(w),
+        moving=int(moving.sum()),
+        turning=float(np.abs(w.rotation).sum()),
+        yaw_inputs=_correlation(w.turn, w.rotation),
+        yaw_ratio=_ratio(w.turn, w.rotation),
+        yaw_degrees=_correlation(w.turn_degrees, w.rotation),
+        yaw_ratio_degrees=_ratio(w.turn_degrees, w.rotation),
+        yaw_v=_correlation(w.turn, w.forward),
+        distance_v=_correlation(w.distance, speed),
+        distance_omega=_correlation(w.distance, np.abs(w.rotation)),
+        distance_ratio=_ratio(w.distance, speed),
+        course=_alignment((w.course - heading)[moving]),
+        course_degrees=_alignment((w.course - heading_degrees)[moving]),
+        course_mirrored=_alignment((w.course + mirrored)[moving]),
+        largest_yaw=float(np.max(np.abs(w.start_yaw), initial=0.0)),
+    )
+
+
+def check_plausible(found: Agreement, inputs: str, where: str) -> None:
+    """Refuse what cannot be right.
+
+    Args:
+        found: of one kind of input.
+        inputs: its name, "commands" or "wheels".
+        where: the file.
+
+    Raises:
+        LogError: units, columns or axes are wrong; says which look wrong and what to do.
+    """
+    if found.windows < _ENOUGH:
+        return
+    for what, advice in (_units(found, inputs), _swapped(found, inputs), _mirrored(found)):
+        if what:
+            raise LogError(what, where=where, advice=advice)
+
+
+_FINE = ("", "")
+
+
+def _units(a: Agreement, inputs: str) -> tuple[str, str]:
+    turns = a.turning > _ENOUGH_TURN
+    by_turn = turns and abs(a.yaw_degrees) > 0.6 and a.yaw_ratio_degrees > 6.0
+    by_course = a.moving >= _ENOUGH and a.course_degrees > 0.8 and a.course < 0.4
+    if a.largest_yaw > 7.0 and (by_turn or by_course):
+        ratio = (
+            f"{a.yaw_ratio_degrees:.0f} times the inputs' rate"
+            if by_turn
+            else "the course agrees with degrees"
+        )
+        return f"yaw looks like degrees ({ratio})", "convert the poses' angles to radians"
+    if turns and abs(a.yaw_inputs) > 0.6 and a.yaw_ratio < 0.05:
+        what = f"omega of the {inputs} looks like degrees per second (poses turn {a.yaw_ratio:.3f} of it)"
+        return what, "convert it to rad/s"
+    if a.distance_v > 0.6 and a.distance_ratio > 30.0:
+        return f"poses move {a.distance_ratio:.0f} times further than the {inputs} say", "use metres and m/s"
+    return _FINE
+
+
+def _swapped(a: Agreement, inputs: str) -> tuple[str, str]:
+    by_distance = a.distance_omega > max(0.7, a.distance_v + 0.1)
+    by_turn = abs(a.yaw_v) > max(0.55, abs(a.yaw_inputs) + 0.2)
+    if by_distance and by_turn and a.turning > _ENOUGH_TURN:
+        what = f"columns look swapped: v and omega of the {inputs}"
+        return what, "distances follow omega and turns follow v; exchange the two columns"
+    if a.moving >= _ENOUGH and a.course < 0.3 and a.course_mirrored < -0.7:
+        if a.yaw_inputs < -0.5:
+            return "yaw looks like a compass heading", "use yaw = pi/2 - heading, counter-clockwise from x"
+        what = "columns look swapped: x and y"
+        return (
+            what,
+            "the course disagrees with yaw; exchange them, or use yaw = pi/2 - heading if it is a compass's",
+        )
+    return _FINE
+
+
+def _mirrored(a: Agreement) -> tuple[str, str]:
+    if a.moving >= _ENOUGH and a.course < 0.3 and a.course_mirrored > 0.7:
+        return "yaw runs clockwise while x and y do not", "change the sign of yaw"
+    if a.turning > _ENOUGH_TURN and a.yaw_inputs < -0.5:
+        if a.course > 0.5:
+            advice = (
+                "poses are in a frame with z down: change the signs of y and yaw (x forward, y left, z up)"
+            )
+            return "poses turn against the inputs", advice
+        return "poses turn against the inputs", "check the sign of yaw and omega: both are counter-clockwise"
+    return _FINE
+
+
+def _correlation(a: Floats, b: Floats) -> float:
+    scale = float(np.sqrt(np.sum(a * a) * np.sum(b * b)))
+    return float(np.sum(a * b)) / scale if scale > 0.0 else 0.0
+
+
+def _ratio(measured: Floats, expected: Floats) -> float:
+    total = float(np.abs(expected).sum())
+    return float(np.abs(measured).sum()) / total if total > 0.0 else 0.0
+
+
+def _alignment(difference: Floats) -> float:
+    return float(np.mean(np.cos(2.0 * difference))) if len(difference) else 0.0

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Finds poses that jump further than the robot can have moved; drops lone ones, splits frames at others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.logs.held import HeldSum
+from slipwise.logs.log import Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.motion_windows import wrapped
+from slipwise.logs.streams import order_codes
+
+_LATE = 1.0  # [s] poses may be late or early by this much,
+_BUSY = 0.5  # [s] or by this much more than the time since the last one: a localiser that stalls is late
+_SLIP = 1.1  # a robot may move this much further than its inputs say
+_UNKNOWN = 1.5  # and where there are no inputs, this much faster than it ever was told to go
+_DISTANCE = 0.5  # [m] on top of that, before it is called a jump
+_ANGLE = 0.8  # [rad]
+_NOISE = 6.0  # standard deviations of the poses' own noise
+_LONGEST_OUTLIER = 3  # poses
+_BEND_OF_NOISE = 2.884  # median length of a second difference per sigma: 1.1774 (Rayleigh) sqrt(1 + 4 + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Jumps:
+    """What was found: poses to drop, and poses that start a new frame."""
+
+    dropped: Bools  # [M]
+    starts: Bools  # [M]
+
+
+def find_jumps(poses: Poses, inputs: Inputs) -> Jumps:
+    """Compare every step between poses of one frame with what the inputs allow, 1 s early or late."""
+    reach = _Reach(poses, inputs)
+    dropped, starts = np.zeros(len(poses), bool), np.zeros(len(poses), bool)
+    i = np.arange(len(poses) - 1)
+    for step in np.flatnonzero(reach.jumps(i, i + 1)).tolist():
+        if dropped[step]:
+            continue
+        after = np.arange(step + 2, min(step + 2 + _LONGEST_OUTLIER, len(poses)))
+        back = after[(poses.frame[after] == poses.frame[step])]
+        home = back[~reach.jumps(np.full(len(back), step), back) & _returns(poses, step, back)]
+        if len(home):
+            dropped[step + 1 : home[0]] = True
+        else:
+            starts[step + 1] = True
+    return Jumps(dropped, starts & ~dropped)
+
+
+def _returns(poses: Poses, step: int, back: Ints) -> Bools:
+    """Say whether the poses `back` [K] lie far nearer to where the step began than where it ended."""
+    ends = np.concatenate([[step + 1], back])
+    distance = np.hypot(poses.x[ends] - poses.x[step], poses.y[ends] - poses.y[step])
+    angle = np.abs(wrapped(poses.yaw[ends] - poses.yaw[step]))
+    near = distance[1:] < 0.5 * max(distance[0], _DISTANCE)
+    return np.asarray(near & (angle[1:] < 0.5 * max(angle[0], _ANGLE)))
+
+
+def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
+    """Drop the lone outliers, and give the poses after each lasting jump a frame of their own."""
+    keep = ~jumps.dropped
+    split = poses.frame * (int(jumps.starts.sum()) + 1) + np.cumsum(jumps.starts)
+    others = {name: None if values is None else values[keep] for name, values in poses.optional().items()}
+    return Poses(
+        t=poses.t[keep],
+        x=poses.x[keep],
+        y=poses.y[keep],
+        yaw=poses.yaw[keep],
+        frame=order_codes(split[keep]),
+        **others,
+    )
+
+
+class _Reach:
+    """How far the robot can have come between two poses."""
+
+    def __init__(self, poses: Poses, inputs: Inputs) -> None:
+        speed, rate = np.hypot(inputs.v, inputs.vy), np.abs(inputs.omega)
+        self._poses = poses
+        self._path, self._turn = HeldSum.of(inputs, speed), HeldSum.of(inputs, rate)
+        self._top_speed, self._top_rate = float(speed.max()), float(rate.max())
+        self._margin = max(_DISTANCE, _NOISE * _noise(poses))
+
+    def jumps(self, i: Ints, j: Ints) -> Bools:
+        """Say whether pose j [K] is out of reach from pose i [K]."""
+        p = self._poses
+        late = np.maximum(_LATE, _BUSY + p.t[j] - p.t[i])
+        start, stop = p.t[i] - late, p.t[j] + late
+        unknown = _UNKNOWN * np.maximum(p.t[j] - p.t[i] - self._path.known(p.t[i], p.t[j]), 0.0)
+        path = _SLIP * self._path.between(start, stop) + self._top_speed * unknown
+        turn = _SLIP * self._turn.between(start, stop) + self._top_rate * unknown
+        far = np.hypot(p.x[j] - p.x[i], p.y[j] - p.y[i]) > path + self._margin
+        turned = np.abs(wrapped(p.yaw[j] - p.yaw[i])) > turn + _ANGLE
+        return np.asarray((far | turned) & (p.frame[i] == p.frame[j]))
+
+
+def _noise(poses: Poses) -> float:
+    """Return the standard deviation of a position [m], from second differences: 0 for a smooth track."""
+    if len(poses) < 5:
+        return 0.0
+    bend: Floats = np.hypot(np.diff(poses.x, n=2), np.diff(poses.y, n=2))
+    return float(np.median(bend)) / _BEND_OF_NOISE

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Judges a whole log after reading: refuses contradictions and takes out pose jumps, all counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.left_out import Tally
+from slipwise.logs.log import Inputs, Log, Run
+from slipwise.logs.motion_windows import motion_windows
+from slipwise.logs.plausibility import agreement, check_plausible
+from slipwise.logs.pose_jumps import find_jumps, without_jumps
+
+_TOO_MANY = 0.3  # part of all steps; more jumps than this are no accident
+_FEW = 20  # steps; with fewer no such judgement is made
+
+
+def checked(log: Log) -> Log:
+    """Return the log without pose jumps.
+
+    Raises:
+        LogError: poses and inputs contradict each other.
+    """
+    where = log.sources[0].path if log.sources else ""
+    for name in ("commands", "wheels"):
+        pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
+        check_plausible(agreement(motion_windows(pairs)), name, where)
+    tally = Tally()
+    runs = tuple(_smooth(run, tally) for run in log.runs)
+    found = tally.result()
+    steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
+    if steps >= _FEW and sum(entry.count for entry in found) > _TOO_MANY * steps:
+        raise LogError(
+            "most poses are out of reach of the inputs",
+            where=where,
+            advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
+        )
+    return replace(log, runs=runs, left_out=log.left_out + found)
+
+
+def _named(run: Run, name: str) -> Inputs | None:
+    return run.commands if name == "commands" else run.wheels
+
+
+def _smooth(run: Run, tally: Tally) -> Run:
+    inputs = run.wheels if run.wheels is not None else run.commands
+    if inputs is None or len(run.poses) < 2:
+        return run
+    jumps = find_jumps(run.poses, inputs)
+    if not (jumps.dropped.any() or jumps.starts.any()):
+        return run
+    for flags, kind, reason in (
+        (jumps.dropped, "pose-outlier", "poses far from their neighbours"),
+        (jumps.starts, "pose-jump", "steps between poses that jump; poses after are in a frame of their own"),
+    ):
+        first = float(run.poses.t[np.argmax(flags)])
+        tally.add(kind, reason, count=int(flags.sum()), where=f"run {run.name}, t = {first:.3f} s")
+    return replace(run, poses=without_jumps(run.poses, jumps))

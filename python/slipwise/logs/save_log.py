@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Saves a log in the format that the ending of the file's name asks for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from slipwise.errors import OutputError
+from slipwise.logs.log import Log
+
+
+def save_log(log: Log, path: str | Path) -> None:
+    """Write the log to a .csv, .csv.gz, .parquet or .mcap file, whole or not at all.
+
+    The tables read back equal; an MCAP file carries commands, wheels and poses, to the nanosecond, but no
+    other columns.
+
+    Raises:
+        OutputError: the ending is not one of these, or the file cannot be written.
+        LogError: the log holds nothing.
+    """
+    path = Path(path)
+    if path.name.endswith(".mcap"):
+        from slipwise.logs.write_bag import write_mcap
+
+        write_mcap(log, path)
+        return
+    from slipwise.logs.write_tidy import write_csv, write_parquet
+
+    if path.name.endswith((".csv", ".csv.gz")):
+        write_csv(log, path, compressed=path.name.endswith(".gz"))
+    elif path.name.endswith(".parquet"):
+        write_parquet(log, path)
+    else:
+        advice = "end the name in .csv, .csv.gz, .parquet or .mcap"
+        raise OutputError("unknown kind of log file", where=str(path), advice=advice)
