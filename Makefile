@@ -122,7 +122,7 @@ $(STAMPS)/doctest: $(STAMPS)/run
 	@touch $@
 
 $(STAMPS)/python-files: $(STAMPS)/env FORCE
-	@find python/slipwise -type f ! -path '*/__pycache__/*' ! -name _core.pyi | sort > $@.new
+	@find python/slipwise -type f ! -path '*/__pycache__/*' ! -name '_core.*' | sort > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 $(STAMPS)/slipwise: $(STAMPS)/run $(STAMPS)/python-files CMakeLists.txt $(CPP_SOURCES)
