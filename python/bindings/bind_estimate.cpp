@@ -81,6 +81,7 @@ void bind_results(nb::module_& m) {
   nb::class_<AverageState>(m, "AverageState", "The average of several models over the union of their terms.")
       .def_ro("estimate", &AverageState::estimate)
       .def_ro("prior_std", &AverageState::prior_std)
+      .def_ro("variance_ratio", &AverageState::variance_ratio)
       .def_ro("noise_scale", &AverageState::noise_scale)
       .def_ro("weights", &AverageState::weights);
   nb::class_<Observability>(m, "Observability", "Posterior against prior variance.")

@@ -81,7 +81,8 @@ void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
 AverageState ModelAverage::state() const {
   const Eigen::Index size = model_.size();
   AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
-                     Eigen::VectorXd::Zero(size), Eigen::Vector3d::Zero(), weights_};
+                     Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), Eigen::Vector3d::Zero(), weights_};
+  Eigen::VectorXd having = Eigen::VectorXd::Zero(size);
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const double weight = weights_[static_cast<Eigen::Index>(i)];
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
@@ -89,9 +90,14 @@ AverageState ModelAverage::state() const {
     state.estimate.mean += weight * mean;
     state.estimate.covariance(places_[i], places_[i]) += weight * filters_[i].estimate().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
-    state.prior_std(places_[i]) = filters_[i].prior_std();
+    const Eigen::VectorXd prior_std = filters_[i].prior_std();
+    const Eigen::VectorXd ratio = filters_[i].estimate().covariance.diagonal().cwiseQuotient(prior_std.cwiseAbs2());
+    state.prior_std(places_[i]) = prior_std;
+    state.variance_ratio(places_[i]) += weight * ratio;
+    having(places_[i]).array() += weight;
     state.noise_scale += weight * filters_[i].noise_scale();
   }
+  state.variance_ratio = state.variance_ratio.cwiseQuotient(having);
   state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
   return state;
 }

@@ -5,51 +5,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.statistics import ErrorSummary
 from slipwise.logs.log import LeftOut
-
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Predictions:
-    """The predictions of one method at one horizon, [N] each; poses are T_start_end, in the robot's frame at the start."""
-
-    method: str
-    horizon: float  # s, as asked for
-    run: NDArray[np.int64]  # index of the run in the log
-    t_start: Floats  # s
-    t_end: Floats  # s
-    pose: Floats  # [N, 3] predicted x, y [m], yaw [rad]
-    covariance: Floats  # [N, 3, 3]
-    measured: Floats  # [N, 3] what the poses say
-    learned_until: Floats  # s, in the log's time: nothing measured later was used
-    in_sample: Floats  # [N, 2] position [m] and heading [rad] error after learning the same window (thesis, Table 6.2)
-
-    @property
-    def position_error(self) -> Floats:
-        """Distance between predicted and measured position, [N] m."""
-        return np.hypot(*(self.pose[:, :2] - self.measured[:, :2]).T)
-
-    @property
-    def heading_error(self) -> Floats:
-        """Absolute heading error wrapped to half a turn, [N] rad."""
-        difference = self.pose[:, 2] - self.measured[:, 2]
-        return np.abs(np.remainder(difference + np.pi, 2 * np.pi) - np.pi)
-
-
-@dataclass(frozen=True)
-class ErrorSummary:
-    """One kind of error over the windows, with a 95 % block-bootstrap interval of its mean."""
-
-    mean: float
-    low: float
-    high: float
-    median: float
-    rmse: float
-    p95: float
 
 
 @dataclass(frozen=True)
@@ -93,3 +51,6 @@ class Evaluation:
             if score.method == method and score.horizon == horizon:
                 return score
         raise KeyError((method, horizon))
+
+
+__all__ = ["ErrorSummary", "Evaluation", "Predictions", "Score"]

@@ -19,6 +19,8 @@ struct ModelAverageSettings {
 struct AverageState {
   Estimate estimate;
   Eigen::VectorXd prior_std;
+  /// Posterior / prior variance per parameter, averaged over the models that have it; 1: nothing learned.
+  Eigen::VectorXd variance_ratio;
   Eigen::Vector3d noise_scale;
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
 };

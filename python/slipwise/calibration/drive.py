@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log made ready for learning: the chosen inputs of each run, and its windows in the order they are learned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.errors import LogError
+from slipwise.logs.log import Inputs, LeftOut, Log, Run
+from slipwise.segments import WindowRules, cut_windows
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class DriveRun:
+    """A run with the inputs to predict from."""
+
+    index: int  # of the run in the log
+    run: Run
+    inputs: Inputs
+    track: _core.InputTrack
+    wheels: Inputs | None  # measured at the start of a prediction from commands
+
+
+@dataclass(frozen=True, eq=False)
+class WindowSet:
+    """The windows of all runs, in order, [N] each."""
+
+    length: float  # s, as asked for
+    drive: tuple[DriveRun, ...]
+    position: Ints  # of the window's run in `drive`
+    start: Floats  # s
+    end: Floats  # s
+    measured: Floats  # [N, 3]
+    segments: tuple[_core.Segment, ...]
+    left_out: tuple[LeftOut, ...]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def track(self, i: int) -> _core.InputTrack:
+        """Return the inputs of window i."""
+        return self.drive[self.position[i]].track
+
+    def count_until(self, position: Ints, time: Floats) -> Ints:
+        """Return how many windows had ended by `time` of run `position`; earlier runs count whole. [M] each."""
+        counts = np.empty(len(time), dtype=np.int64)
+        for run in np.unique(position):
+            here = np.flatnonzero(self.position == run)
+            before = int(np.count_nonzero(self.position < run))
+            at = position == run
+            counts[at] = before + np.searchsorted(self.end[here], time[at] + 1e-9, side="right")
+        return counts
+
+
+def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
+    """Choose the inputs of every run.
+
+    Raises:
+        LogError: no run has such inputs, or no run has poses.
+    """
+    drive = []
+    for index, run in enumerate(log.runs):
+        inputs = run.commands if input_name == "command" else run.wheels
+        if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
+            continue
+        track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        drive.append(DriveRun(index, run, inputs, track, run.wheels if input_name == "command" else None))
+    if not drive:
+        raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
+    return tuple(drive)
+
+
+def choose_input(log: Log) -> str:
+    """Return "command" where the log has commands, otherwise "wheel"."""
+    return "command" if any(run.commands is not None for run in log.runs) else "wheel"
+
+
+def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRules) -> WindowSet:
+    """Cut all runs into windows of `length` [s]."""
+    cuts = [cut_windows(run.run, run.inputs, length, rules) for run in drive]
+    segments = [s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules.unknown_after)]
+    return WindowSet(
+        length=length,
+        drive=drive,
+        position=np.repeat(np.arange(len(drive)), [len(cut) for cut in cuts]),
+        start=np.concatenate([cut.start for cut in cuts]),
+        end=np.concatenate([cut.end for cut in cuts]),
+        measured=np.concatenate([cut.measured for cut in cuts]),
+        segments=tuple(segments),
+        left_out=_merged([item for cut in cuts for item in cut.left_out]),
+    )
+
+
+def fitting_length(drive: tuple[DriveRun, ...], wanted: float, rules: WindowRules) -> float:
+    """Return `wanted` [s], or the longest window that fits into half of the frames where they are shorter than that."""
+    durations = [span for run in drive for span in _frame_durations(run.run)]
+    longest = float(np.median(durations)) / (1.0 + rules.length_tolerance) if durations else wanted
+    return min(wanted, longest) if longest > 0.0 else wanted
+
+
+def _frame_durations(run: Run) -> list[float]:
+    edges = np.flatnonzero(np.diff(run.poses.frame)) + 1
+    return [float(part[-1] - part[0]) for part in np.split(run.poses.t, edges) if len(part) > 1]
+
+
+def _merged(items: list[LeftOut]) -> tuple[LeftOut, ...]:
+    """Add up what was left out of several runs, by kind."""
+    merged: dict[str, LeftOut] = {}
+    for item in items:
+        first = merged.setdefault(item.kind, LeftOut(item.reason, 0, item.where, item.kind))
+        merged[item.kind] = LeftOut(first.reason, first.count + item.count, first.where, item.kind)
+    return tuple(merged[kind] for kind in sorted(merged))
+
+
+def _nothing_to_use(log: Log, input_name: str) -> str:
+    if all(len(run.poses) < 2 for run in log.runs):
+        return "the log has no two measured poses"
+    return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
+
+
+def _advice(log: Log, input_name: str) -> str:
+    if all(len(run.poses) < 2 for run in log.runs):
+        return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
+    other = "command" if input_name == "wheel" else "wheel"
+    return f"use --input {other}, or name the topic or the columns (see `slipwise inspect`)"
+
+
+def _where(log: Log) -> str:
+    return ", ".join(source.path for source in log.sources[:3])

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The causal pass over a log: learn window after window, and keep the belief at the moments that are asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.result import History
+from slipwise.calibration.settings import Settings
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Belief:
+    """What is believed of a model's parameters at one moment."""
+
+    mean: Floats  # [P]
+    covariance: Floats  # [P, P]
+    noise_scale: Floats  # [3]
+    prior_std: Floats  # [P]
+    variance_ratio: Floats  # [P] posterior / prior variance
+    weights: Floats  # [B]
+
+
+@dataclass(frozen=True, eq=False)
+class Learner:
+    """How to learn one method: its bases and what else is a parameter."""
+
+    settings: Settings
+    bases: tuple[_core.Basis, ...]
+    dynamics: bool
+    clock_offset: bool
+
+    def fresh(self) -> _core.ModelAverage:
+        """Return the core's estimator before any data."""
+        return _core.ModelAverage(
+            "auto",
+            list(self.bases),
+            self.dynamics,
+            self.clock_offset,
+            self.settings.filter_settings(),
+            self.settings.average_settings(),
+        )
+
+
+def make_learner(settings: Settings, input_name: str) -> Learner:
+    """Return the learner that the settings ask for; commands bring lag and delay, wheel speeds a clock offset."""
+    dynamics = input_name == "command"
+    return Learner(settings, tuple(settings.bases()), dynamics, settings.learn_clock_offset and not dynamics)
+
+
+def belief_of(average: _core.ModelAverage) -> Belief:
+    """Return the belief of the estimator now."""
+    state = average.state()
+    return Belief(
+        mean=np.array(state.estimate.mean),
+        covariance=np.array(state.estimate.covariance),
+        noise_scale=np.array(state.noise_scale),
+        prior_std=np.array(state.prior_std),
+        variance_ratio=np.array(state.variance_ratio),
+        weights=np.array(state.weights),
+    )
+
+
+def learn_causally(
+    average: _core.ModelAverage, windows: WindowSet, moments: Collection[int], progress: Progress | None = None
+) -> dict[int, Belief]:
+    """Learn all windows in order; return the belief after each number of windows in `moments`."""
+    wanted = set(moments)
+    beliefs = {0: belief_of(average)} if 0 in wanted else {}
+    for i, segment in enumerate(windows.segments):
+        average.learn(windows.track(i), segment)
+        if i + 1 in wanted:
+            beliefs[i + 1] = belief_of(average)
+        if progress is not None and i % 50 == 0:
+            progress((i + 1) / len(windows))
+    return beliefs
+
+
+def learn_with_history(
+    average: _core.ModelAverage, windows: WindowSet, bases: tuple[str, ...], progress: Progress | None = None
+) -> tuple[History, list[Belief]]:
+    """Learn all windows in order; return how every parameter went, and the belief after each window."""
+    beliefs, nis, weight = [], [], []
+    for i, segment in enumerate(windows.segments):
+        update = average.learn(windows.track(i), segment)
+        beliefs.append(belief_of(average))
+        nis.append(update.nis)
+        weight.append(update.weight)
+        if progress is not None and i % 50 == 0:
+            progress((i + 1) / len(windows))
+    history = History(
+        run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
+        t=windows.end,
+        names=tuple(info.name for info in average.model.parameters),
+        mean=np.array([belief.mean for belief in beliefs]).reshape(len(beliefs), average.model.size),
+        std=np.array([np.sqrt(np.diag(belief.covariance)) for belief in beliefs]).reshape(
+            len(beliefs), average.model.size
+        ),
+        nis=np.array(nis),
+        weight=np.array(weight),
+        bases=bases,
+        basis_weight=np.array([belief.weights for belief in beliefs]).reshape(len(beliefs), len(bases)),
+    )
+    return history, beliefs

@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Methods that learn nothing: the plain model, a vendor's track multiplier, and a model from a file."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.forecast import Forecaster
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.settings import Settings
+from slipwise.errors import SettingsError
+from slipwise.models.model import Model
+
+
+def plain_forecaster(settings: Settings) -> Forecaster:
+    """`none`: the robot does at once and exactly what it is told."""
+    model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
+    return _fixed("none", model, np.zeros(0), settings)
+
+
+def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
+    """`vendor`: the yaw rate divided by a wheel-separation multiplier, as diff_drive_controller does.
+
+    Raises:
+        SettingsError: the multiplier is not positive.
+    """
+    if not (np.isfinite(multiplier) and multiplier > 0.0):
+        raise SettingsError("the vendor's track multiplier must be positive", advice="Clearpath ships 1.875 for the Husky")
+    model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
+    return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
+
+
+def model_forecaster(model: Model) -> Forecaster:
+    """`model`: a model file as it is."""
+    size = len(model.mean)
+    noise = np.array(model.content.noise.scale)
+    belief = Belief(model.mean, model.covariance, noise, np.ones(size), np.ones(size), np.ones(1))
+    return Forecaster("model", model.motion, model.noise, lambda _: belief, model.content.dynamics)
+
+
+def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:  # type: ignore[type-arg]
+    size = len(mean)
+    belief = Belief(mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1))
+    return Forecaster(method, model, settings.filter_settings().noise.shape, lambda _: belief, False)

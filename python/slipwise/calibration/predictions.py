@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Predictions beside what was measured, and how wrong they were."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Predictions:
+    """The predictions of one method at one horizon, [N] each; poses are T_start_end, in the robot's frame at the start."""
+
+    method: str
+    horizon: float  # s, as asked for
+    run: Ints  # index of the run in the log
+    t_start: Floats  # s
+    t_end: Floats  # s
+    pose: Floats  # [N, 3] predicted x, y [m], yaw [rad]
+    covariance: Floats  # [N, 3, 3]
+    growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
+    measured: Floats  # [N, 3] what the poses say
+    learned_until: Floats  # s, in the log's time: nothing measured later was used
+    in_sample: Floats  # [N, 2] position [m] and heading [rad] error after learning the same window (thesis, Table 6.2)
+
+    def __len__(self) -> int:
+        return len(self.t_start)
+
+    @property
+    def residual(self) -> Floats:
+        """Measured minus predicted chart, the heading wrapped to half a turn, [N, 3]."""
+        return residual(self.measured, self.pose)
+
+    @property
+    def position_error(self) -> Floats:
+        """Distance between predicted and measured position, [N] m."""
+        return np.hypot(self.residual[:, 0], self.residual[:, 1])
+
+    @property
+    def heading_error(self) -> Floats:
+        """Absolute heading error, wrapped to half a turn, [N] rad."""
+        return np.abs(self.residual[:, 2])
+
+    @property
+    def nis(self) -> Floats:
+        """Normalised innovation squared, [N]; 3 on average where the covariance is true."""
+        return normalised_squared(self.residual, self.covariance)
+
+
+def residual(measured: Floats, predicted: Floats) -> Floats:
+    """Measured minus predicted charts, [N, 3], the heading wrapped to half a turn."""
+    difference = measured - predicted
+    difference[:, 2] = np.remainder(difference[:, 2] + np.pi, 2.0 * np.pi) - np.pi
+    return difference
+
+
+def normalised_squared(residuals: Floats, covariance: Floats) -> Floats:
+    """Squared Mahalanobis lengths of [N, 3] residuals under [N, 3, 3] covariances."""
+    if len(residuals) == 0:
+        return np.empty(0)
+    solved = np.linalg.solve(covariance, residuals[:, :, None])[:, :, 0]
+    return np.asarray(np.einsum("ni,ni->n", residuals, solved), dtype=np.float64)

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Settings of learning, read from TOML or given as keywords; defaults that the core has stand in the core alone."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.segments import WindowRules
+
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
+WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
+
+_PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
+_AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class BasisTerms(_Section):
+    """A slip basis of one's own: terms per channel, such as `V*abs(w)`."""
+
+    lon: list[str] = []
+    lat: list[str] = []
+    ang: list[str] = []
+
+
+class PriorTable(_Section):
+    """Standard deviations before any data."""
+
+    slip_fraction: Positive = _PRIOR.slip_fraction
+    clock_offset_std: Positive = _PRIOR.clock_offset_std
+    lag: Positive = _PRIOR.lag
+    delay: Positive = _PRIOR.delay
+    log_std: Positive = _PRIOR.log_std
+
+
+class FilterTable(_Section):
+    """The iterated extended Kalman filter."""
+
+    iterations: Annotated[int, Field(ge=1, le=50)] = _IEKF.iterations
+    halvings: Annotated[int, Field(ge=0, le=50)] = _IEKF.halvings
+    huber: Positive = _IEKF.huber
+    gate: Positive = _IEKF.gate
+
+
+class NoiseTable(_Section):
+    """Shape of the noise of slip rates and poses; its size is learned where `adapt` is true."""
+
+    psd_time: list[float] = Field(list(_NOISE.shape.psd_time), min_length=3, max_length=3)
+    psd_motion: list[float] = Field(list(_NOISE.shape.psd_motion), min_length=3, max_length=3)
+    fraction: list[float] = Field(list(_NOISE.shape.fraction), min_length=3, max_length=3)
+    pose_std_xy: Positive = _NOISE.shape.pose_std_xy
+    pose_std_yaw: Positive = _NOISE.shape.pose_std_yaw
+    adapt: bool = _NOISE.adapt
+
+
+class AutoTable(_Section):
+    """Averaging of bases by how well they predict."""
+
+    bases: list[str] = Field(list(AUTO_BASES), min_length=1)
+    learning_rate: Positive = _AVERAGE.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.share
+
+
+class WindowTable(_Section):
+    """How the log is cut into windows."""
+
+    length: Positive | None = None  # s; None takes the default of the input
+    unknown_after: Positive = _RULES.unknown_after
+    late_factor: Positive = _RULES.late_factor
+    length_tolerance: Positive = _RULES.length_tolerance
+    still_speed: Positive = _RULES.still_speed
+
+
+class Settings(_Section):
+    """Everything that changes what is learned."""
+
+    basis: str = "auto"  # "auto", "custom" (terms below) or a named basis
+    terms: BasisTerms = BasisTerms()
+    learn_clock_offset: bool = True  # wheel input; from commands the offset is part of the delay
+    window: WindowTable = WindowTable()
+    prior: PriorTable = PriorTable()
+    filter: FilterTable = FilterTable()
+    noise: NoiseTable = NoiseTable()
+    auto: AutoTable = AutoTable()
+
+    def window_length(self, input_name: str) -> float:
+        """Return the length of the windows to learn from [s]."""
+        return self.window.length or WINDOW_SECONDS[input_name]
+
+    def rules(self) -> WindowRules:
+        """Return the rules of cutting windows."""
+        table = self.window
+        return WindowRules(table.unknown_after, table.late_factor, table.length_tolerance, table.still_speed)
+
+    def filter_settings(self) -> _core.CausalFilterSettings:
+        """Return the core's settings of one causal filter."""
+        settings = _core.CausalFilterSettings()
+        prior, iekf, noise = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
+        _copy(self.prior, prior)
+        _copy(self.filter, iekf)
+        table = self.noise
+        noise.shape = _core.MotionNoise(
+            table.psd_time, table.psd_motion, table.fraction, table.pose_std_xy, table.pose_std_yaw
+        )
+        noise.adapt = table.adapt
+        settings.prior, settings.iekf, settings.noise = prior, iekf, noise
+        return settings
+
+    def average_settings(self) -> _core.ModelAverageSettings:
+        """Return the core's settings of model averaging."""
+        settings = _core.ModelAverageSettings()
+        settings.learning_rate, settings.share = self.auto.learning_rate, self.auto.share
+        return settings
+
+    def bases(self) -> list[_core.Basis]:
+        """Return the bases to learn: several for `auto`, otherwise one.
+
+        Raises:
+            SettingsError: a basis or a term is unknown.
+        """
+        names = self.auto.bases if self.basis == "auto" else [self.basis]
+        try:
+            return [self._basis(name) for name in names]
+        except ValueError as problem:
+            raise SettingsError(str(problem), where="basis") from problem
+
+    def _basis(self, name: str) -> _core.Basis:
+        if name == "custom":
+            return _core.Basis("custom", self.terms.lon, self.terms.lat, self.terms.ang)
+        return _core.Basis("none", [], [], []) if name == "none" else _core.named_basis(name)
+
+
+def load_settings(path: Path) -> Settings:
+    """Read settings from a TOML file.
+
+    Raises:
+        SettingsError: the file is missing, not TOML, or has an unknown key or a wrong value.
+    """
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as problem:
+        raise SettingsError(f"cannot read: {problem.strerror}", where=str(path), advice="check the path") from problem
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
+        raise SettingsError(f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"') from problem
+    return make_settings(content, where=str(path))
+
+
+def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settings:
+    """Check settings given as nested dictionaries.
+
+    Raises:
+        SettingsError: a key is unknown or a value is wrong.
+    """
+    try:
+        return Settings.model_validate(content)
+    except ValidationError as problem:
+        first = problem.errors()[0]
+        key = ".".join(str(part) for part in first["loc"])
+        raise SettingsError(f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`") from problem
+
+
+def _copy(table: _Section, target: object) -> None:
+    for name in type(table).model_fields:
+        setattr(target, name, getattr(table, name))

@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Judging motion models on windows that they had not learned from."""
+
+from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
+from slipwise.evaluation.prediction_file import write_predictions
+from slipwise.evaluation.result import Evaluation, Score
+
+__all__ = ["Evaluation", "EvaluationOptions", "Score", "evaluate", "write_predictions"]

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Honest comparison of methods on one log: prequential predictions with an embargo, scored on the second half."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.calibration.calibrate import learning_windows, refuse_empty
+from slipwise.calibration.drive import choose_input, collect_windows, prepare_drive
+from slipwise.calibration.forecast import forecast
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.settings import Settings
+from slipwise.calibration.statistics import coverage, held_out_half, nis_band, ratio_of_means, summarise
+from slipwise.errors import LogError, SettingsError
+from slipwise.evaluation.methods import Contest, method_info, method_names
+from slipwise.evaluation.result import Evaluation, Score
+from slipwise.logs.log import Log
+from slipwise.models.model import Model
+
+DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
+Report = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class EvaluationOptions:
+    """What to compare, and over which horizons."""
+
+    horizons: tuple[float, ...] = DEFAULT_HORIZONS  # s
+    methods: tuple[str, ...] | None = None  # None: all that apply
+    vendor_track_multiplier: float | None = None
+    model: Model | None = None
+
+
+def evaluate(
+    log: Log,
+    *,
+    input_name: str | None = None,
+    settings: Settings | None = None,
+    options: EvaluationOptions | None = None,
+    progress: Report | None = None,
+) -> Evaluation:
+    """Predict every window of the log with every method from what was known before it, and score the second half.
+
+    Raises:
+        LogError: the log has no such input, no poses, or no window of any horizon.
+        SettingsError: a method, a basis or a horizon is wrong.
+    """
+    settings, options = settings or Settings(), options or EvaluationOptions()
+    input_name = _input_name(log, input_name, options.model)
+    contest, notes = _contest(log, input_name, settings, options)
+    methods = options.methods or method_names(contest)
+    for name in methods:
+        method_info(name)
+    predictions = []
+    for done, name in enumerate(methods):
+        if progress is not None:
+            progress(name, done / len(methods))
+        forecaster = method_info(name).make(name, contest)
+        predictions += [forecast(forecaster, contest.windows, targets) for targets in contest.targets]
+    return Evaluation(
+        input=input_name,
+        horizons=tuple(targets.length for targets in contest.targets),
+        methods=tuple(methods),
+        scores=_scores(predictions, _learned_from(log, options.model)),
+        predictions=tuple(predictions),
+        runs=tuple(run.name for run in log.runs),
+        left_out=log.left_out + contest.targets[-1].left_out,
+        notes=log.notes + notes,
+    )
+
+
+def _input_name(log: Log, input_name: str | None, model: Model | None) -> str:
+    if model is not None and input_name is not None and model.content.input != input_name:
+        raise SettingsError(
+            f"the model was learned from {model.content.input} input, not {input_name}",
+            where="--input",
+            advice=f"use --input {model.content.input}",
+        )
+    return input_name or (model.content.input if model is not None else choose_input(log))
+
+
+def _contest(log: Log, input_name: str, settings: Settings, options: EvaluationOptions) -> tuple[Contest, tuple[str, ...]]:
+    if not options.horizons or any(not (np.isfinite(h) and h > 0.0) for h in options.horizons):
+        raise SettingsError("horizons must be positive seconds", where="--horizons", advice="such as 1,2,5")
+    drive = prepare_drive(log, input_name)
+    windows = learning_windows(drive, input_name, settings)
+    refuse_empty(windows, log)
+    sets = [collect_windows(drive, horizon, settings.rules()) for horizon in sorted(set(options.horizons))]
+    targets = tuple(item for item in sets if len(item) >= 2)
+    notes = tuple(
+        f"no prediction over {item.length:g} s: the log has {len(item)} such windows" for item in sets if len(item) < 2
+    )
+    if not targets:
+        raise LogError(
+            "the log has no two windows of any horizon asked for",
+            where=", ".join(source.path for source in log.sources[:3]),
+            advice="ask for shorter --horizons, or record a longer drive",
+        )
+    return Contest(input_name, settings, windows, targets, options.vendor_track_multiplier, options.model), notes
+
+
+def _learned_from(log: Log, model: Model | None) -> bool:
+    """Whether the model file was learned from one of these very logs; then it does not count as causal."""
+    if model is None:
+        return False
+    hashes = {reference.sha256 for reference in model.content.provenance.logs}
+    return any(source.sha256 in hashes for source in log.sources)
+
+
+def _scores(predictions: Sequence[Predictions], model_saw_log: bool) -> tuple[Score, ...]:
+    scores = []
+    for horizon in sorted({p.horizon for p in predictions}):
+        group = [p for p in predictions if p.horizon == horizon]
+        scores += [_score(p, group, model_saw_log) for p in group]
+    return tuple(scores)
+
+
+def _score(predictions: Predictions, group: Sequence[Predictions], model_saw_log: bool) -> Score:
+    half = held_out_half(len(predictions))
+    position, heading = predictions.position_error[half], predictions.heading_error[half]
+    plain = next((p for p in group if p.method == "none"), None)
+    undefined = (float("nan"),) * 3
+    nis = predictions.nis[half]
+    distance = np.hypot(predictions.measured[half, 0], predictions.measured[half, 1]).mean()
+    return Score(
+        method=predictions.method,
+        causal=method_info(predictions.method).causal and not (predictions.method == "model" and model_saw_log),
+        horizon=predictions.horizon,
+        windows=len(position),
+        position=summarise(position),
+        heading=summarise(heading),
+        percent_of_distance=float(100.0 * position.mean() / distance) if distance > 0.0 else float("nan"),
+        position_ratio=ratio_of_means(position, plain.position_error[half]) if plain else undefined,
+        heading_ratio=ratio_of_means(heading, plain.heading_error[half]) if plain else undefined,
+        position_to_rival=_to_rival(predictions, group, "position_error"),
+        heading_to_rival=_to_rival(predictions, group, "heading_error"),
+        in_sample_position=float(predictions.in_sample[half, 0].mean()),
+        in_sample_heading=float(predictions.in_sample[half, 1].mean()),
+        nis=float(nis.mean()),
+        nis_band=nis_band(len(nis)),
+        coverage=coverage(nis),
+    )
+
+
+def _to_rival(predictions: Predictions, group: Sequence[Predictions], error: str) -> float:
+    """Mean error relative to the best other causal method but the plain one."""
+    half = held_out_half(len(predictions))
+    rivals = [
+        float(getattr(p, error)[half].mean())
+        for p in group
+        if p.method not in (predictions.method, "none") and method_info(p.method).causal
+    ]
+    best = min(rivals, default=0.0)
+    return float(getattr(predictions, error)[half].mean()) / best if best > 0.0 else float("nan")

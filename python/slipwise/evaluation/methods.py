@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The methods that an evaluation compares, each turned into a forecaster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.batch import fit_batch
+from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.forecast import Forecaster, learned_counts
+from slipwise.calibration.learner import learn_causally, make_learner
+from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
+from slipwise.calibration.settings import Settings
+from slipwise.errors import SettingsError
+from slipwise.models.model import Model
+
+BATCH_BASIS = "odd-even-10"
+
+
+@dataclass(frozen=True, eq=False)
+class Contest:
+    """What all methods are given."""
+
+    input_name: str
+    settings: Settings
+    windows: WindowSet  # to learn from
+    targets: tuple[WindowSet, ...]  # to predict, one set per horizon
+    vendor_track_multiplier: float | None = None
+    model: Model | None = None
+
+
+@dataclass(frozen=True)
+class MethodInfo:
+    """How a method is made, and whether it predicts from the past alone."""
+
+    make: Callable[[str, Contest], Forecaster]
+    causal: bool
+    description: str
+
+
+def method_names(contest: Contest) -> tuple[str, ...]:
+    """Return the methods compared where none are named: all that the contest allows."""
+    names = ["none"]
+    if contest.vendor_track_multiplier is not None:
+        names.append("vendor")
+    names += [*_core.basis_names(), "batch"]
+    if contest.model is not None:
+        names.append("model")
+    if contest.settings.basis == "custom":
+        names.append("custom")
+    return (*names, "auto")
+
+
+def method_info(name: str) -> MethodInfo:
+    """Return how the method is made.
+
+    Raises:
+        SettingsError: there is no such method.
+    """
+    special = {
+        "none": MethodInfo(lambda _, c: plain_forecaster(c.settings), True, "the plain model: no slip, no lag"),
+        "vendor": MethodInfo(_vendor, True, "a vendor's wheel-separation multiplier"),
+        "batch": MethodInfo(_batch, False, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"),
+        "model": MethodInfo(_model, True, "the model file as it is"),
+        "auto": MethodInfo(_learned, True, "average of several bases by how well they predict"),
+        "custom": MethodInfo(_learned, True, "the terms of the settings file"),
+    }
+    if name in special:
+        return special[name]
+    if name in _core.basis_names():
+        return MethodInfo(_learned, True, f"the basis {name}, learned causally")
+    known = ", ".join([*special, *_core.basis_names()])
+    raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
+
+
+def _learned(name: str, contest: Contest) -> Forecaster:
+    learner = make_learner(contest.settings.model_copy(update={"basis": name}), contest.input_name)
+    moments: set[int] = set()
+    for targets in contest.targets:
+        for counts in learned_counts(contest.windows, targets):
+            moments.update(counts.tolist())
+    average = learner.fresh()
+    beliefs = learn_causally(average, contest.windows, moments)
+    shape = contest.settings.filter_settings().noise.shape
+    return Forecaster(name, average.model, shape, beliefs.__getitem__, learner.dynamics)
+
+
+def _vendor(name: str, contest: Contest) -> Forecaster:
+    if contest.vendor_track_multiplier is None:
+        raise SettingsError(
+            f"the method {name} needs a multiplier", where="--methods", advice="give --vendor-track-multiplier, such as 1.875"
+        )
+    return vendor_forecaster(contest.vendor_track_multiplier, contest.settings)
+
+
+def _model(name: str, contest: Contest) -> Forecaster:
+    if contest.model is None:
+        raise SettingsError(f"the method {name} needs a model file", where="--methods", advice="give --model FILE")
+    return model_forecaster(contest.model)
+
+
+def _batch(name: str, contest: Contest) -> Forecaster:
+    learner = make_learner(contest.settings.model_copy(update={"basis": BATCH_BASIS}), contest.input_name)
+    average = learner.fresh()
+    last = learn_causally(average, contest.windows, [len(contest.windows)])[len(contest.windows)]
+    shape = contest.settings.filter_settings().noise.shape
+    belief = fit_batch(
+        average.model, contest.windows, learner.settings, (shape, np.array(last.noise_scale)), average.reference_speeds
+    )
+    return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics)

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Predicting where the robot will go, and how sure that is, from a model and the inputs it will be given."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.logs.log import Inputs
+from slipwise.models.model import Model
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Poses in the robot's frame at the start, [N] each."""
+
+    t: Floats  # s, in the time of the inputs
+    poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
+    covariance: Floats  # [N, 3, 3] parameters, slip noise and the noise of two measured poses
+
+
+def predict(
+    model: Model,
+    commands: Inputs | ArrayLike,
+    *,
+    horizon: float,
+    start: float | None = None,
+    initial: tuple[float, float] | None = None,
+    period: float = 0.1,
+) -> Path:
+    """Predict the robot's path under `commands`.
+
+    Args:
+        model: a learned model.
+        commands: held inputs of the kind that the model was learned from: `Inputs`, or rows of (t [s], v [m/s],
+            omega [rad/s]), [N, 3]. Those before `start` matter too where the model has lag or delay.
+        horizon: how far to predict [s].
+        start: when the prediction starts [s]; by default at the first command.
+        initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the commands.
+        period: time between the poses returned [s].
+
+    Raises:
+        SettingsError: horizon or period is not positive, or the commands are not such rows.
+    """
+    inputs = commands if isinstance(commands, Inputs) else _inputs(np.asarray(commands, dtype=np.float64))
+    if not (np.isfinite(horizon) and horizon > 0.0 and np.isfinite(period) and period > 0.0):
+        raise SettingsError("horizon and period must be positive seconds", advice="such as horizon=5.0")
+    begin = float(inputs.t[0]) if start is None else start
+    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    twist = None if initial is None else _core.BodyTwist(initial[0], 0.0, initial[1])
+    ahead = np.append(np.arange(period, horizon - 1e-9, period), horizon)
+    poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
+    for seconds in ahead.tolist():
+        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
+        at = _core.linearize_segment(model.motion, model.mean, track, segment)
+        poses.append(at.predicted.vector())
+        covariance.append(prediction_covariance(model, at, seconds))
+    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance))
+
+
+def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:
+    """Covariance of one predicted pose, grown as the held-out predictions of this horizon [s] were found to need."""
+    scale = np.array(model.content.noise.scale)
+    covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
+    return np.asarray(covariance * growth_at(model, horizon), dtype=np.float64)
+
+
+def growth_at(model: Model, horizon: float) -> float:
+    """Factor of the covariance at a horizon [s], interpolated between those judged; 1 where none was judged."""
+    growth = model.content.noise.growth
+    if not growth:
+        return 1.0
+    seconds = sorted(growth)
+    return float(np.exp(np.interp(horizon, seconds, [np.log(growth[s]) for s in seconds])))
+
+
+def _inputs(rows: Floats) -> Inputs:
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
+        raise SettingsError(
+            f"commands have shape {rows.shape} where rows of (t, v, omega) are needed, all finite",
+            advice="stack them with numpy.column_stack((t, v, omega))",
+        )
+    t, v, omega = (np.ascontiguousarray(column) for column in rows.T)
+    return Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega)

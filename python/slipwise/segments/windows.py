@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cutting runs into disjoint windows between two measured poses, with what is left out counted."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.logs.log import Inputs, LeftOut, Poses, Run
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+STANDARD_GRAVITY = 9.80665  # m/s^2
+
+
+@dataclass(frozen=True)
+class WindowRules:
+    """When two poses and the inputs between them make a window."""
+
+    unknown_after: float = 0.5  # s; an input is unknown once it is older than this
+    late_factor: float = 2.5  # a pose after a gap of more than this many usual intervals is late: never an end
+    length_tolerance: float = 0.05  # a window may be this fraction longer or shorter than asked for
+    still_speed: float = 0.02  # m/s and rad/s; a window whose inputs never exceed this teaches nothing
+
+
+_REASONS = {
+    "unknown-input": "the input is unknown (older than allowed) somewhere in the window",
+    "standing-still": "the robot was told to stand still for the whole window",
+    "late-pose": "the pose comes after a gap and is late by an unknown time",
+    "heading-ambiguous": "between two poses the robot may have turned by more than half a turn",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Windows:
+    """Disjoint windows of one run, [N] each."""
+
+    start: Floats  # s, stamp of the first pose
+    end: Floats  # s, stamp of the second pose
+    measured: Floats  # [N, 3] T_start_end: x, y [m], yaw [rad], heading unwrapped
+    gravity: Floats  # [N, 2] body-frame gravity (gx, gy) at the start [m/s^2]
+    left_out: tuple[LeftOut, ...]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def segments(self, wheels: Inputs | None, unknown_after: float) -> list[_core.Segment]:
+        """Return the core's segments; with `wheels`, the drive's twist at each start is the one measured there."""
+        initial = _initial_twists(self.start, wheels, unknown_after)
+        return [
+            _core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy)
+            for start, end, (x, y, yaw), twist, (gx, gy) in zip(
+                self.start.tolist(), self.end.tolist(), self.measured.tolist(), initial, self.gravity.tolist(), strict=True
+            )
+        ]
+
+
+def cut_windows(run: Run, inputs: Inputs, length: float, rules: WindowRules) -> Windows:
+    """Cut one run into disjoint windows of `length` [s], each as soon after the last as the poses allow."""
+    cutter = _Cutter(run, inputs, length, rules)
+    for first, last in _frame_spans(run.poses.frame):
+        cutter.cut(first, last)
+    return cutter.windows()
+
+
+class _Cutter:
+    """Walks over the poses of one run and keeps pairs of pose indices."""
+
+    def __init__(self, run: Run, inputs: Inputs, length: float, rules: WindowRules) -> None:
+        self._run, self._inputs, self._length, self._rules = run, inputs, length, rules
+        self._pairs: list[tuple[int, int]] = []
+        self._counts: Counter[str] = Counter()
+        self._first: dict[str, float] = {}
+        poses = run.poses
+        self._yaw = np.array(poses.yaw)
+        self._interval = _usual_interval(poses)
+        gaps = np.diff(inputs.t) > rules.unknown_after
+        self._gap_from = np.append(inputs.t[:-1][gaps], inputs.t[-1:]) + rules.unknown_after
+        self._gap_to = np.append(inputs.t[1:][gaps], np.inf)
+        self._speed = np.maximum(np.hypot(inputs.v, inputs.vy), np.abs(inputs.omega))
+
+    def cut(self, first: int, last: int) -> None:
+        """Cut the poses first..last-1, which lie in one frame."""
+        poses, rules = self._run.poses, self._rules
+        self._yaw[first:last] = np.unwrap(poses.yaw[first:last])
+        late = np.zeros(last - first, dtype=bool)
+        late[1:] = np.diff(poses.t[first:last]) > rules.late_factor * self._interval
+        for at in np.flatnonzero(late):
+            self._leave_out("late-pose", float(poses.t[first + at]))
+        usable = first + np.flatnonzero(~late)
+        times = poses.t[usable]
+        tolerance = max(0.5 * self._interval, rules.length_tolerance * self._length)
+        at = 0
+        while at < len(usable) - 1:
+            end = self._nearest(times, float(times[at]) + self._length, tolerance)
+            if end <= at:
+                at += 1
+                continue
+            problem = self._problem(int(usable[at]), int(usable[end]))
+            if problem is None:
+                self._pairs.append((int(usable[at]), int(usable[end])))
+            else:
+                self._leave_out(problem, float(times[at]))
+            at = end if problem is None or problem == "standing-still" else at + 1
+
+    @staticmethod
+    def _nearest(times: Floats, wanted: float, tolerance: float) -> int:
+        """Return the index of the time nearest to `wanted`, -1 where none is within the tolerance."""
+        right = int(np.searchsorted(times, wanted))
+        candidates = [i for i in (right - 1, right) if 0 <= i < len(times)]
+        best = min(candidates, key=lambda i: abs(float(times[i]) - wanted))
+        return best if abs(float(times[best]) - wanted) <= tolerance + 1e-9 else -1
+
+    def _problem(self, i: int, j: int) -> str | None:
+        """Return why poses i and j make no window, None where they do."""
+        t, inputs = self._run.poses.t, self._inputs
+        start, end = float(t[i]), float(t[j])
+        gap = int(np.searchsorted(self._gap_to, start, side="right"))
+        if start < inputs.t[0] or self._gap_from[gap] < end:
+            return "unknown-input"
+        held = slice(max(0, int(np.searchsorted(inputs.t, start, side="right")) - 1), int(np.searchsorted(inputs.t, end)))
+        if float(self._speed[held].max()) <= self._rules.still_speed:
+            return "standing-still"
+        fastest_turn = float(np.abs(inputs.omega[held]).max())
+        if fastest_turn * float(np.diff(t[i : j + 1]).max()) > np.pi:
+            return "heading-ambiguous"
+        return None
+
+    def _leave_out(self, kind: str, t: float) -> None:
+        self._counts[kind] += 1
+        self._first.setdefault(kind, t)
+
+    def windows(self) -> Windows:
+        poses = self._run.poses
+        pairs = np.array(self._pairs, dtype=np.int64).reshape(-1, 2)
+        i, j = pairs[:, 0], pairs[:, 1]
+        left_out = tuple(
+            LeftOut(_REASONS[kind], count, f"run {self._run.name}, t = {self._first[kind]:.3f} s", kind)
+            for kind, count in sorted(self._counts.items())
+        )
+        return Windows(poses.t[i], poses.t[j], self._measured(i, j), _gravity(poses, i), left_out)
+
+    def _measured(self, i: Ints, j: Ints) -> Floats:
+        """T_i_j from the measured poses, the yaw difference along the unwrapped yaw."""
+        poses = self._run.poses
+        dx, dy = poses.x[j] - poses.x[i], poses.y[j] - poses.y[i]
+        c, s = np.cos(self._yaw[i]), np.sin(self._yaw[i])
+        return np.column_stack((c * dx + s * dy, c * dy - s * dx, self._yaw[j] - self._yaw[i]))
+
+
+def _frame_spans(frame: Ints) -> list[tuple[int, int]]:
+    edges = np.flatnonzero(np.diff(frame)) + 1
+    bounds = [0, *edges.tolist(), len(frame)]
+    return [(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True) if b - a > 1]
+
+
+def _usual_interval(poses: Poses) -> float:
+    """Median time between poses of one frame [s]; 0 where there are no two."""
+    intervals = np.diff(poses.t)[np.diff(poses.frame) == 0]
+    return float(np.median(intervals)) if len(intervals) else 0.0
+
+
+def _gravity(poses: Poses, i: Ints) -> Floats:
+    """Gravity along the body's x and y axes [m/s^2] from roll and pitch (REP-103: nose down is positive pitch)."""
+    if poses.roll is None or poses.pitch is None:
+        return np.zeros((len(i), 2))
+    roll, pitch = np.nan_to_num(poses.roll[i]), np.nan_to_num(poses.pitch[i])
+    return STANDARD_GRAVITY * np.column_stack((np.sin(pitch), -np.cos(pitch) * np.sin(roll)))
+
+
+def _initial_twists(start: Floats, wheels: Inputs | None, unknown_after: float) -> list[_core.BodyTwist | None]:
+    if wheels is None:
+        return [None] * len(start)
+    index = np.searchsorted(wheels.t, start, side="right") - 1
+    fresh = (index >= 0) & (start - wheels.t[np.maximum(index, 0)] <= unknown_after)
+    return [
+        _core.BodyTwist(float(wheels.v[k]), float(wheels.vy[k]), float(wheels.omega[k])) if ok else None
+        for k, ok in zip(index.tolist(), fresh.tolist(), strict=True)
+    ]
