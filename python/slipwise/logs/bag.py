@@ -36,8 +36,8 @@ from slipwise.logs.messages import (
     Samples,
 )
 from slipwise.logs.options import LogOptions
+from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, to_inputs, to_poses
-from slipwise.logs.tidy import run_name
 from slipwise.logs.topics import Roles, Topic, choose_topics
 from slipwise.logs.transforms import TransformCollector, chain_poses, choose_frames
 

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
+from slipwise.logs.run_name import run_name
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -65,9 +68,21 @@ def _reader(path: Path) -> Callable[[Path, LogOptions], Log]:
 def _joined(logs: list[Log]) -> Log:
     if len(logs) == 1:
         return logs[0]
+    names = Counter(name for log in logs for name in {run.name for run in log.runs})
     return Log(
-        runs=tuple(run for log in logs for run in log.runs),
+        runs=tuple(
+            replace(run, name=f"{label}/{run.name}") if names[run.name] > 1 else run
+            for label, log in zip(_labels(logs), logs, strict=True)
+            for run in log.runs
+        ),
         sources=tuple(source for log in logs for source in log.sources),
         left_out=tuple(entry for log in logs for entry in log.left_out),
         notes=tuple(note for log in logs for note in log.notes),
     )
+
+
+def _labels(logs: list[Log]) -> list[str]:
+    """Return a name for each file; the file's own, numbered where it occurs twice."""
+    stems = [run_name(Path(log.sources[0].path)) for log in logs]
+    counted = Counter(stems)
+    return [stem if counted[stem] == 1 else f"{number}-{stem}" for number, stem in enumerate(stems, start=1)]

@@ -34,7 +34,7 @@ class Agreement:
     course: float  # mean cos 2(course - heading), 1 where the robot moves along its heading
     course_degrees: float  # the same if yaw is in degrees
     course_mirrored: float  # mean cos 2(course + heading), 1 for yaw clockwise, -1 for x and y swapped
-    largest_yaw: float
+    largest_yaw: float  # as measured, or by how much it changes in a window
 
 
 def agreement(windows: MotionWindows) -> Agreement:
@@ -62,7 +62,7 @@ def agreement(windows: MotionWindows) -> Agreement:
         course=_alignment((w.course - heading)[moving]),
         course_degrees=_alignment((w.course - heading_degrees)[moving]),
         course_mirrored=_alignment((w.course + mirrored)[moving]),
-        largest_yaw=float(np.max(np.abs(w.start_yaw), initial=0.0)),
+        largest_yaw=float(np.max(np.abs([w.start_yaw, w.turn_degrees]), initial=0.0)),
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise.logs.held import HeldSum
-from slipwise.logs.log import Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.log import Bools, Inputs, Ints, Poses
 from slipwise.logs.motion_windows import wrapped
 from slipwise.logs.streams import order_codes
 
@@ -18,9 +18,9 @@ _SLIP = 1.1  # a robot may move this much further than its inputs say
 _UNKNOWN = 1.5  # and where there are no inputs, this much faster than it ever was told to go
 _DISTANCE = 0.5  # [m] on top of that, before it is called a jump
 _ANGLE = 0.8  # [rad]
-_NOISE = 6.0  # standard deviations of the poses' own noise
+_NOISE = 8.0  # standard deviations of the poses' own noise
 _LONGEST_OUTLIER = 3  # poses
-_BEND_OF_NOISE = 2.884  # median length of a second difference per sigma: 1.1774 (Rayleigh) sqrt(1 + 4 + 1)
+_BEND_OF_NOISE = 1.652  # median of |second difference| for a standard deviation of 1: 0.6745 sqrt(1 + 4 + 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +97,7 @@ class _Reach:
 
 
 def _noise(poses: Poses) -> float:
-    """Return the standard deviation of a position [m], from second differences: 0 for a smooth track."""
+    """Return the standard deviation of a coordinate [m], from second differences: 0 for a smooth track."""
     if len(poses) < 5:
         return 0.0
-    bend: Floats = np.hypot(np.diff(poses.x, n=2), np.diff(poses.y, n=2))
-    return float(np.median(bend)) / _BEND_OF_NOISE
+    return max(float(np.median(np.abs(np.diff(axis, n=2)))) for axis in (poses.x, poses.y)) / _BEND_OF_NOISE

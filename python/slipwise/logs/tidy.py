@@ -15,6 +15,7 @@ from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Log, Run, Source
 from slipwise.logs.options import LogOptions
+from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, order_codes, to_inputs, to_poses
 from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
@@ -129,14 +130,6 @@ def _split_by_run(table: Table) -> Iterator[tuple[str, slice | Ints]]:
     edges = np.searchsorted(codes[order], np.arange(len(labels) + 1))
     for label, start, stop in zip(labels, edges[:-1], edges[1:], strict=True):
         yield label, order[start:stop].astype(np.int64)
-
-
-def run_name(path: Path) -> str:
-    """Return the name of a run that has none: the file's, without its endings."""
-    name = path.name
-    for ending in (".gz", ".csv", ".parquet", ".mcap", ".db3", ".bag"):
-        name = name.removesuffix(ending)
-    return name or "run"
 
 
 def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally) -> Run:

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What all tests share: the folder of real logs, and a count of the tests that went without it."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+_NO_DATA = "SLIPWISE_DATA is not set: no real logs"
+
+
+@pytest.fixture(scope="session")
+def real_log_dir() -> Path:
+    """Return the folder of real logs; skip without it, or fail where SLIPWISE_REQUIRE_DATA=1 asks for it."""
+    folder = os.environ.get("SLIPWISE_DATA", "")
+    if folder and Path(folder).is_dir():
+        return Path(folder)
+    reason = f"SLIPWISE_DATA names no folder: {folder}" if folder else _NO_DATA
+    if os.environ.get("SLIPWISE_REQUIRE_DATA") == "1":
+        pytest.fail(f"{reason}, and SLIPWISE_REQUIRE_DATA=1 asks for them", pytrace=False)
+    pytest.skip(reason)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say how many tests of real logs were skipped."""
+    skipped = terminalreporter.stats.get("skipped", [])
+    count = sum("SLIPWISE_DATA" in str(report.longrepr) for report in skipped)
+    if count:
+        terminalreporter.write_line(f"{count} tests of real logs skipped: {_NO_DATA}", yellow=True)
