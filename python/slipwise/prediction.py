@@ -15,6 +15,8 @@ from slipwise.models.model import Model
 
 Floats = NDArray[np.float64]
 
+PERIOD = 0.1  # s, between the poses of a predicted path
+
 
 @dataclass(frozen=True, eq=False)
 class Path:
@@ -32,29 +34,28 @@ def predict(
     horizon: float,
     start: float | None = None,
     initial: tuple[float, float] | None = None,
-    period: float = 0.1,
 ) -> Path:
     """Predict the robot's path under `commands`.
 
     Args:
         model: a learned model.
-        commands: held inputs of the kind that the model was learned from: `Inputs`, or rows of (t [s], v [m/s],
-            omega [rad/s]), [N, 3]. Those before `start` matter too where the model has lag or delay.
-        horizon: how far to predict [s].
+        commands: held inputs of the kind that the model was learned from: `Inputs`, or rows of
+            (t [s], v [m/s], omega [rad/s]), [N, 3]. Those before `start` matter where there is lag or delay.
+        horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s]; by default at the first command.
-        initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the commands.
-        period: time between the poses returned [s].
+        initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the
+            commands.
 
     Raises:
-        SettingsError: horizon or period is not positive, or the commands are not such rows.
+        SettingsError: the horizon is not positive, or the commands are not such rows.
     """
     inputs = commands if isinstance(commands, Inputs) else _inputs(np.asarray(commands, dtype=np.float64))
-    if not (np.isfinite(horizon) and horizon > 0.0 and np.isfinite(period) and period > 0.0):
-        raise SettingsError("horizon and period must be positive seconds", advice="such as horizon=5.0")
+    if not (np.isfinite(horizon) and horizon > 0.0):
+        raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")
     begin = float(inputs.t[0]) if start is None else start
     track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
     twist = None if initial is None else _core.BodyTwist(initial[0], 0.0, initial[1])
-    ahead = np.append(np.arange(period, horizon - 1e-9, period), horizon)
+    ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
@@ -65,14 +66,14 @@ def predict(
 
 
 def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:
-    """Covariance of one predicted pose, grown as the held-out predictions of this horizon [s] were found to need."""
+    """Covariance of one predicted pose, grown as held-out predictions of this horizon [s] needed."""
     scale = np.array(model.content.noise.scale)
     covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
     return np.asarray(covariance * growth_at(model, horizon), dtype=np.float64)
 
 
 def growth_at(model: Model, horizon: float) -> float:
-    """Factor of the covariance at a horizon [s], interpolated between those judged; 1 where none was judged."""
+    """Factor of the covariance at a horizon [s], interpolated between those judged; 1 without any."""
     growth = model.content.noise.growth
     if not growth:
         return 1.0

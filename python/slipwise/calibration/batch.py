@@ -46,5 +46,10 @@ def fit_batch(
     prior_std = np.sqrt(np.diag(prior.covariance))
     ratio = np.diag(fit.estimate.covariance) / prior_std**2 if len(prior_std) else np.zeros(0)
     return Belief(
-        np.array(fit.estimate.mean), np.array(fit.estimate.covariance), np.array(scale), prior_std, ratio, np.ones(1)
+        np.array(fit.estimate.mean),
+        np.array(fit.estimate.covariance),
+        np.array(scale),
+        prior_std,
+        ratio,
+        np.ones(1),
     )

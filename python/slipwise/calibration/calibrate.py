@@ -10,9 +10,23 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.batch import fit_batch
-from slipwise.calibration.drive import DriveRun, WindowSet, choose_input, collect_windows, fitting_length, prepare_drive
+from slipwise.calibration.drive import (
+    DriveRun,
+    WindowSet,
+    choose_input,
+    collect_windows,
+    fitting_length,
+    prepare_drive,
+)
 from slipwise.calibration.forecast import Forecaster, final_growth, forecast
-from slipwise.calibration.learner import Belief, Learner, Progress, belief_of, learn_with_history, make_learner
+from slipwise.calibration.learner import (
+    Belief,
+    Learner,
+    Progress,
+    belief_of,
+    learn_with_history,
+    make_learner,
+)
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Calibration, History, Verdict
@@ -70,13 +84,19 @@ def calibrate(
     history, beliefs = learn_with_history(average, windows, names, progress)
     beliefs = [before, *beliefs]
     forecaster = Forecaster(
-        "learned", average.model, settings.filter_settings().noise.shape, beliefs.__getitem__, learner.dynamics
+        "learned",
+        average.model,
+        settings.filter_settings().noise.shape,
+        beliefs.__getitem__,
+        learner.dynamics,
     )
     learned = _judged(forecaster, windows, settings, beliefs[-1])
     if batch:
         learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
     model = Model(_content(learned, (log, input_name, settings), windows, history))
-    return Calibration(model, learned.verdict, None if batch else history, log.left_out + windows.left_out, log.notes)
+    return Calibration(
+        model, learned.verdict, None if batch else history, log.left_out + windows.left_out, log.notes
+    )
 
 
 def learning_windows(drive: tuple[DriveRun, ...], input_name: str, settings: Settings) -> WindowSet:
@@ -94,7 +114,8 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     raise LogError(
         "the robot never moves in this log" if still else "the log has no window to learn from",
         where=", ".join(source.path for source in log.sources[:3]),
-        advice=reasons or f"poses and inputs must overlap for at least {windows.length:g} s; see `slipwise inspect`",
+        advice=reasons
+        or f"poses and inputs must overlap for at least {windows.length:g} s; see `slipwise inspect`",
     )
 
 
@@ -117,7 +138,9 @@ def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings, beli
     return _Learned(forecaster.model, belief, growth, judgement, give_verdict(judgement, names, belief))
 
 
-def fit_batch_over(learned: _Learned, learner: Learner, windows: WindowSet, speeds: tuple[float, float]) -> _Learned:
+def fit_batch_over(
+    learned: _Learned, learner: Learner, windows: WindowSet, speeds: tuple[float, float]
+) -> _Learned:
     """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
     noise = learner.settings.filter_settings().noise.shape
     belief = fit_batch(learned.motion, windows, learner.settings, (noise, learned.belief.noise_scale), speeds)

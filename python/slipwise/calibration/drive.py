@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log made ready for learning: the chosen inputs of each run, and its windows in the order they are learned."""
+"""A log made ready for learning: the inputs of each run, and its windows in the order they are learned."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ class WindowSet:
 
     def track(self, i: int) -> _core.InputTrack:
         """Return the inputs of window i."""
-        return self.drive[self.position[i]].track
+        run: DriveRun = self.drive[int(self.position[i])]
+        return run.track
 
     def count_until(self, position: Ints, time: Floats) -> Ints:
-        """Return how many windows had ended by `time` of run `position`; earlier runs count whole. [M] each."""
+        """Return how many windows had ended by `time` of run `position`, earlier runs whole. [M] each."""
         counts = np.empty(len(time), dtype=np.int64)
         for run in np.unique(position):
             here = np.flatnonzero(self.position == run)
@@ -85,7 +86,9 @@ def choose_input(log: Log) -> str:
 def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRules) -> WindowSet:
     """Cut all runs into windows of `length` [s]."""
     cuts = [cut_windows(run.run, run.inputs, length, rules) for run in drive]
-    segments = [s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules.unknown_after)]
+    segments = [
+        s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules.unknown_after)
+    ]
     return WindowSet(
         length=length,
         drive=drive,
@@ -99,7 +102,7 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
 
 
 def fitting_length(drive: tuple[DriveRun, ...], wanted: float, rules: WindowRules) -> float:
-    """Return `wanted` [s], or the longest window that fits into half of the frames where they are shorter than that."""
+    """Return `wanted` [s], or the longest window that fits into half of the frames where those are shorter."""
     durations = [span for run in drive for span in _frame_durations(run.run)]
     longest = float(np.median(durations)) / (1.0 + rules.length_tolerance) if durations else wanted
     return min(wanted, longest) if longest > 0.0 else wanted

@@ -18,7 +18,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 GROWTH_PRIOR_WINDOWS = 5.0  # the noise shape's own growth counts as much as this many held-out windows
-LARGEST_NIS = 30.0  # a held-out window counts at most this much: one pose jump must not blow up the covariance
+LARGEST_NIS = (
+    30.0  # a held-out window counts at most this much: one pose jump must not blow up the covariance
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +35,7 @@ class Forecaster:
 
 
 def learned_counts(learned: WindowSet, targets: WindowSet) -> tuple[Ints, Ints]:
-    """Return for each target how many windows count as learned: with the embargo of one horizon, and in-sample."""
+    """Return how many windows count as learned for each target: after the embargo, and in-sample."""
     embargoed = learned.count_until(targets.position, targets.start - targets.length)
     in_sample = learned.count_until(targets.position, targets.end)
     return embargoed, in_sample
@@ -48,13 +50,15 @@ def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> 
         belief = forecaster.belief(int(counts[i]))
         at = _core.linearize_segment(forecaster.model, belief.mean, targets.track(i), segment)
         pose[i] = at.predicted.vector()
-        covariance[i] = _core.prediction_covariance(at, belief.covariance, forecaster.noise, belief.noise_scale)
+        covariance[i] = _core.prediction_covariance(
+            at, belief.covariance, forecaster.noise, belief.noise_scale
+        )
         later = forecaster.belief(int(in_sample_counts[i]))
         in_sample[i] = _core.integrate_segment(
             forecaster.model, later.mean, targets.track(i), segment, _core.Integrator.Exact
         ).poses[-1]
     known = targets.count_until(targets.position, targets.start - targets.length)
-    growth = _causal_growth(targets, known, normalised_squared(residual(targets.measured, pose), covariance))
+    growth = _causal_growth(known, normalised_squared(residual(targets.measured, pose), covariance))
     left = residual(targets.measured, in_sample)
     return Predictions(
         method=forecaster.method,
@@ -71,7 +75,7 @@ def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> 
     )
 
 
-def _causal_growth(targets: WindowSet, known: Ints, nis: Floats) -> Floats:
+def _causal_growth(known: Ints, nis: Floats) -> Floats:
     """Factor of each target's covariance from the `known` held-out windows before it, [N]."""
     sums = np.concatenate(([0.0], np.cumsum(np.minimum(nis, LARGEST_NIS) / 3.0)))
     return np.asarray((sums[known] + GROWTH_PRIOR_WINDOWS) / (known + GROWTH_PRIOR_WINDOWS), dtype=np.float64)
@@ -84,7 +88,10 @@ def final_growth(predictions: Predictions) -> float:
 
 
 def _learned_until(
-    forecaster: Forecaster, learned: tuple[WindowSet, Ints], scored: tuple[WindowSet, Ints], targets: WindowSet
+    forecaster: Forecaster,
+    learned: tuple[WindowSet, Ints],
+    scored: tuple[WindowSet, Ints],
+    targets: WindowSet,
 ) -> Floats:
     """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
     begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The causal pass over a log: learn window after window, and keep the belief at the moments that are asked for."""
+"""The causal pass over a log: learn window after window, and keep the belief at the moments asked for."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Learner:
 
 
 def make_learner(settings: Settings, input_name: str) -> Learner:
-    """Return the learner that the settings ask for; commands bring lag and delay, wheel speeds a clock offset."""
+    """Return the learner that the settings ask for: commands bring lag and delay, wheels a clock offset."""
     dynamics = input_name == "command"
     return Learner(settings, tuple(settings.bases()), dynamics, settings.learn_clock_offset and not dynamics)
 
@@ -71,7 +71,10 @@ def belief_of(average: _core.ModelAverage) -> Belief:
 
 
 def learn_causally(
-    average: _core.ModelAverage, windows: WindowSet, moments: Collection[int], progress: Progress | None = None
+    average: _core.ModelAverage,
+    windows: WindowSet,
+    moments: Collection[int],
+    progress: Progress | None = None,
 ) -> dict[int, Belief]:
     """Learn all windows in order; return the belief after each number of windows in `moments`."""
     wanted = set(moments)

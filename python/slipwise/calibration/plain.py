@@ -26,7 +26,9 @@ def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
         SettingsError: the multiplier is not positive.
     """
     if not (np.isfinite(multiplier) and multiplier > 0.0):
-        raise SettingsError("the vendor's track multiplier must be positive", advice="Clearpath ships 1.875 for the Husky")
+        raise SettingsError(
+            "the vendor's track multiplier must be positive", advice="Clearpath ships 1.875 for the Husky"
+        )
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
 
@@ -39,7 +41,7 @@ def model_forecaster(model: Model) -> Forecaster:
     return Forecaster("model", model.motion, model.noise, lambda _: belief, model.content.dynamics)
 
 
-def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:  # type: ignore[type-arg]
+def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:
     size = len(mean)
     belief = Belief(mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1))
     return Forecaster(method, model, settings.filter_settings().noise.shape, lambda _: belief, False)

@@ -14,7 +14,7 @@ Ints = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Predictions:
-    """The predictions of one method at one horizon, [N] each; poses are T_start_end, in the robot's frame at the start."""
+    """The predictions of one method at one horizon, [N] each; poses are T_start_end."""
 
     method: str
     horizon: float  # s, as asked for
@@ -26,7 +26,7 @@ class Predictions:
     growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
-    in_sample: Floats  # [N, 2] position [m] and heading [rad] error after learning the same window (thesis, Table 6.2)
+    in_sample: Floats  # [N, 2] position [m], heading [rad] error after learning the window (Table 6.2)
 
     def __len__(self) -> int:
         return len(self.t_start)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Settings of learning, read from TOML or given as keywords; defaults that the core has stand in the core alone."""
+"""Settings of learning, from TOML or keywords; defaults that the core has stand in the core alone."""
 
 from __future__ import annotations
 
@@ -149,9 +149,13 @@ def load_settings(path: Path) -> Settings:
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as problem:
-        raise SettingsError(f"cannot read: {problem.strerror}", where=str(path), advice="check the path") from problem
+        raise SettingsError(
+            f"cannot read: {problem.strerror}", where=str(path), advice="check the path"
+        ) from problem
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
-        raise SettingsError(f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"') from problem
+        raise SettingsError(
+            f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"'
+        ) from problem
     return make_settings(content, where=str(path))
 
 
@@ -166,7 +170,9 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
     except ValidationError as problem:
         first = problem.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`") from problem
+        raise SettingsError(
+            f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
+        ) from problem
 
 
 def _copy(table: _Section, target: object) -> None:

@@ -59,7 +59,7 @@ def summarise(errors: Floats) -> ErrorSummary:
 
 
 def ratio_of_means(errors: Floats, reference: Floats) -> tuple[float, float, float]:
-    """Ratio of two mean errors over the same windows with its 95 % interval; NaN where the reference is never wrong."""
+    """Ratio of two mean errors with its 95 % interval; NaN where the reference is never wrong."""
     if reference.sum() == 0.0:
         return (float("nan"), float("nan"), float("nan"))
     samples = resampled_indices(len(errors))
@@ -74,7 +74,9 @@ def nis_band(count: int) -> tuple[float, float]:
     """Where the mean NIS of `count` independent windows lies with 95 % (chi-square, Wilson-Hilferty)."""
     degrees = 3.0 * count
     spread = 2.0 / (9.0 * degrees)
-    low, high = ((1.0 - spread + z * np.sqrt(spread)) ** 3 * 3.0 for z in (-1.959963984540054, 1.959963984540054))
+    low, high = (
+        (1.0 - spread + z * np.sqrt(spread)) ** 3 * 3.0 for z in (-1.959963984540054, 1.959963984540054)
+    )
     return (float(low), float(high))
 
 

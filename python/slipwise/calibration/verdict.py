@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict on a learned model: does it beat doing nothing, what is not determined, and which drive would determine it."""
+"""The verdict: does the model beat doing nothing, what is not determined, and which drive would help."""
 
 from __future__ import annotations
 
@@ -68,12 +68,22 @@ def give_verdict(judgement: Judgement, names: tuple[str, ...], belief: Belief) -
         return Verdict(False, sentence, undetermined, ("Record a longer drive.", *advice))
     figures = (
         f"{held_out.position:.3g} m and {held_out.heading:.3g} rad after {held_out.horizon:g} s, "
-        f"where the plain model misses by {held_out.plain_position:.3g} m and {held_out.plain_heading:.3g} rad "
+        f"where the plain model misses by {held_out.plain_position:.3g} m "
+        f"and {held_out.plain_heading:.3g} rad "
         f"({held_out.windows} held-out windows)"
     )
     if not judgement.beats_plain:
-        return Verdict(False, f"Do not use this model: it does not beat the plain model. It misses by {figures}.", undetermined, advice)
-    tail = f" {len(undetermined)} of {len(names)} parameters are not determined by this log." if undetermined else ""
+        return Verdict(
+            False,
+            f"Do not use this model: it does not beat the plain model. It misses by {figures}.",
+            undetermined,
+            advice,
+        )
+    tail = (
+        f" {len(undetermined)} of {len(names)} parameters are not determined by this log."
+        if undetermined
+        else ""
+    )
     return Verdict(True, f"The learned model misses by {figures}.{tail}", undetermined, advice)
 
 
@@ -96,16 +106,28 @@ def _turns(name: str) -> bool:
 
 
 _DRIVES = (
-    (lambda n: "lag" in n or "delay" in n, "Change speed and yaw rate in steps, from rest and back, several times"),
-    (lambda n: n == "clock_offset", "Accelerate, brake and swing in and out of turns; steady driving cannot show a clock offset"),
-    (lambda n: "gx" in _terms(n) or "gy" in _terms(n), "Drive up, down and across a slope, with roll and pitch in the log"),
+    (
+        lambda n: "lag" in n or "delay" in n,
+        "Change speed and yaw rate in steps, from rest and back, several times",
+    ),
+    (
+        lambda n: n == "clock_offset",
+        "Accelerate, brake and swing in and out of turns; steady driving cannot show a clock offset",
+    ),
+    (
+        lambda n: "gx" in _terms(n) or "gy" in _terms(n),
+        "Drive up, down and across a slope, with roll and pitch in the log",
+    ),
     (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
     (lambda n: _turns(n) and "V" not in _terms(n), "Turn both ways at several yaw rates, in place too"),
-    (lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n), "Drive straight at several speeds, forwards and backwards"),
+    (
+        lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n),
+        "Drive straight at several speeds, forwards and backwards",
+    ),
 )
 
 
-def _mean(values: np.ndarray) -> float:  # type: ignore[type-arg]
+def _mean(values: np.ndarray) -> float:
     return float(values.mean()) if len(values) else 0.0
 
 

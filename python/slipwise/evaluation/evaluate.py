@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Honest comparison of methods on one log: prequential predictions with an embargo, scored on the second half."""
+"""Honest comparison of methods on a log: prequential predictions with an embargo, second half scored."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def evaluate(
     options: EvaluationOptions | None = None,
     progress: Report | None = None,
 ) -> Evaluation:
-    """Predict every window of the log with every method from what was known before it, and score the second half.
+    """Predict every window with every method from what was known before it, and score the second half.
 
     Raises:
         LogError: the log has no such input, no poses, or no window of any horizon.
@@ -82,7 +82,9 @@ def _input_name(log: Log, input_name: str | None, model: Model | None) -> str:
     return input_name or (model.content.input if model is not None else choose_input(log))
 
 
-def _contest(log: Log, input_name: str, settings: Settings, options: EvaluationOptions) -> tuple[Contest, tuple[str, ...]]:
+def _contest(
+    log: Log, input_name: str, settings: Settings, options: EvaluationOptions
+) -> tuple[Contest, tuple[str, ...]]:
     if not options.horizons or any(not (np.isfinite(h) and h > 0.0) for h in options.horizons):
         raise SettingsError("horizons must be positive seconds", where="--horizons", advice="such as 1,2,5")
     drive = prepare_drive(log, input_name)
@@ -91,7 +93,9 @@ def _contest(log: Log, input_name: str, settings: Settings, options: EvaluationO
     sets = [collect_windows(drive, horizon, settings.rules()) for horizon in sorted(set(options.horizons))]
     targets = tuple(item for item in sets if len(item) >= 2)
     notes = tuple(
-        f"no prediction over {item.length:g} s: the log has {len(item)} such windows" for item in sets if len(item) < 2
+        f"no prediction over {item.length:g} s: the log has {len(item)} such windows"
+        for item in sets
+        if len(item) < 2
     )
     if not targets:
         raise LogError(
@@ -99,7 +103,9 @@ def _contest(log: Log, input_name: str, settings: Settings, options: EvaluationO
             where=", ".join(source.path for source in log.sources[:3]),
             advice="ask for shorter --horizons, or record a longer drive",
         )
-    return Contest(input_name, settings, windows, targets, options.vendor_track_multiplier, options.model), notes
+    return Contest(
+        input_name, settings, windows, targets, options.vendor_track_multiplier, options.model
+    ), notes
 
 
 def _learned_from(log: Log, model: Model | None) -> bool:
@@ -127,7 +133,8 @@ def _score(predictions: Predictions, group: Sequence[Predictions], model_saw_log
     distance = np.hypot(predictions.measured[half, 0], predictions.measured[half, 1]).mean()
     return Score(
         method=predictions.method,
-        causal=method_info(predictions.method).causal and not (predictions.method == "model" and model_saw_log),
+        causal=method_info(predictions.method).causal
+        and not (predictions.method == "model" and model_saw_log),
         horizon=predictions.horizon,
         windows=len(position),
         position=summarise(position),

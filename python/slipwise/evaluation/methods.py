@@ -62,9 +62,13 @@ def method_info(name: str) -> MethodInfo:
         SettingsError: there is no such method.
     """
     special = {
-        "none": MethodInfo(lambda _, c: plain_forecaster(c.settings), True, "the plain model: no slip, no lag"),
+        "none": MethodInfo(
+            lambda _, c: plain_forecaster(c.settings), True, "the plain model: no slip, no lag"
+        ),
         "vendor": MethodInfo(_vendor, True, "a vendor's wheel-separation multiplier"),
-        "batch": MethodInfo(_batch, False, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"),
+        "batch": MethodInfo(
+            _batch, False, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"
+        ),
         "model": MethodInfo(_model, True, "the model file as it is"),
         "auto": MethodInfo(_learned, True, "average of several bases by how well they predict"),
         "custom": MethodInfo(_learned, True, "the terms of the settings file"),
@@ -92,14 +96,18 @@ def _learned(name: str, contest: Contest) -> Forecaster:
 def _vendor(name: str, contest: Contest) -> Forecaster:
     if contest.vendor_track_multiplier is None:
         raise SettingsError(
-            f"the method {name} needs a multiplier", where="--methods", advice="give --vendor-track-multiplier, such as 1.875"
+            f"the method {name} needs a multiplier",
+            where="--methods",
+            advice="give --vendor-track-multiplier, such as 1.875",
         )
     return vendor_forecaster(contest.vendor_track_multiplier, contest.settings)
 
 
 def _model(name: str, contest: Contest) -> Forecaster:
     if contest.model is None:
-        raise SettingsError(f"the method {name} needs a model file", where="--methods", advice="give --model FILE")
+        raise SettingsError(
+            f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
+        )
     return model_forecaster(contest.model)
 
 
@@ -109,6 +117,10 @@ def _batch(name: str, contest: Contest) -> Forecaster:
     last = learn_causally(average, contest.windows, [len(contest.windows)])[len(contest.windows)]
     shape = contest.settings.filter_settings().noise.shape
     belief = fit_batch(
-        average.model, contest.windows, learner.settings, (shape, np.array(last.noise_scale)), average.reference_speeds
+        average.model,
+        contest.windows,
+        learner.settings,
+        (shape, np.array(last.noise_scale)),
+        average.reference_speeds,
     )
     return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics)

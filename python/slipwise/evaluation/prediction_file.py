@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The prediction file: one row per prediction and horizon, so that anyone can score it with their own tools."""
+"""The prediction file: one row per prediction and horizon, for anyone to score with their own tools."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from slipwise.evaluation.result import Evaluation
 from slipwise.files import write_whole
 
 COLUMNS = (
-    "run,method,t_start,t_end,horizon,dx,dy,dyaw,cov_xx,cov_xy,cov_xt,cov_yy,cov_yt,cov_tt,learned_until".split(",")
+    *("run", "method", "t_start", "t_end", "horizon", "dx", "dy", "dyaw"),
+    *("cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "learned_until"),
 )
 
 
@@ -30,7 +31,7 @@ def write_predictions(path: Path, evaluation: Evaluation) -> None:
     write_whole(path, lambda temporary: pyarrow.csv.write_csv(table, temporary))
 
 
-def _column(evaluation: Evaluation, name: str) -> np.ndarray:  # type: ignore[type-arg]
+def _column(evaluation: Evaluation, name: str) -> np.ndarray:
     parts = []
     for p in evaluation.predictions:
         size = len(p.t_start)

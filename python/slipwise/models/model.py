@@ -40,9 +40,11 @@ class Model:
         covariance = self.covariance
         scale = np.sqrt(np.outer(np.diag(covariance), np.diag(covariance))) + 1e-300
         if not np.allclose(covariance, covariance.T) or (
-            len(names) and np.linalg.eigvalsh(covariance / scale).min() < -1e-6
+            names and np.linalg.eigvalsh(covariance / scale).min() < -1e-6
         ):
-            raise ModelError("the covariance is not symmetric and positive", advice="calibrate again, or restore the file")
+            raise ModelError(
+                "the covariance is not symmetric and positive", advice="calibrate again, or restore the file"
+            )
 
     @cached_property
     def motion(self) -> _core.MotionModel:
@@ -85,8 +87,12 @@ class Model:
 
     def to_yaml(self) -> str:
         """Return the text of the model file."""
-        head = f"# slipwise motion model, schema {SCHEMA_VERSION}. SI units; slip rates are added to the commanded twist.\n"
-        body = yaml.safe_dump(self.content.model_dump(mode="json"), sort_keys=False, width=120, default_flow_style=None)
+        head = (
+            f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
+        )
+        body = yaml.safe_dump(
+            self.content.model_dump(mode="json"), sort_keys=False, width=120, default_flow_style=None
+        )
         return head + body
 
 
@@ -94,7 +100,7 @@ def load_model(path: str | Path) -> Model:
     """Read a model file.
 
     Raises:
-        ModelError: the file is missing, not plain YAML, of another schema version, or does not fit the schema.
+        ModelError: the file is missing, not plain YAML, or does not fit this schema version.
     """
     source = Path(path)
     content = read_yaml(source)
@@ -110,6 +116,8 @@ def load_model(path: str | Path) -> Model:
     except ValidationError as problem:
         first = problem.errors()[0]
         key = ".".join(str(part) for part in first["loc"])
-        raise ModelError(f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file") from problem
+        raise ModelError(
+            f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file"
+        ) from problem
     except ModelError as problem:
         raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem

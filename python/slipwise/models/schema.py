@@ -41,7 +41,7 @@ class Parameter(_Section):
 
 
 class Noise(_Section):
-    """Noise of the slip rates (lon, lat, ang) and of the poses; `scale` multiplies variances of (x, y, yaw)."""
+    """Noise of the slip rates (lon, lat, ang) and the poses; `scale` multiplies variances of (x, y, yaw)."""
 
     psd_time: Triple  # white, while moving [m^2/s, m^2/s, rad^2/s]
     psd_motion: Triple  # white, per unit of motion [m^2/m, m^2/m, rad^2/rad]
@@ -49,7 +49,9 @@ class Noise(_Section):
     pose_std_xy: NotNegative  # [m]
     pose_std_yaw: NotNegative  # [rad]
     scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
-    growth: dict[Finite, NotNegative] = {}  # horizon [s] -> further factor of the variances, from held-out predictions
+    growth: dict[
+        Finite, NotNegative
+    ] = {}  # horizon [s] -> further factor of the variances, from held-out predictions
 
 
 class Range(_Section):

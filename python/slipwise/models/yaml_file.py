@@ -18,17 +18,21 @@ class _PlainLoader(yaml.SafeLoader):
     """SafeLoader that also refuses aliases, explicit tags, doubled keys and endless numbers."""
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        event = self.peek_event()
+        event = self.peek_event()  # type: ignore[no-untyped-call]
         if isinstance(event, yaml.AliasEvent):
-            raise yaml.constructor.ConstructorError(None, None, "aliases are not allowed", event.start_mark)
+            raise yaml.constructor.ConstructorError(
+                problem="aliases are not allowed", problem_mark=event.start_mark
+            )
         tag = getattr(event, "tag", None)
         if tag is not None:
-            raise yaml.constructor.ConstructorError(None, None, f"the tag {tag} is not allowed", event.start_mark)
+            raise yaml.constructor.ConstructorError(
+                None, None, f"the tag {tag} is not allowed", event.start_mark
+            )
         node: yaml.Node | None = super().compose_node(parent, index)
         return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
-        keys = [self.construct_object(key, deep=True) for key, _ in node.value]  # type: ignore[no-untyped-call]
+        keys = [self.construct_object(key, deep=True) for key, _ in node.value]
         if len(keys) != len({repr(key) for key in keys}):
             raise yaml.constructor.ConstructorError(None, None, "a key stands twice", node.start_mark)
         return super().construct_mapping(node, deep)
@@ -37,8 +41,8 @@ class _PlainLoader(yaml.SafeLoader):
         if len(node.value) > MAX_DIGITS:
             raise yaml.constructor.ConstructorError(None, None, "a number is too long", node.start_mark)
         if node.tag.endswith(":int"):
-            return int(self.construct_yaml_int(node))  # type: ignore[no-untyped-call]
-        return float(self.construct_yaml_float(node))  # type: ignore[no-untyped-call]
+            return int(self.construct_yaml_int(node))
+        return float(self.construct_yaml_float(node))
 
 
 _PlainLoader.add_constructor("tag:yaml.org,2002:int", _PlainLoader.construct_number)
@@ -49,7 +53,7 @@ def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[st
     """Return the mapping in the YAML file `path`.
 
     Raises:
-        SlipwiseError (of type `error`): the file is missing, too large, not YAML, not a mapping, or uses aliases or tags.
+        SlipwiseError: of type `error`: the file is missing, too large, not plain YAML or not a mapping.
     """
     try:
         with path.open("rb") as file:
@@ -64,7 +68,9 @@ def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[st
         mark = getattr(problem, "problem_mark", None)
         line = f", line {mark.line + 1}" if mark is not None else ""
         what = getattr(problem, "problem", None) or str(problem).splitlines()[0]
-        raise error(f"not a plain YAML file: {what}", where=f"{path}{line}", advice="write plain keys and values") from problem
+        raise error(
+            f"not a plain YAML file: {what}", where=f"{path}{line}", advice="write plain keys and values"
+        ) from problem
     if not isinstance(content, dict):
         raise error("the file holds no keys", where=str(path), advice="write `key: value` lines")
     return content

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
 from dataclasses import dataclass
 
@@ -23,7 +24,9 @@ class WindowRules:
     """When two poses and the inputs between them make a window."""
 
     unknown_after: float = 0.5  # s; an input is unknown once it is older than this
-    late_factor: float = 2.5  # a pose after a gap of more than this many usual intervals is late: never an end
+    late_factor: float = (
+        2.5  # a pose after a gap of more than this many usual intervals is late: never an end
+    )
     length_tolerance: float = 0.05  # a window may be this fraction longer or shorter than asked for
     still_speed: float = 0.02  # m/s and rad/s; a window whose inputs never exceed this teaches nothing
 
@@ -50,12 +53,17 @@ class Windows:
         return len(self.start)
 
     def segments(self, wheels: Inputs | None, unknown_after: float) -> list[_core.Segment]:
-        """Return the core's segments; with `wheels`, the drive's twist at each start is the one measured there."""
+        """Return the core's segments; with `wheels`, each starts from the twist measured there."""
         initial = _initial_twists(self.start, wheels, unknown_after)
         return [
             _core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy)
             for start, end, (x, y, yaw), twist, (gx, gy) in zip(
-                self.start.tolist(), self.end.tolist(), self.measured.tolist(), initial, self.gravity.tolist(), strict=True
+                self.start.tolist(),
+                self.end.tolist(),
+                self.measured.tolist(),
+                initial,
+                self.gravity.tolist(),
+                strict=True,
             )
         ]
 
@@ -90,8 +98,8 @@ class _Cutter:
         self._yaw[first:last] = np.unwrap(poses.yaw[first:last])
         late = np.zeros(last - first, dtype=bool)
         late[1:] = np.diff(poses.t[first:last]) > rules.late_factor * self._interval
-        for at in np.flatnonzero(late):
-            self._leave_out("late-pose", float(poses.t[first + at]))
+        for t_late in poses.t[first:last][late].tolist():
+            self._leave_out("late-pose", t_late)
         usable = first + np.flatnonzero(~late)
         times = poses.t[usable]
         tolerance = max(0.5 * self._interval, rules.length_tolerance * self._length)
@@ -123,7 +131,10 @@ class _Cutter:
         gap = int(np.searchsorted(self._gap_to, start, side="right"))
         if start < inputs.t[0] or self._gap_from[gap] < end:
             return "unknown-input"
-        held = slice(max(0, int(np.searchsorted(inputs.t, start, side="right")) - 1), int(np.searchsorted(inputs.t, end)))
+        held = slice(
+            max(0, int(np.searchsorted(inputs.t, start, side="right")) - 1),
+            int(np.searchsorted(inputs.t, end)),
+        )
         if float(self._speed[held].max()) <= self._rules.still_speed:
             return "standing-still"
         fastest_turn = float(np.abs(inputs.omega[held]).max())
@@ -156,7 +167,7 @@ class _Cutter:
 def _frame_spans(frame: Ints) -> list[tuple[int, int]]:
     edges = np.flatnonzero(np.diff(frame)) + 1
     bounds = [0, *edges.tolist(), len(frame)]
-    return [(a, b) for a, b in zip(bounds[:-1], bounds[1:], strict=True) if b - a > 1]
+    return [(a, b) for a, b in itertools.pairwise(bounds) if b - a > 1]
 
 
 def _usual_interval(poses: Poses) -> float:
@@ -166,14 +177,16 @@ def _usual_interval(poses: Poses) -> float:
 
 
 def _gravity(poses: Poses, i: Ints) -> Floats:
-    """Gravity along the body's x and y axes [m/s^2] from roll and pitch (REP-103: nose down is positive pitch)."""
+    """Gravity along the body's x and y axes [m/s^2]; by REP-103, nose down is positive pitch."""
     if poses.roll is None or poses.pitch is None:
         return np.zeros((len(i), 2))
     roll, pitch = np.nan_to_num(poses.roll[i]), np.nan_to_num(poses.pitch[i])
     return STANDARD_GRAVITY * np.column_stack((np.sin(pitch), -np.cos(pitch) * np.sin(roll)))
 
 
-def _initial_twists(start: Floats, wheels: Inputs | None, unknown_after: float) -> list[_core.BodyTwist | None]:
+def _initial_twists(
+    start: Floats, wheels: Inputs | None, unknown_after: float
+) -> list[_core.BodyTwist | None]:
     if wheels is None:
         return [None] * len(start)
     index = np.searchsorted(wheels.t, start, side="right") - 1
