@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/vehicle.
 #include "bindings.hpp"
-#include "slipwise/vehicle/body_twist.hpp"
+#include "slipwise/lie/body_twist.hpp"
 #include "slipwise/vehicle/differential_drive.hpp"
 
 namespace nb = nanobind;

@@ -19,7 +19,8 @@ InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std
   }
   samples_.reserve(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
-    if (!std::isfinite(t[i] + v[i] + vy[i] + omega[i]) || (i > 0 && t[i] <= t[i - 1])) {
+    const bool finite = std::isfinite(t[i]) && std::isfinite(v[i]) && std::isfinite(vy[i]) && std::isfinite(omega[i]);
+    if (!finite || (i > 0 && t[i] <= t[i - 1])) {
       throw std::invalid_argument("input " + std::to_string(i) +
                                   " is not finite or its time does not increase; clean the log first");
     }

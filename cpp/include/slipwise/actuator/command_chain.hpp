@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
-#include "slipwise/vehicle/body_twist.hpp"
+#include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
 

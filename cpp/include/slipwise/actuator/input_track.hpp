@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/vehicle/body_twist.hpp"
+#include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "slipwise/lie/se2.hpp"
-#include "slipwise/vehicle/body_twist.hpp"
+#include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <stdexcept>
 
-#include "slipwise/vehicle/body_twist.hpp"
+#include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The body twist of a planar vehicle, given directly or by its drive kinematics.
+// The body twist of a planar robot.
 #pragma once
 
 namespace slipwise {
