@@ -32,7 +32,10 @@ struct LagState {
 class DelayedCursor {
  public:
   DelayedCursor(const InputTrack& inputs, double delay, Eigen::Index delay_index, double start, double known_until)
-      : inputs_(inputs), delay_(delay), index_(delay_index), next_(inputs.count_until(start - delay)),
+      : inputs_(inputs),
+        delay_(delay),
+        index_(delay_index),
+        next_(inputs.count_until(start - delay)),
         end_(std::max(next_, inputs.count_until(known_until))) {}
 
   BodyTwist held() const { return next_ == 0 ? BodyTwist{} : inputs_.sample(next_ - 1); }
@@ -43,6 +46,7 @@ class DelayedCursor {
     return {next_change(), slope};
   }
   void advance() { ++next_; }
+  std::size_t changes_left() const { return end_ - next_; }
 
  private:
   const InputTrack& inputs_;
@@ -52,44 +56,53 @@ class DelayedCursor {
   std::size_t end_;
 };
 
-/// Advances one lag over a step whose ends move with the parameters; returns the integral and its slope.
-struct Advance {
-  double integral;
-  Row slope;
-};
-Advance advance(LagState& state, double input, double time_constant, Eigen::Index lag_index, double duration,
-                const Row& duration_slope) {
-  const auto step = linearize_lag_step(state.output, input, time_constant, duration);
-  Advance result{step.value.integral,
-                 step.by_duration.integral * duration_slope + step.by_output.integral * state.slope};
-  result.slope[lag_index] += step.by_time_constant.integral;
-  Row slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope;
-  slope[lag_index] += step.by_time_constant.output;
-  state = {step.value.output, slope};
-  return result;
+/// Advances one lag over a step; returns the integral.
+double advance(LagState& state, double input, const LagDecay& decay) {
+  const LagStep step = linearize_lag_step(state.output, input, decay).value;
+  state.output = step.output;
+  return step.integral;
 }
 
+/// The same for a step whose duration moves with the parameters: also writes the integral's slope.
+double advance(LagState& state, double input, const LagDecay& decay, Eigen::Index lag_index, const Row& duration_slope,
+               Eigen::Ref<Row, 0, Eigen::InnerStride<>> integral_slope) {
+  const auto step = linearize_lag_step(state.output, input, decay);
+  integral_slope = step.by_duration.integral * duration_slope + step.by_output.integral * state.slope;
+  integral_slope[lag_index] += step.by_time_constant.integral;
+  state.slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope;
+  state.slope[lag_index] += step.by_time_constant.output;
+  state.output = step.value.output;
+  return step.value.integral;
+}
+
+/// Walks over the delayed input changes of a window, with or without slopes.
 class ChainWalk {
  public:
-  ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window)
-      : chain_(chain), window_(window), start_(moment_of(window.start)), end_(moment_of(window.end)),
+  ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window, bool with_slopes)
+      : chain_(chain),
+        longest_step_(window.longest_step),
+        with_slopes_(with_slopes),
+        start_(moment_of(window.start)),
+        end_(moment_of(window.end)),
         warm_up_(window.initial ? 0.0 : kSettledLags * std::max(chain.lag_v, chain.lag_omega)),
         cursor_v_(inputs, chain.delay_v, kDelayV, start_.t - warm_up_, window.end),
         cursor_omega_(inputs, chain.delay_omega, kDelayOmega, start_.t - warm_up_, window.end) {
-    const BodyTwist begin = window.initial ? *window.initial
-                                           : BodyTwist{cursor_v_.held().v, cursor_v_.held().vy, cursor_omega_.held().omega};
+    const BodyTwist begin =
+        window.initial.value_or(BodyTwist{cursor_v_.held().v, cursor_v_.held().vy, cursor_omega_.held().omega});
     v_.output = begin.v;
     vy_.output = begin.vy;
     omega_.output = begin.omega;
   }
 
-  DriveSteps run(bool with_jacobians) {
-    DriveSteps silent;
+  DriveSteps run() {
     if (warm_up_ > 0.0) {
-      cover({start_.t - warm_up_, Row::Zero()}, start_, silent, false);
+      cover({start_.t - warm_up_, Row::Zero()}, start_, nullptr);
     }
     DriveSteps result;
-    cover(start_, end_, result, with_jacobians);
+    const std::size_t steps = cursor_v_.changes_left() + cursor_omega_.changes_left() + 2;
+    result.steps.reserve(steps);
+    result.jacobians.reserve(with_slopes_ ? steps : 0);
+    cover(start_, end_, &result);
     return result;
   }
 
@@ -100,20 +113,22 @@ class ChainWalk {
     return {stamp - chain_.clock_offset, slope};
   }
 
-  void cover(Moment now, const Moment& until, DriveSteps& out, bool with_jacobians) {
+  /// Steps from `now` to `until`; they are recorded where there is an `out`.
+  void cover(Moment now, const Moment& until, DriveSteps* out) {
     while (now.t < until.t) {
       const double change = std::min(cursor_v_.next_change(), cursor_omega_.next_change());
       Moment next = until;
       if (change < until.t) {
         next = cursor_v_.next_change() <= change ? cursor_v_.change_moment() : cursor_omega_.change_moment();
       }
-      subdivide(now, next, out, with_jacobians);
+      subdivide(now, next, out);
       advance_cursors(next.t);
       now = next;
     }
   }
 
-  /// Changes of the two channels are taken one at a time, since they move apart with their delays; without delays, together.
+  /// Changes of the two channels are taken one at a time, since they move apart with their delays; without delays,
+  /// together.
   void advance_cursors(double t) {
     const bool v_changes = cursor_v_.next_change() <= t;
     const bool omega_changes = cursor_omega_.next_change() <= t;
@@ -126,31 +141,44 @@ class ChainWalk {
     }
   }
 
-  void subdivide(const Moment& from, const Moment& to, DriveSteps& out, bool with_jacobians) {
+  void subdivide(const Moment& from, const Moment& to, DriveSteps* out) {
     const bool lagging = chain_.lag_v > 0.0 || chain_.lag_omega > 0.0;
-    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / window_.longest_step))) : 1;
+    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / longest_step_))) : 1;
     const double duration = (to.t - from.t) / parts;
+    const LagDecay decay_v(chain_.lag_v, duration);
+    const LagDecay decay_omega(chain_.lag_omega, duration);
     const Row slope = (to.slope - from.slope) / parts;
+    DriveStepJacobian jacobian;
     for (int i = 0; i < parts; ++i) {
-      emit(duration, slope, out, with_jacobians);
+      const DriveStep step =
+          with_slopes_ ? linearize_step(decay_v, decay_omega, slope, jacobian) : next_step(decay_v, decay_omega);
+      if (out != nullptr) {
+        out->steps.push_back(step);
+        if (with_slopes_) {
+          out->jacobians.push_back(jacobian);
+        }
+      }
     }
   }
 
-  void emit(double duration, const Row& slope, DriveSteps& out, bool with_jacobians) {
+  DriveStep next_step(const LagDecay& decay_v, const LagDecay& decay_omega) {
     const BodyTwist linear = cursor_v_.held();
-    const Advance forward = advance(v_, linear.v, chain_.lag_v, kLagV, duration, slope);
-    const Advance left = advance(vy_, linear.vy, chain_.lag_v, kLagV, duration, slope);
-    const Advance turn =
-        advance(omega_, cursor_omega_.held().omega, chain_.lag_omega, kLagOmega, duration, slope);
-    out.steps.push_back({duration, forward.integral, left.integral, turn.integral});
-    if (with_jacobians) {
-      DriveStepJacobian& jacobian = out.jacobians.emplace_back();
-      jacobian << slope, forward.slope, left.slope, turn.slope;
-    }
+    return {decay_v.duration, advance(v_, linear.v, decay_v), advance(vy_, linear.vy, decay_v),
+            advance(omega_, cursor_omega_.held().omega, decay_omega)};
+  }
+
+  DriveStep linearize_step(const LagDecay& decay_v, const LagDecay& decay_omega, const Row& duration_slope,
+                           DriveStepJacobian& jacobian) {
+    const BodyTwist linear = cursor_v_.held();
+    jacobian.row(0) = duration_slope;
+    return {decay_v.duration, advance(v_, linear.v, decay_v, kLagV, duration_slope, jacobian.row(1)),
+            advance(vy_, linear.vy, decay_v, kLagV, duration_slope, jacobian.row(2)),
+            advance(omega_, cursor_omega_.held().omega, decay_omega, kLagOmega, duration_slope, jacobian.row(3))};
   }
 
   const CommandChain& chain_;
-  const DriveWindow& window_;
+  double longest_step_;
+  bool with_slopes_;
   Moment start_;
   Moment end_;
   double warm_up_;
@@ -162,11 +190,11 @@ class ChainWalk {
 }  // namespace
 
 DriveSteps drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
-  return ChainWalk(inputs, chain, window).run(false);
+  return ChainWalk(inputs, chain, window, false).run();
 }
 
 DriveSteps linearize_drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
-  return ChainWalk(inputs, chain, window).run(true);
+  return ChainWalk(inputs, chain, window, true).run();
 }
 
 }  // namespace slipwise

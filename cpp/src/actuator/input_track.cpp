@@ -13,8 +13,8 @@ InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std
                        std::span<const double> omega)
     : t_(t.begin(), t.end()) {
   if (v.size() != t.size() || vy.size() != t.size() || omega.size() != t.size()) {
-    throw std::invalid_argument("inputs t, v, vy, omega must have equal lengths, got " + std::to_string(t.size()) + ", " +
-                                std::to_string(v.size()) + ", " + std::to_string(vy.size()) + ", " +
+    throw std::invalid_argument("inputs t, v, vy, omega must have equal lengths, got " + std::to_string(t.size()) +
+                                ", " + std::to_string(v.size()) + ", " + std::to_string(vy.size()) + ", " +
                                 std::to_string(omega.size()));
   }
   samples_.reserve(t.size());

@@ -2,104 +2,164 @@
 // One pass over the drive steps of a segment: poses, and sums that give the derivative of the last pose.
 #include "slipwise/segment/integrate_segment.hpp"
 
-#include <array>
+#include <span>
+#include <utility>
 
 #include "slipwise/slip/slip_surface.hpp"
 
 namespace slipwise {
 namespace {
 
+using ChainColumns = Eigen::Matrix<double, 3, kChainParameters>;
+
 DriveWindow window_of(const Segment& segment) {
   return {.start = segment.start, .end = segment.end, .initial = segment.initial};
 }
 
+/// The mean drive over a step, which its slip depends on.
 SlipState slip_state(const DriveStep& step, const Segment& segment) {
   const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
   return {.v = step.forward * rate, .omega = step.turn * rate, .gx = segment.gx, .gy = segment.gy};
 }
 
+/// The same for a step that has no duration yet gains some with the chain's parameters: its integrals grow with its
+/// twist.
+SlipState slip_state(const DriveStepJacobian& jacobian, const Segment& segment) {
+  const double squared = jacobian.row(0).squaredNorm();
+  const double per_duration = squared > 0.0 ? 1.0 / squared : 0.0;
+  return {.v = jacobian.row(1).dot(jacobian.row(0)) * per_duration,
+          .omega = jacobian.row(3).dot(jacobian.row(0)) * per_duration,
+          .gx = segment.gx,
+          .gy = segment.gy};
+}
+
+/// (u_body + du) dt of method.md, section 1.
 Eigen::Vector3d tangent_of(const DriveStep& step, const Eigen::Vector3d& slip) {
-  return {step.forward + slip.x() * step.duration, step.left + slip.y() * step.duration,
-          step.turn + slip.z() * step.duration};
+  return Eigen::Vector3d(step.forward, step.left, step.turn) + slip * step.duration;
 }
 
 /// Runge-Kutta of fourth order on a constant twist: Simpson's rule over the heading (thesis 3.1).
-Pose2 rk4_displacement(const Eigen::Vector3d& tangent) {
-  const Eigen::Matrix2d mean =
-      (rotation(0.0) + 4.0 * rotation(tangent.z() / 2.0) + rotation(tangent.z())) / 6.0;
-  const Eigen::Vector2d p = mean * tangent.head<2>();
-  return {p.x(), p.y(), tangent.z()};
+Eigen::Vector2d rk4_displacement(const Eigen::Vector3d& tangent) {
+  const Eigen::Matrix2d mean = (rotation(0.0) + 4.0 * rotation(tangent.z() / 2.0) + rotation(tangent.z())) / 6.0;
+  return mean * tangent.head<2>();
 }
 
-SegmentPath start_path(const Segment& segment, std::size_t steps) {
-  SegmentPath path;
-  path.times.reserve(steps + 1);
-  path.poses.reserve(steps + 1);
-  path.tangents.reserve(steps);
-  path.times.push_back(segment.start);
-  path.poses.emplace_back();
-  return path;
-}
-
-void append(SegmentPath& path, const DriveStep& step, const Eigen::Vector3d& tangent, const Pose2& displacement) {
-  path.times.push_back(path.times.back() + step.duration);
-  path.poses.push_back(compose(path.poses.back(), displacement));
-  path.tangents.push_back(tangent);
-}
-
-/// Sums of method.md, section 3: columns g = blkdiag(R, 1) E d(tangent), gathered so that any later pose can be differentiated.
-class JacobianSums {
+/// The path as it grows. The heading's rotation is carried along, so that a step costs the trigonometry of its turn
+/// alone.
+class GrowingPath {
  public:
-  explicit JacobianSums(Eigen::Index size) : sums_(Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, size)) {}
-
-  /// Adds d(tangent) = along * amount of one parameter, where `world` maps tangents to the world chart.
-  void add(Eigen::Index parameter, const Eigen::Vector3d& world_column, const Pose2& next) {
-    sums_(0, parameter) += world_column.x() + next.y * world_column.z();
-    sums_(1, parameter) += world_column.y() - next.x * world_column.z();
-    sums_(2, parameter) += world_column.z();
+  GrowingPath(const Segment& segment, std::size_t steps) {
+    path_.times.reserve(steps + 1);
+    path_.poses.reserve(steps + 1);
+    path_.tangents.reserve(steps);
+    path_.times.push_back(segment.start);
+    path_.poses.emplace_back();
   }
 
-  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const Pose2& end) const {
-    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian = sums_;
-    jacobian.row(0) -= end.y * sums_.row(2);
-    jacobian.row(1) += end.x * sums_.row(2);
-    return jacobian;
+  const Eigen::Matrix2d& heading() const { return heading_; }
+  const Pose2& pose() const { return path_.poses.back(); }
+
+  /// `displacement` is the step's motion seen from its start, and `arc` belongs to its turn.
+  void append(double duration, const Eigen::Vector3d& tangent, const Eigen::Vector2d& displacement,
+              const ArcFunctions<double>& arc) {
+    const Eigen::Vector2d moved = heading_ * displacement;
+    const Pose2 next{pose().x + moved.x(), pose().y + moved.y(), pose().theta + tangent.z()};
+    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
+    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
+    path_.times.push_back(path_.times.back() + duration);
+    path_.poses.push_back(next);
+    path_.tangents.push_back(tangent);
+  }
+
+  SegmentPath finish(std::vector<DriveStep> drive) && {
+    path_.drive = std::move(drive);
+    return std::move(path_);
   }
 
  private:
-  Eigen::Matrix<double, 3, Eigen::Dynamic> sums_;
+  SegmentPath path_;
+  Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
 };
 
-/// Derivative of a step's tangent by the chain's parameters: through duration and integrals, and through the slip they cause.
-Eigen::Matrix<double, 3, kChainParameters> tangent_by_chain(const DriveStep& step, const DriveStepJacobian& jacobian,
-                                                            const SlipRateLinearization& slip, const SlipState& state) {
-  Eigen::Matrix<double, 3, kChainParameters> result = jacobian.bottomRows<3>();
-  result += slip.slip * jacobian.row(0);
-  result += slip.by_drive.col(0) * (jacobian.row(1) - state.v * jacobian.row(0));
-  result += slip.by_drive.col(1) * (jacobian.row(3) - state.omega * jacobian.row(0));
-  return step.duration > 0.0 ? result : Eigen::Matrix<double, 3, kChainParameters>(jacobian.bottomRows<3>());
-}
-
-Eigen::Matrix3d world_jacobian(const Pose2& pose, const Eigen::Vector3d& tangent) {
-  Eigen::Matrix3d world = chart_jacobian(tangent);
-  world.topRows<2>() = rotation(pose.theta) * world.topRows<2>().eval();
+/// Appends an exact step; returns the derivative of the pose by the step's tangent, carried back to the path's start:
+/// Phi(0, k+1) blkdiag(R_k, 1) E_k of method.md, section 3.
+Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
+  const auto arc = arc_functions(tangent.z());
+  Eigen::Matrix3d world = chart_jacobian(tangent, arc);
+  world.topRows<2>() = (path.heading() * world.topRows<2>()).eval();
+  path.append(duration, tangent, arc_matrix(arc) * tangent.head<2>(), arc);
+  const Pose2& next = path.pose();
+  world(0, 2) += next.y;
+  world(1, 2) -= next.x;
   return world;
 }
+
+/// Derivative of a step's tangent by the chain's parameters: through duration and integrals, and through the slip they
+/// cause.
+ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& jacobian, const Basis& basis,
+                              const Eigen::Ref<const Eigen::VectorXd>& alpha, const Segment& segment) {
+  ChainColumns result = jacobian.bottomRows<3>();
+  if (!(step.duration > 0.0)) {
+    return result + slip_rate(basis, alpha, slip_state(jacobian, segment)) * jacobian.row(0);
+  }
+  const SlipState state = slip_state(step, segment);
+  const auto by_drive = slip_rate_by_drive(basis, alpha, state);
+  result += slip_rate(basis, alpha, state) * jacobian.row(0);
+  result += by_drive.col(0) * (jacobian.row(1) - state.v * jacobian.row(0));
+  result += by_drive.col(1) * (jacobian.row(3) - state.omega * jacobian.row(0));
+  return result;
+}
+
+/// Sums of method.md, section 3: the steps' derivatives carried back to the path's start, one column per parameter.
+struct SensitivitySums {
+  Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
+  ChainColumns chain = ChainColumns::Zero();
+
+  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()) { slip.setZero(); }
+
+  /// d(tangent) / d(alpha) is the feature times the duration, in the term's own channel.
+  void add_slip(const Basis& basis, const Eigen::Matrix3d& by_tangent, std::span<const double> features,
+                double duration) {
+    for (const Channel channel : {Channel::Lon, Channel::Lat, Channel::Ang}) {
+      const Eigen::Vector3d column = by_tangent.col(static_cast<Eigen::Index>(channel)) * duration;
+      for (std::size_t i = basis.begin(channel); i < basis.end(channel); ++i) {
+        slip.col(static_cast<Eigen::Index>(i)) += column * features[i];
+      }
+    }
+  }
+
+  /// J = Phi(n, 0) times the sums.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const Pose2& end, const MotionModel& model,
+                                              const CommandChain& at) const {
+    const Eigen::Matrix3d phi = transition(Pose2{}, end);
+    Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
+    jacobian.leftCols(model.slip_size()) = phi * slip;
+    if (model.size() > model.slip_size()) {
+      jacobian.rightCols(model.size() - model.slip_size()) = phi * chain * model.chain_jacobian(at);
+    }
+    return jacobian;
+  }
+};
 
 }  // namespace
 
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                               const InputTrack& inputs, const Segment& segment, Integrator integrator) {
   model.check(parameters);
+  const auto alpha = parameters.head(model.slip_size());
   DriveSteps drive = drive_steps(inputs, model.chain(parameters), window_of(segment));
-  SegmentPath path = start_path(segment, drive.steps.size());
+  GrowingPath path(segment, drive.steps.size());
+  std::vector<double> features(model.basis().size());
   for (const DriveStep& step : drive.steps) {
-    const Eigen::Vector3d slip = slip_rate(model.basis(), parameters.head(model.slip_size()), slip_state(step, segment));
-    const Eigen::Vector3d tangent = tangent_of(step, slip);
-    append(path, step, tangent, integrator == Integrator::Exact ? exp(tangent) : rk4_displacement(tangent));
+    model.basis().features(slip_state(step, segment), features);
+    const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    const auto arc = arc_functions(tangent.z());
+    const Eigen::Vector2d displacement = integrator == Integrator::Exact
+                                             ? Eigen::Vector2d(arc_matrix(arc) * tangent.head<2>())
+                                             : rk4_displacement(tangent);
+    path.append(step.duration, tangent, displacement, arc);
   }
-  path.drive = std::move(drive.steps);
-  return path;
+  return std::move(path).finish(std::move(drive.steps));
 }
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -107,48 +167,24 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
   model.check(parameters);
   const CommandChain chain = model.chain(parameters);
   const bool chain_learned = model.size() > model.slip_size();
+  const auto alpha = parameters.head(model.slip_size());
   DriveSteps drive = chain_learned ? linearize_drive_steps(inputs, chain, window_of(segment))
                                    : drive_steps(inputs, chain, window_of(segment));
-  const Basis& basis = model.basis();
-  const auto alpha = parameters.head(model.slip_size());
-  SegmentPath path = start_path(segment, drive.steps.size());
-  JacobianSums slip_sums(model.slip_size());
-  JacobianSums chain_sums(kChainParameters);
-  std::vector<double> features(basis.size());
+  GrowingPath path(segment, drive.steps.size());
+  SensitivitySums sums(model);
+  std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const DriveStep& step = drive.steps[k];
-    const SlipState state = slip_state(step, segment);
-    basis.features(state, features);
-    Eigen::Vector3d slip = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < features.size(); ++i) {
-      slip[static_cast<Eigen::Index>(basis.channel(i))] += features[i] * alpha[static_cast<Eigen::Index>(i)];
-    }
-    const Eigen::Vector3d tangent = tangent_of(step, slip);
-    const Eigen::Matrix3d world = world_jacobian(path.poses.back(), tangent);
-    append(path, step, tangent, exp(tangent));
-    const Pose2& next = path.poses.back();
-    for (std::size_t i = 0; i < features.size(); ++i) {
-      const auto channel = static_cast<Eigen::Index>(basis.channel(i));
-      slip_sums.add(static_cast<Eigen::Index>(i), world.col(channel) * (features[i] * step.duration), next);
-    }
+    model.basis().features(slip_state(step, segment), features);
+    const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
+    sums.add_slip(model.basis(), by_tangent, features, step.duration);
     if (chain_learned && !drive.jacobians[k].isZero(0.0)) {
-      const auto by_chain =
-          tangent_by_chain(step, drive.jacobians[k], linearize_slip_rate(basis, alpha, state), state);
-      for (Eigen::Index j = 0; j < kChainParameters; ++j) {
-        chain_sums.add(j, world * by_chain.col(j), next);
-      }
+      sums.chain += by_tangent * tangent_by_chain(step, drive.jacobians[k], model.basis(), alpha, segment);
     }
   }
-  SegmentLinearization result{.path = {}, .predicted = path.poses.back(), .by_parameter = {}};
-  result.by_parameter.resize(3, model.size());
-  result.by_parameter.leftCols(model.slip_size()) = slip_sums.at(result.predicted);
-  if (chain_learned) {
-    result.by_parameter.rightCols(model.size() - model.slip_size()) =
-        chain_sums.at(result.predicted) * model.chain_jacobian(chain);
-  }
-  path.drive = std::move(drive.steps);
-  result.path = std::move(path);
-  return result;
+  const Pose2 predicted = path.pose();
+  return {std::move(path).finish(std::move(drive.steps)), predicted, sums.at(predicted, model, chain)};
 }
 
 }  // namespace slipwise

@@ -57,6 +57,11 @@ Basis::Basis(std::string name, std::span<const std::string> lon, std::span<const
     }
   }
   begin_[kChannels] = terms_.size();
+  for (const Term& term : terms_) {
+    coefficients_.push_back(term.coefficient());
+    factors_.insert(factors_.end(), term.factors().begin(), term.factors().end());
+    factor_end_.push_back(factors_.size());
+  }
 }
 
 Channel Basis::channel(std::size_t parameter) const {
@@ -70,8 +75,13 @@ std::string Basis::parameter_name(std::size_t parameter) const {
 
 void Basis::features(const SlipState& state, std::span<double> value) const {
   const SlipQuantities quantities(state);
-  for (std::size_t i = 0; i < terms_.size(); ++i) {
-    value[i] = terms_[i].value(quantities);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    double product = coefficients_[i];
+    for (; at < factor_end_[i]; ++at) {
+      product *= quantities.value[static_cast<std::size_t>(factors_[at])];
+    }
+    value[i] = product;
   }
 }
 
@@ -99,7 +109,8 @@ Basis named_basis(std::string_view name) {
 
 std::vector<std::string> basis_names() {
   std::vector<std::string> names;
-  std::ranges::transform(shipped(), std::back_inserter(names), [](const auto& basis) { return std::string(basis.name); });
+  std::ranges::transform(shipped(), std::back_inserter(names),
+                         [](const auto& basis) { return std::string(basis.name); });
   return names;
 }
 

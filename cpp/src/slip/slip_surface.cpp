@@ -2,6 +2,8 @@
 // Slip rates, their slopes and their covariance at one state.
 #include "slipwise/slip/slip_surface.hpp"
 
+#include <vector>
+
 namespace slipwise {
 
 Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha, const SlipState& state) {
@@ -14,18 +16,38 @@ Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::Vect
   return slip;
 }
 
+Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                          std::span<const double> features) {
+  const auto channel_rate = [&](Channel channel) {
+    double sum = 0.0;
+    for (std::size_t i = basis.begin(channel); i < basis.end(channel); ++i) {
+      sum += features[i] * alpha[static_cast<Eigen::Index>(i)];
+    }
+    return sum;
+  };
+  return {channel_rate(Channel::Lon), channel_rate(Channel::Lat), channel_rate(Channel::Ang)};
+}
+
+Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                               const SlipState& state) {
+  const SlipQuantities quantities(state);
+  Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const TermValue term = basis.terms()[i].linearize(quantities);
+    const Eigen::RowVector2d by_drive(term.by_v, term.by_omega);
+    slopes.row(static_cast<Eigen::Index>(basis.channel(i))) += alpha[static_cast<Eigen::Index>(i)] * by_drive;
+  }
+  return slopes;
+}
+
 SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                           const SlipState& state) {
-  const SlipFeatures features = basis.linearize_features(state);
-  SlipRateLinearization result{Eigen::Vector3d::Zero(), Eigen::Matrix<double, 3, 2>::Zero(),
+  std::vector<double> features(basis.size());
+  basis.features(state, features);
+  SlipRateLinearization result{slip_rate(basis, alpha, features), slip_rate_by_drive(basis, alpha, state),
                                Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, alpha.size())};
   for (std::size_t i = 0; i < basis.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(basis.channel(i));
-    const auto column = static_cast<Eigen::Index>(i);
-    result.slip[row] += features.value[column] * alpha[column];
-    result.by_drive(row, 0) += features.by_v[column] * alpha[column];
-    result.by_drive(row, 1) += features.by_omega[column] * alpha[column];
-    result.by_parameter(row, column) = features.value[column];
+    result.by_parameter(static_cast<Eigen::Index>(basis.channel(i)), static_cast<Eigen::Index>(i)) = features[i];
   }
   return result;
 }

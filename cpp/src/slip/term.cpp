@@ -89,17 +89,6 @@ std::string spell(double coefficient, const std::vector<Quantity>& factors) {
 
 }  // namespace
 
-SlipQuantities::SlipQuantities(const SlipState& s) {
-  const double sign_v = s.v > 0.0 ? 1.0 : (s.v < 0.0 ? -1.0 : 0.0);
-  const double sign_w = s.omega > 0.0 ? 1.0 : (s.omega < 0.0 ? -1.0 : 0.0);
-  const double moving = sign_v != 0.0 || sign_w != 0.0 ? 1.0 : 0.0;  // a robot parked on a slope does not drift
-  const double norm = s.v * s.v + kCurvatureSpeed * kCurvatureSpeed;
-  const double by_speed = s.v / norm;
-  value = {s.v, s.omega, std::abs(s.v), std::abs(s.omega), sign_v, s.omega * by_speed, s.gx * moving, s.gy * moving};
-  by_v = {1.0, 0.0, sign_v, 0.0, 0.0, s.omega * (1.0 - 2.0 * s.v * by_speed) / norm, 0.0, 0.0};
-  by_omega = {0.0, 1.0, 0.0, sign_w, 0.0, by_speed, 0.0, 0.0};
-}
-
 Term::Term(double coefficient, std::vector<Quantity> factors, std::string text)
     : coefficient_(coefficient), factors_(std::move(factors)), text_(std::move(text)) {}
 
@@ -123,6 +112,9 @@ Term Term::parse(std::string_view text) {
     }
     divide = stop < compact.size() && compact[stop] == '/';
     at = stop + 1;
+  }
+  if (!std::isnormal(coefficient)) {
+    refuse(text, "has numbers whose product is too large or too small");
   }
   if (!vanishes_when_parked(factors)) {
     refuse(text, "does not vanish when the robot is parked");

@@ -23,10 +23,10 @@ inline constexpr Eigen::Index kChainParameters = 5;  ///< in the order of the fi
 
 /// A stretch of time, in pose stamps, and what is known of the drive at its start.
 struct DriveWindow {
-  double start;                            ///< [s]
-  double end;                              ///< [s]; inputs later than this are not used
-  std::optional<BodyTwist> initial = {};   ///< the drive's twist at the start, where it was measured
-  double longest_step = 0.1;               ///< [s]; a lagging twist is averaged over no more than this
+  double start;                           ///< [s]
+  double end;                             ///< [s]; inputs later than this are not used
+  std::optional<BodyTwist> initial = {};  ///< the drive's twist at the start, where it was measured
+  double longest_step = 0.1;              ///< [s]; a lagging twist is averaged over no more than this
 };
 
 /// One step of constant mean twist: its duration and its integrals.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// First-order lag under a held input: the exact step, its mean, and exact sensitivities (method.md, section 4; thesis 8.1).
+// First-order lag under a held input: the exact step, its mean, and exact sensitivities (method.md, section 4;
+// thesis 8.1).
 #pragma once
 
 #include <cmath>
@@ -20,19 +21,45 @@ struct LagStepLinearization {
   LagStep by_time_constant;  ///< by the time constant
 };
 
-/// V' = (input - V) / time_constant. A time constant of zero follows the input at once.
-inline LagStepLinearization linearize_lag_step(double output, double input, double time_constant, double duration) {
-  if (time_constant <= 0.0) {
-    return {.value = {input, input * duration}, .by_duration = {0.0, input}, .by_output = {0.0, 0.0}, .by_time_constant = {}};
+/// How a gap between output and input closes over a step, the same for every output with this time constant.
+struct LagDecay {
+  double time_constant;  ///< [s]; zero follows the input at once
+  double duration;       ///< [s]
+  double gone;           ///< the share of the gap that has closed, 1 - a of method.md
+  double left;           ///< the share that is left, a
+  double by_rate;        ///< a * duration / time_constant
+
+  LagDecay(double time_constant_s, double duration_s)
+      : time_constant(time_constant_s), duration(duration_s), gone(1.0), left(0.0), by_rate(0.0) {
+    if (time_constant > 0.0) {
+      const double ratio = duration / time_constant;
+      gone = -std::expm1(-ratio);
+      left = 1.0 - gone;
+      by_rate = left == 0.0 ? 0.0 : left * ratio;  // the ratio may be infinite
+    }
   }
-  const double ratio = duration / time_constant;
-  const double decay = std::exp(-ratio);
-  const double gone = -std::expm1(-ratio);
+};
+
+/// V' = (input - V) / time_constant, with V = `output` at the start.
+inline LagStepLinearization linearize_lag_step(double output, double input, const LagDecay& decay) {
   const double gap = output - input;
-  return {.value = {input + gap * decay, input * duration + gap * time_constant * gone},
-          .by_duration = {-gap * decay / time_constant, input + gap * decay},
-          .by_output = {decay, time_constant * gone},
-          .by_time_constant = {gap * decay * ratio / time_constant, gap * (gone - decay * ratio)}};
+  const double lag = decay.time_constant;
+  LagStepLinearization step{.value = {input + gap * decay.left, input * decay.duration + gap * lag * decay.gone},
+                            .by_duration = {0.0, input + gap * decay.left},
+                            .by_output = {decay.left, lag * decay.gone},
+                            .by_time_constant = {0.0, 0.0}};
+  if (decay.left > 0.0) {
+    step.by_duration.output = -gap * decay.left / lag;
+    step.by_time_constant.output = gap * decay.by_rate / lag;
+  }
+  if (lag > 0.0) {
+    step.by_time_constant.integral = gap * (decay.gone - decay.by_rate);
+  }
+  return step;
+}
+
+inline LagStepLinearization linearize_lag_step(double output, double input, double time_constant, double duration) {
+  return linearize_lag_step(output, input, LagDecay(time_constant, duration));
 }
 
 inline LagStep lag_step(double output, double input, double time_constant, double duration) {

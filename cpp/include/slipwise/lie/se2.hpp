@@ -39,7 +39,8 @@ inline Pose2 exp(const Eigen::Vector3d& tangent) {
   return {p.x(), p.y(), tangent.z()};
 }
 
-/// The constant body twist that reaches `pose` by a turn of at most half a turn: exp(log(pose)) = pose up to whole turns.
+/// The constant body twist that reaches `pose` by a turn of at most half a turn: exp(log(pose)) = pose up to whole
+/// turns.
 inline Eigen::Vector3d log(const Pose2& pose) {
   const double f = wrap_angle(pose.theta);
   const auto arc = arc_functions(f);
@@ -72,14 +73,18 @@ inline Eigen::Matrix3d adjoint(const Pose2& pose) {
   return ad;
 }
 
-/// E of method.md, section 3: derivative of the chart (x, y, theta) of exp(tangent) by the tangent.
-inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent) {
-  const auto arc = arc_functions(tangent.z());
+/// E of method.md, section 3: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of its
+/// turn.
+inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent, const ArcFunctions<double>& arc) {
   Eigen::Matrix3d e = Eigen::Matrix3d::Identity();
   e.topLeftCorner<2, 2>() = arc_matrix(arc);
   e(0, 2) = arc.da * tangent.x() - arc.db * tangent.y();
   e(1, 2) = arc.db * tangent.x() + arc.da * tangent.y();
   return e;
+}
+
+inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent) {
+  return chart_jacobian(tangent, arc_functions(tangent.z()));
 }
 
 /// Jr: exp(tangent + d) = exp(tangent) exp(Jr d) to first order.

@@ -32,11 +32,13 @@ ArcFunctions<Scalar> arc_functions(Scalar f) {
     const Scalar db = Scalar(0.5) - q / 8 * (1 - q / 18 * (1 - q / 40));
     return {a, b, da, db, f * a, 1 - f * b};
   }
-  const Scalar s = std::sin(f);
-  const Scalar c = std::cos(f);
   const Scalar half_sin = std::sin(f / 2);
-  const Scalar b = 2 * half_sin * half_sin / f;
-  return {s / f, b, (c - s / f) / f, (s - b) / f, s, c};
+  const Scalar half_cos = std::cos(f / 2);
+  const Scalar s = 2 * half_sin * half_cos;
+  const Scalar one_minus_c = 2 * half_sin * half_sin;
+  const Scalar a = s / f;
+  const Scalar b = one_minus_c / f;
+  return {a, b, (1 - one_minus_c - a) / f, (s - b) / f, s, 1 - one_minus_c};
 }
 
 }  // namespace slipwise

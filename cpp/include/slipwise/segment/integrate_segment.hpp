@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
@@ -25,7 +26,8 @@ struct SegmentPath {
 
 /// \throws std::invalid_argument when the parameters do not fit the model.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                              const InputTrack& inputs, const Segment& segment, Integrator integrator = Integrator::Exact);
+                              const InputTrack& inputs, const Segment& segment,
+                              Integrator integrator = Integrator::Exact);
 
 struct SegmentLinearization {
   SegmentPath path;

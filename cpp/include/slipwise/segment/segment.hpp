@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "slipwise/lie/se2.hpp"
 #include "slipwise/lie/body_twist.hpp"
+#include "slipwise/lie/se2.hpp"
 
 namespace slipwise {
 

@@ -48,6 +48,10 @@ class Basis {
   std::string name_;
   std::vector<Term> terms_;
   std::array<std::size_t, kChannels + 1> begin_{};
+  // The terms once more in flat arrays, for speed: factors of term i end at factor_end_[i].
+  std::vector<double> coefficients_;
+  std::vector<std::size_t> factor_end_;
+  std::vector<Quantity> factors_;
 };
 
 /// A basis by its published name. \throws std::invalid_argument naming the known bases.

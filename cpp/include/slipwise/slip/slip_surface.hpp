@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "slipwise/slip/basis.hpp"
 
@@ -10,6 +11,14 @@ namespace slipwise {
 
 /// Slip rates (forward [m/s], left [m/s], yaw [rad/s]), ADDED to the commanded twist (thesis 3.1, 6.9).
 Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha, const SlipState& state);
+
+/// The same from features that are already known (Basis::features).
+Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                          std::span<const double> features);
+
+/// Slopes of the slip rates by the drive (v, omega).
+Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                               const SlipState& state);
 
 struct SlipRateLinearization {
   Eigen::Vector3d slip;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -31,6 +32,21 @@ struct SlipQuantities {
   explicit SlipQuantities(const SlipState& state);
 };
 
+/// Curvature omega / V is regularised below this speed [m/s]: omega V / (V^2 + kCurvatureSpeed^2).
+inline constexpr double kCurvatureSpeed = 0.01;
+inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
+
+inline SlipQuantities::SlipQuantities(const SlipState& state) {
+  const auto sign = [](double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); };
+  const double v = state.v, w = state.omega;
+  const double moving = v != 0.0 || w != 0.0 ? 1.0 : 0.0;  // a robot parked on a slope does not drift
+  const double norm = v * v + kCurvatureSpeed * kCurvatureSpeed;
+  const double per_w = v / norm;
+  value = {v, w, std::abs(v), std::abs(w), sign(v), w * per_w, state.gx * moving, state.gy * moving};
+  by_v = {1.0, 0.0, sign(v), 0.0, 0.0, w * (1.0 - 2.0 * v * per_w) / norm, 0.0, 0.0};
+  by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0};
+}
+
 /// A term with its slopes by speed and yaw rate.
 struct TermValue {
   double value;
@@ -38,18 +54,19 @@ struct TermValue {
   double by_omega;
 };
 
-/// Curvature omega / V is regularised below this speed [m/s]: omega V / (V^2 + kCurvatureSpeed^2).
-inline constexpr double kCurvatureSpeed = 0.01;
-inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
-
 /// coefficient * product of quantities. Written as text: `V*abs(w)`, `sgn(V)*w^2`, `abs(V)*V*w/g`, `kappa*V`, `gx`.
 class Term {
  public:
-  /// \throws std::invalid_argument: what is wrong in the text; also for a term that is not zero when the robot is parked.
+  /// \throws std::invalid_argument: what is wrong in the text; also for a term that is not zero when the robot is
+  /// parked.
   static Term parse(std::string_view text);
 
   /// The term in its canonical spelling; equal terms have equal text.
   const std::string& text() const { return text_; }
+
+  double coefficient() const { return coefficient_; }
+  /// The quantities that are multiplied, each as often as its power says.
+  const std::vector<Quantity>& factors() const { return factors_; }
 
   double value(const SlipQuantities& q) const;
   TermValue linearize(const SlipQuantities& q) const;

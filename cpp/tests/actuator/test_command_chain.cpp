@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command chain: what its steps sum to, causality, and its exact sensitivities.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "finite_difference.hpp"
+#include "sample_drives.hpp"
+#include "slipwise/actuator/command_chain.hpp"
+
+namespace slipwise {
+namespace {
+
+using Chain = Eigen::Matrix<double, kChainParameters, 1>;
+
+CommandChain chain_of(const Eigen::VectorXd& p) {
+  return {.lag_v = p[0], .lag_omega = p[1], .delay_v = p[2], .delay_omega = p[3], .clock_offset = p[4]};
+}
+
+/// Totals of duration, forward, left, turn; and a moment that tells early steps from late ones.
+Eigen::VectorXd totals(const DriveSteps& drive) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(7);
+  double time = 0.0;
+  for (const DriveStep& step : drive.steps) {
+    const Eigen::Vector3d motion(step.forward, step.left, step.turn);
+    const double middle = time + step.duration / 2.0;
+    sum[0] += step.duration;
+    sum.segment<3>(1) += motion;
+    sum.tail<3>() += middle * motion;
+    time += step.duration;
+  }
+  return sum;
+}
+
+Eigen::MatrixXd totals_jacobian(const DriveSteps& drive) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(7, kChainParameters);
+  double time = 0.0;
+  Eigen::RowVectorXd time_slope = Eigen::RowVectorXd::Zero(kChainParameters);
+  for (std::size_t k = 0; k < drive.steps.size(); ++k) {
+    const DriveStep& step = drive.steps[k];
+    const Eigen::Vector3d motion(step.forward, step.left, step.turn);
+    const DriveStepJacobian& jacobian = drive.jacobians[k];
+    sum.topRows<4>() += jacobian;
+    sum.bottomRows<3>() += (time + step.duration / 2.0) * jacobian.bottomRows<3>();
+    sum.bottomRows<3>() += motion * (time_slope + jacobian.row(0) / 2.0);
+    time += step.duration;
+    time_slope += jacobian.row(0);
+  }
+  return sum;
+}
+
+struct Case {
+  std::string name;
+  double period;
+  DriveWindow window;
+  Chain parameters;
+};
+
+/// Generic points: no input changes at a window's end, at its start, or together with one of the other channel.
+std::vector<Case> sample_cases() {
+  const Chain lagging(0.31, 0.47, 0.113, 0.071, 0.023);
+  const Chain shorter(0.11, 0.07, 0.2163, 0.1331, -0.0171);
+  const BodyTwist moving{0.6, 0.1, -0.3};
+  return {
+      {"20 Hz, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, lagging},
+      {"20 Hz, warmed up", 0.05, {.start = 4.013, .end = 6.487}, lagging},
+      {"20 Hz, late inputs clipped", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, shorter},
+      {"20 Hz, clipped by a negative offset",
+       0.05,
+       {.start = 4.013, .end = 6.487},
+       Chain(0.2, 0.3, 0.003, 0.004, -0.33)},
+      {"1 Hz held commands", 1.0137, {.start = 6.31, .end = 11.27, .initial = moving, .longest_step = 0.11}, lagging},
+      {"1 Hz held commands, warmed up", 1.0137, {.start = 6.31, .end = 11.27, .longest_step = 0.11}, shorter},
+  };
+}
+
+TEST_CASE("drive steps are linearised exactly by every parameter of the chain") {
+  for (const Case& c : sample_cases()) {
+    CAPTURE(c.name);
+    const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
+    const auto value = [&](const Eigen::VectorXd& p) { return totals(drive_steps(inputs, chain_of(p), c.window)); };
+    const DriveSteps linearized = linearize_drive_steps(inputs, chain_of(c.parameters), c.window);
+    CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
+    const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
+    CHECK(tests::jacobian_error(totals_jacobian(linearized), numeric, 0.1) < tests::kDerivativeTolerance);
+  }
+}
+
+TEST_CASE("without lag, delays and the clock offset move distances by the speeds at the ends") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const DriveWindow window{.start = 2.013, .end = 4.487};
+  const auto value = [&](const Eigen::VectorXd& p) { return totals(drive_steps(inputs, chain_of(p), window)); };
+  const Chain point(0.0, 0.0, 0.113, 0.0717, 0.0231);
+  const auto linearized = linearize_drive_steps(inputs, chain_of(point), window);
+  const auto moving_only = [&](const Eigen::VectorXd& p) {
+    Chain all = point;
+    all.tail<3>() = p;
+    return value(all);
+  };
+  const auto numeric = tests::finite_difference(moving_only, point.tail<3>(), 1e-4);
+  CHECK(tests::jacobian_error(totals_jacobian(linearized).rightCols<3>(), numeric) < tests::kDerivativeTolerance);
+  const double left_behind = inputs.at(2.013 - 0.0231 - 0.113).v - inputs.at(4.487 - 0.0231 - 0.113).v;
+  CHECK(totals_jacobian(linearized)(1, 2) == doctest::Approx(left_behind).epsilon(1e-12));
+}
+
+TEST_CASE("the identity chain hands each held input on as it is") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.1, 50);
+  const DriveSteps drive = drive_steps(inputs, {}, {.start = 1.03, .end = 1.28});
+  REQUIRE(drive.steps.size() == 3);
+  CHECK(drive.jacobians.empty());
+  const std::vector<double> durations{0.07, 0.1, 0.08};
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(drive.steps[i].duration == doctest::Approx(durations[i]).epsilon(1e-12));
+    CHECK(drive.steps[i].forward == doctest::Approx(durations[i] * inputs.sample(10 + i).v).epsilon(1e-12));
+    CHECK(drive.steps[i].turn == doctest::Approx(durations[i] * inputs.sample(10 + i).omega).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("drive steps cover the window without gap or overlap") {
+  for (const Case& c : sample_cases()) {
+    CAPTURE(c.name);
+    const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, c.period, 200);
+    const double covered = totals(drive_steps(inputs, chain_of(c.parameters), c.window))[0];
+    CHECK(covered == doctest::Approx(c.window.end - c.window.start).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a lag's distance does not depend on how the window is divided") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 1.0, 20);
+  const CommandChain chain{.lag_v = 0.8, .lag_omega = 0.6, .delay_v = 0.16, .delay_omega = 0.2};
+  const BodyTwist rest{};
+  const auto fine = drive_steps(inputs, chain, {.start = 3.1, .end = 8.3, .initial = rest, .longest_step = 0.01});
+  const auto coarse = drive_steps(inputs, chain, {.start = 3.1, .end = 8.3, .initial = rest, .longest_step = 5.0});
+  CHECK(fine.steps.size() > 10 * coarse.steps.size());
+  CHECK((totals(fine) - totals(coarse)).head<4>().norm() < 1e-11);
+}
+
+TEST_CASE("inputs later than the window's end are not used") {
+  const auto until = [](std::size_t count) {
+    return tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, count);
+  };
+  const CommandChain early{.clock_offset = -0.5};
+  const DriveWindow window{.start = 1.02, .end = 2.02};
+  const auto long_log = drive_steps(until(200), early, window);
+  const auto short_log = drive_steps(until(41), early, window);  // the last input at 2.0 s
+  REQUIRE(long_log.steps.size() == short_log.steps.size());
+  CHECK((totals(long_log) - totals(short_log)).norm() == 0.0);
+}
+
+TEST_CASE("a robot that was measured at rest starts from rest") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const CommandChain chain{.lag_v = 1e6, .lag_omega = 1e6};
+  const auto drive = drive_steps(inputs, chain, {.start = 2.0, .end = 3.0, .initial = BodyTwist{}});
+  CHECK(totals(drive).segment<3>(1).norm() < 1e-5);
+}
+
+TEST_CASE("a warmed-up lag forgets where it began") {
+  const InputTrack whole = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 400);
+  const CommandChain chain{.lag_v = 0.4, .lag_omega = 0.5, .delay_v = 0.1, .delay_omega = 0.05};
+  const auto from_rest = drive_steps(whole, chain, {.start = 0.0, .end = 15.0, .initial = BodyTwist{}});
+  const auto until_ten = drive_steps(whole, chain, {.start = 0.0, .end = 10.0, .initial = BodyTwist{}});
+  const auto warmed = drive_steps(whole, chain, {.start = 10.0, .end = 15.0});
+  const Eigen::Vector3d last = (totals(from_rest) - totals(until_ten)).segment<3>(1);
+  CHECK((totals(warmed).segment<3>(1) - last).norm() < 1e-3);
+}
+
+}  // namespace
+}  // namespace slipwise

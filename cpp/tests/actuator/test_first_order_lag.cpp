@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// The first-order lag: its exact step, its limits, and its derivatives.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include "finite_difference.hpp"
+#include "slipwise/actuator/first_order_lag.hpp"
+
+namespace slipwise {
+namespace {
+
+TEST_CASE("a lag approaches its input by 63 % in one time constant") {
+  CHECK(lag_step(0.0, 1.0, 0.8, 0.8).output == doctest::Approx(1.0 - std::exp(-1.0)));
+}
+
+TEST_CASE("a lag's distance is what a fine sum of its output gives") {
+  double sum = 0.0;
+  constexpr int kParts = 20000;
+  for (int i = 0; i < kParts; ++i) {
+    sum += lag_step(0.4, 1.5, 0.7, (i + 0.5) * 1.2 / kParts).output * 1.2 / kParts;
+  }
+  CHECK(lag_step(0.4, 1.5, 0.7, 1.2).integral == doctest::Approx(sum).epsilon(1e-8));
+}
+
+TEST_CASE("splitting a lag step in two changes nothing") {
+  const LagStep whole = lag_step(0.4, -1.0, 0.5, 0.9);
+  const LagStep first = lag_step(0.4, -1.0, 0.5, 0.35);
+  const LagStep second = lag_step(first.output, -1.0, 0.5, 0.55);
+  CHECK(second.output == doctest::Approx(whole.output).epsilon(1e-14));
+  CHECK(first.integral + second.integral == doctest::Approx(whole.integral).epsilon(1e-14));
+}
+
+TEST_CASE("without a time constant the output is the input at once") {
+  const LagStep step = lag_step(0.4, 2.0, 0.0, 0.5);
+  CHECK(step.output == 2.0);
+  CHECK(step.integral == 1.0);
+}
+
+TEST_CASE("a vanishing time constant has the limit of none, and finite slopes") {
+  for (const double time_constant : {1e-3, 1e-100, 1e-310}) {
+    CAPTURE(time_constant);
+    const auto step = linearize_lag_step(0.4, 2.0, time_constant, 0.5);
+    CHECK(step.value.output == doctest::Approx(2.0));
+    CHECK(step.value.integral == doctest::Approx(1.0).epsilon(1e-2));
+    CHECK(std::isfinite(step.by_time_constant.output));
+    CHECK(std::isfinite(step.by_time_constant.integral));
+    CHECK(std::isfinite(step.by_duration.output));
+  }
+}
+
+TEST_CASE("slopes of a lag step are its derivatives by duration, output and time constant") {
+  for (const double time_constant : {0.05, 0.8, 40.0}) {
+    for (const double duration : {0.02, 0.3, 1.7}) {
+      CAPTURE(time_constant);
+      CAPTURE(duration);
+      const auto at = [](const Eigen::VectorXd& p) -> Eigen::VectorXd {
+        const LagStep step = lag_step(p[1], 1.4, p[2], p[0]);
+        return Eigen::Vector2d(step.output, step.integral);
+      };
+      const Eigen::Vector3d point(duration, 0.3, time_constant);
+      const auto step = linearize_lag_step(0.3, 1.4, time_constant, duration);
+      Eigen::Matrix<double, 2, 3> analytic;
+      analytic << step.by_duration.output, step.by_output.output, step.by_time_constant.output,
+          step.by_duration.integral, step.by_output.integral, step.by_time_constant.integral;
+      const auto numeric = tests::finite_difference(at, point, std::min(0.005, time_constant / 20.0));
+      CHECK(tests::jacobian_error(analytic, numeric) < tests::kDerivativeTolerance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipwise

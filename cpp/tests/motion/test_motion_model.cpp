@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layout of the parameter vector and the derivative of the chain's parameters.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "finite_difference.hpp"
+#include "slipwise/motion/motion_model.hpp"
+
+namespace slipwise {
+namespace {
+
+std::vector<std::string> names(const MotionModel& model) {
+  std::vector<std::string> result;
+  for (const ParameterInfo& info : model.parameters()) {
+    result.push_back(info.name);
+  }
+  return result;
+}
+
+TEST_CASE("what is not learned is not a parameter") {
+  const Basis basis = named_basis("edd-2");
+  using Names = std::vector<std::string>;
+  const Names chain{"log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega"};
+  CHECK(names(MotionModel(basis, {})) == Names{"lon.V", "ang.w"});
+  CHECK(names(MotionModel(basis, {.clock_offset = true})) == Names{"lon.V", "ang.w", "clock_offset"});
+  CHECK(names(MotionModel(basis, {.dynamics = true})) ==
+        Names{"lon.V", "ang.w", chain[0], chain[1], chain[2], chain[3]});
+  CHECK(MotionModel(basis, {.dynamics = true, .clock_offset = true}).size() == 7);
+}
+
+TEST_CASE("every parameter says its unit and meaning") {
+  const MotionModel model(named_basis("thesis-15"), {.dynamics = true, .clock_offset = true});
+  REQUIRE(model.parameters().size() == static_cast<std::size_t>(model.size()));
+  for (const ParameterInfo& info : model.parameters()) {
+    CHECK_FALSE(info.name.empty());
+    CHECK_FALSE(info.unit.empty());
+    CHECK_FALSE(info.description.empty());
+  }
+}
+
+TEST_CASE("a chain that is not learned is the identity") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const CommandChain chain = model.chain(Eigen::Vector2d(0.1, 0.2));
+  CHECK(chain.lag_v == 0.0);
+  CHECK(chain.delay_omega == 0.0);
+  CHECK(chain.clock_offset == 0.0);
+}
+
+TEST_CASE("the chain Jacobian is the derivative of the chain by the model's parameters") {
+  for (const ChainParameters learned :
+       {ChainParameters{true, true}, ChainParameters{true, false}, ChainParameters{false, true}, ChainParameters{}}) {
+    const MotionModel model(named_basis("edd-2"), learned);
+    Eigen::VectorXd p = Eigen::VectorXd::LinSpaced(model.size(), -1.5, -0.4);
+    const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
+      const CommandChain c = model.chain(at);
+      Eigen::VectorXd all(kChainParameters);
+      all << c.lag_v, c.lag_omega, c.delay_v, c.delay_omega, c.clock_offset;
+      return all;
+    };
+    const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);
+    const Eigen::MatrixXd analytic = model.chain_jacobian(model.chain(p));
+    CHECK(tests::jacobian_error(analytic, numeric.rightCols(analytic.cols())) < tests::kDerivativeTolerance);
+  }
+}
+
+TEST_CASE("a parameter vector of the wrong size is refused with both sizes") {
+  const MotionModel model(named_basis("edd-2"), {.clock_offset = true});
+  CHECK_THROWS_WITH_AS(model.check(Eigen::Vector2d(0.0, 0.0)), doctest::Contains("takes 3 parameters, got 2"),
+                       std::invalid_argument);
+}
+
+TEST_CASE("a parameter that is not finite is refused") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const Eigen::Vector2d bad(0.0, std::numeric_limits<double>::quiet_NaN());
+  CHECK_THROWS_WITH_AS(model.check(bad), doctest::Contains("not finite"), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The derivative of a segment's last pose by every parameter, over all bases, drives and chains.
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "finite_difference.hpp"
+#include "sample_bases.hpp"
+#include "sample_drives.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kStep = 1e-3;
+
+struct Case {
+  std::string name;
+  ChainParameters learned;
+  Eigen::VectorXd chain;  ///< the model's chain parameters
+};
+
+std::vector<Case> sample_chains() {
+  const double lag_v = std::log(0.31), lag_omega = std::log(0.22), delay_v = std::log(0.0827),
+               delay_omega = std::log(0.1133);
+  Eigen::VectorXd dynamics(4), both(5);
+  dynamics << lag_v, lag_omega, delay_v, delay_omega;
+  both << lag_v, lag_omega, delay_v, delay_omega, 0.0231;
+  return {{"no chain", {}, Eigen::VectorXd(0)},
+          {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
+          {"dynamics", {.dynamics = true}, dynamics},
+          {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both}};
+}
+
+Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain) {
+  Eigen::VectorXd all(slip.size() + chain.size());
+  all << slip, chain;
+  return all;
+}
+
+double linearization_error(const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs,
+                           const Segment& segment) {
+  const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
+    return integrate_segment(model, p, inputs, segment).poses.back().vector();
+  };
+  const auto numeric = tests::finite_difference(value, parameters, kStep);
+  return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
+}
+
+void check_all_drives(const Basis& basis, const Case& chain, double period, const Segment& segment) {
+  const MotionModel model(basis, chain.learned);
+  const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), chain.chain);
+  for (const tests::SampleDrive& drive : tests::sample_drives()) {
+    CAPTURE(basis.name());
+    CAPTURE(chain.name);
+    CAPTURE(drive.name);
+    const InputTrack inputs = tests::sampled(drive.twist, 0.0, period, 200);
+    CHECK(linearization_error(model, parameters, inputs, segment) < tests::kDerivativeTolerance);
+  }
+}
+
+const Segment kSegment{.start = 3.0131, .end = 5.0177, .gx = 0.3, .gy = -0.5};
+
+TEST_CASE("linearised segments have the exact derivative by every parameter for all bases, drives and chains") {
+  for (const Basis& basis : tests::all_bases()) {
+    for (const Case& chain : sample_chains()) {
+      check_all_drives(basis, chain, 0.05, kSegment);
+    }
+  }
+}
+
+TEST_CASE("linearised segments are exact from a measured initial twist and under commands held for a second") {
+  const Basis basis = named_basis("odd-even-10");
+  Segment measured = kSegment;
+  measured.initial = BodyTwist{0.5, 0.1, 0.4};
+  Segment longer = measured;
+  longer.start = 3.3131;
+  longer.end = 8.2177;
+  for (const Case& chain : sample_chains()) {
+    check_all_drives(basis, chain, 0.05, measured);
+    check_all_drives(basis, chain, 1.0137, longer);
+  }
+}
+
+TEST_CASE("the derivative where both channels have the same delay is the limit of nearly equal delays") {
+  const Basis basis = named_basis("odd-even-10");
+  const MotionModel model(basis, {.dynamics = true, .clock_offset = true});
+  Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains().back().chain);
+  equal[model.slip_size() + 3] = equal[model.slip_size() + 2];
+  for (const tests::SampleDrive& drive : tests::sample_drives()) {
+    CAPTURE(drive.name);
+    const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+    const auto at = [&](const Eigen::VectorXd& p) {
+      return linearize_segment(model, p, inputs, kSegment).by_parameter;
+    };
+    for (const double apart : {1e-5, -1e-5}) {
+      Eigen::VectorXd nearly = equal;
+      nearly[model.slip_size() + 3] += apart;
+      CHECK(tests::jacobian_error(at(equal), at(nearly), 0.1) < 1e-4);
+    }
+  }
+}
+
+TEST_CASE("linearised segments predict what integration predicts") {
+  for (const Basis& basis : tests::all_bases()) {
+    for (const Case& chain : sample_chains()) {
+      const MotionModel model(basis, chain.learned);
+      const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 22), chain.chain);
+      for (const tests::SampleDrive& drive : tests::sample_drives()) {
+        const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+        const auto linearized = linearize_segment(model, parameters, inputs, kSegment);
+        const SegmentPath path = integrate_segment(model, parameters, inputs, kSegment);
+        CHECK((linearized.predicted.vector() - path.poses.back().vector()).norm() < 1e-12);
+        REQUIRE(linearized.path.poses.size() == path.poses.size());
+        CHECK(linearized.path.times == path.times);
+        CHECK(linearized.path.tangents.size() == path.tangents.size());
+        CHECK(linearized.path.drive.size() == path.drive.size());
+      }
+    }
+  }
+}
+
+TEST_CASE("a spin of more than one turn keeps its turns in the prediction") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const InputTrack inputs = tests::sampled([](double) { return BodyTwist{0.1, 0.0, 5.0}; }, 0.0, 0.05, 100);
+  const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 1.0, .end = 3.0});
+  CHECK(at.predicted.theta == doctest::Approx(10.0).epsilon(1e-12));
+}
+
+}  // namespace
+}  // namespace slipwise
