@@ -101,6 +101,8 @@ def _collect(bag: BagFile, roles: Roles, options: LogOptions) -> _Collected:
         consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, message.data))]
     for message in bag.messages(set(consumers)):
         decoded = bag.decode(message)
+        if decoded is None:
+            continue
         for consume in consumers[message.topic]:
             consume(decoded, message.received_ns)
     return _Collected(
@@ -147,9 +149,11 @@ def _runs(
     elif roles.command is not None and roles.command.type == TWIST:
         notes.append(f"{roles.command.name} has no header: its commands are dated by the time of receipt")
     commands = wheels = None
-    if roles.command is not None:
+    if len(samples["pose"].values) == 0:
+        raise LogError(f"no pose could be read from {roles.pose.name}", advice="set pose_topic")
+    if roles.command is not None and len(samples["command"].values):
         commands = command_stream(context, samples["command"], roles.command.type)
-    if roles.wheel is not None:
+    if roles.wheel is not None and len(samples["wheel"].values):
         wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
     if roles.pose.type == NAV_SAT_FIX:
         inputs = next(

@@ -88,20 +88,17 @@ class BagFile:
                 )
 
     def decode(self, message: RawMessage) -> Any:
-        """Return the message as an object.
-
-        Raises:
-            LogError: it does not fit its type.
-        """
+        """Return the message as an object; None, and counted, if it does not fit its type."""
         store = self._store = self._store or self._typestore()
         read = store.deserialize_ros1 if self.format == "rosbag1" else store.deserialize_cdr
         try:
             return read(message.data, message.type)
         except Exception as error:  # a damaged message can fail in any way
-            raise LogError(
-                f"a message of {message.topic} cannot be decoded as {message.type}: {_first_line(error)}",
-                where=str(self._path),
-            ) from error
+            _log.debug("a message of %s cannot be decoded: %s", message.topic, error)
+            reason = f"messages of {message.topic} that cannot be decoded as {message.type}"
+            where = f"{self._path.name}, received at {message.received_ns / 1e9:.3f} s"
+            self._tally.add("bad-message", reason, count=1, where=where)
+            return None
 
     def _open_folder(self, path: Path, files: Sequence[Path]) -> bool:
         """Open a rosbag2 folder by its metadata; say whether that went well, else its files may still do."""

@@ -11,7 +11,8 @@ _A = 6378137.0  # [m] WGS-84 semi-major axis
 _F = 1.0 / 298.257223563  # WGS-84 flattening
 _E2 = _F * (2.0 - _F)  # first eccentricity squared
 _MAX_IMU_AGE = 0.5  # [s] an IMU sample further away says nothing about a fix
-_MIN_CHORD = 0.3  # [m] a shorter piece of track has no course
+_HALF_CHORD = 0.25  # [m] of track on either side of a fix make its course
+_MIN_CHORD = 0.2  # [m] a shorter piece of track has no course
 _MAX_CHORD_TIME = 3.0  # [s] a piece of track that takes longer is not one course
 
 
@@ -51,7 +52,7 @@ def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats,
 
 
 def heading_from_track(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> tuple[Floats, Bools]:
-    """Take the direction from the fix before to the fix after as heading, turned about when driving backward.
+    """Take the direction of the track around each fix as heading, turned about when driving backward.
 
     Args:
         t: stamps [N] in s, increasing.
@@ -62,8 +63,9 @@ def heading_from_track(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -
     Returns:
         yaw [N] in rad, and whether the robot moved enough to have a course [N].
     """
-    count = len(t)
-    i, j = np.maximum(np.arange(count) - 1, 0), np.minimum(np.arange(count) + 1, count - 1)
+    path = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    i = np.maximum(np.searchsorted(path, path - _HALF_CHORD, side="right") - 1, 0)
+    j = np.minimum(np.searchsorted(path, path + _HALF_CHORD), len(path) - 1)
     dx, dy = x[j] - x[i], y[j] - y[i]
     moved = (np.hypot(dx, dy) >= _MIN_CHORD) & (t[j] - t[i] <= _MAX_CHORD_TIME)
     yaw = np.arctan2(dy, dx)

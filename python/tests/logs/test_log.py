@@ -35,7 +35,7 @@ def test_an_unknown_deviation_is_allowed() -> None:
 
 def test_integers_in_place_of_numbers_are_refused() -> None:
     with pytest.raises(LogError, match="float64"):
-        Inputs(t=T, v=np.ones(3, np.int64), vy=ONE, omega=ONE)  # type: ignore[arg-type]
+        Inputs(t=T, v=np.ones(3, np.int64), vy=ONE, omega=ONE)
 
 
 def test_no_poses_is_a_valid_series() -> None:
