@@ -15,6 +15,7 @@ from slipwise.logs.plausibility import agreement, check_plausible
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
 _TOO_MANY = 0.3  # part of all steps; more jumps than this are no accident
+_SLOWEST = 10.0  # [s] between poses
 _FEW = 20  # steps; with fewer no such judgement is made
 
 
@@ -25,6 +26,7 @@ def checked(log: Log) -> Log:
         LogError: poses and inputs contradict each other.
     """
     where = log.sources[0].path if log.sources else ""
+    _check_seconds(log, where)
     for name in ("commands", "wheels"):
         pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
         check_plausible(agreement(motion_windows(pairs)), name, where)
@@ -39,6 +41,14 @@ def checked(log: Log) -> Log:
             advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
         )
     return replace(log, runs=runs, left_out=log.left_out + found)
+
+
+def _check_seconds(log: Log, where: str) -> None:
+    """Refuse stamps that are not in seconds: no robot is measured every 10 s and slower."""
+    steps = np.concatenate([np.empty(0), *(np.diff(run.poses.t) for run in log.runs)])
+    if len(steps) >= _FEW and float(np.median(steps)) > _SLOWEST:
+        what = f"poses are {np.median(steps):.3g} s apart"
+        raise LogError(what, where=where, advice="stamps must be in seconds, not in ms, us or ns")
 
 
 def _named(run: Run, name: str) -> Inputs | None:

@@ -64,6 +64,10 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
     others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
+    for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
+        deviation = others[name]
+        if deviation is not None:
+            others[name] = np.where(deviation > 0.0, deviation, np.nan)
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
     return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
 

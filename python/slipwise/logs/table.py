@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,6 +21,7 @@ from slipwise.logs.log import Floats
 if TYPE_CHECKING:
     import pyarrow as pa
 
+_ABSURD = 1e30  # no measurement in SI units is larger
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
 
 
@@ -47,7 +49,7 @@ class Table:
         return f"{self.path.name}, {unit} {row + self.first_line}"
 
     def numbers(self, name: str, tally: Tally) -> Floats:
-        """Return a column as numbers, NaN where the cell is empty; counts cells that are NaN or infinite.
+        """Return a column as numbers, NaN where the cell is empty; counts those that are NaN or infinite.
 
         Raises:
             LogError: the column holds something else.
@@ -58,10 +60,10 @@ class Table:
         except (ValueError, NotImplementedError) as error:
             advice = f"column {name} must hold numbers"
             raise LogError(f"not a number in column {name}", where=str(self.path), advice=advice) from error
-        finite = np.isfinite(values)
+        finite = np.abs(values) < _ABSURD  # false for NaN
         if finite.sum() < len(values) - column.null_count:
             wrong = np.asarray(column.is_valid().to_numpy(), dtype=bool) & ~finite
-            reason = f"cells of {name} that are not finite"
+            reason = f"cells of {name} that are not finite, or absurdly large"
             tally.add("non-finite", reason, count=int(wrong.sum()), where=self.place(int(np.argmax(wrong))))
             values = np.where(finite, values, np.nan)
         return values
@@ -126,7 +128,9 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
         )
     except pa.ArrowInvalid as error:
         advice = "every cell of a measurement must be a number or empty"
-        raise LogError(f"not a tidy table: {error}", where=str(path), advice=advice) from error
+        raise LogError(
+            f"not a tidy table: {_named_column(error, header)}", where=str(path), advice=advice
+        ) from error
     reason = f"rows that do not have {len(header)} cells"
     tally.add("broken-row", reason, count=len(broken), where=path.name)
     return Table(path, "csv.gz" if packed else "csv", sha256, arrow.unify_dictionaries(), first_line=skip + 1)
@@ -185,6 +189,11 @@ def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
             f"column {twice[0]} is there twice", where=f"{path}, line 1", advice="rename one of them"
         )
     return names, 1
+
+
+def _named_column(error: Exception, header: list[str]) -> str:
+    """Return the message with the column's name in place of its number."""
+    return re.sub(r"CSV column #(\d+)", lambda found: f"column {header[int(found[1])]}", str(error))
 
 
 def _is_dictionary(column: pa.Array) -> bool:

@@ -18,7 +18,7 @@ from slipwise.logs.table import Table
 TEXT = ("run", "frame", "terrain")
 NUMERIC = (
     *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_steer", "odo_v", "odo_vy", "odo_omega"),
-    *("wheel_left", "wheel_right", "x", "y", "yaw", "pose_new", *OPTIONAL_POSE_COLUMNS),
+    *("wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
 )
 USED = frozenset(
     ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")

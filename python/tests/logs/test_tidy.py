@@ -139,7 +139,7 @@ def test_missing_columns_are_named_with_those_found(tmp_path: Path) -> None:
         (b"\x00\x01\x02\x03binary", "not a text file"),
         (HEADER.encode() + b"\n", "no rows"),
         (b"t,t,x,y,yaw,cmd_v,cmd_omega\n0,0,0,0,0,0,0\n", "column t is there twice"),
-        (HEADER.encode() + b"\n0,fast,0,0,0,0,1\n", "must be a number"),
+        (HEADER.encode() + b"\n0,fast,0,0,0,0,1\n", "column cmd_v: .*must be a number"),
     ],
 )
 def test_hopeless_files_are_refused_in_one_line(tmp_path: Path, content: bytes, expected: str) -> None:
@@ -162,6 +162,28 @@ def test_a_cut_off_gzip_file_is_refused(tmp_path: Path) -> None:
 def test_rows_with_missing_cells_are_counted(tmp_path: Path) -> None:
     log = open_log(table(tmp_path, "0,1,0,0,0,0,1", "0.1,1,0,0.1,0,0,1", "0.2,1"))
     assert counts(log) == {"broken-row": 1}
+
+
+def test_absurdly_large_cells_are_counted_too(tmp_path: Path) -> None:
+    log = open_log(table(tmp_path, "0,1,0,0,0,0,1", "0.1,1,0,1e300,0,0,1", "0.2,1,0,0.2,0,0,1"))
+    assert counts(log) == {"non-finite": 1, "incomplete": 1}
+
+
+def test_pose_new_may_be_true_or_false(tmp_path: Path) -> None:
+    log = open_log(table(tmp_path, "0,1,0,0,0,0,True", "0.1,1,0,0.1,0,0,False", "0.2,1,0,0.2,0,0,True"))
+    assert log.runs[0].poses.t.tolist() == [0.0, 0.2]
+
+
+def test_a_deviation_of_zero_is_not_known(tmp_path: Path) -> None:
+    log = open_log(table(tmp_path, "0,1,0,0,0,0,1,0", "0.1,1,0,0.1,0,0,1,0.2", header=f"{HEADER},std_xy"))
+    std = log.runs[0].poses.std_xy
+    assert std is not None
+    np.testing.assert_array_equal(std, [np.nan, 0.2])
+
+
+def test_stamps_in_milliseconds_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="not in ms"):
+        open_log(table(tmp_path, *(f"{50 * i},1,0,{0.05 * i},0,0,1" for i in range(100))))
 
 
 def test_a_missing_file_is_named() -> None:

@@ -19,7 +19,7 @@ from slipwise.logs.topics import Topic, choose_topics
 
 def chosen(*topics: tuple[str, str], options: LogOptions | None = None) -> tuple[str | None, ...]:
     roles = choose_topics([Topic(name, kind, 10) for name, kind in topics], options or LogOptions())
-    return tuple(topic and topic.name for topic in (roles.pose, roles.command, roles.wheel))
+    return tuple(topic.name if topic else None for topic in (roles.pose, roles.command, roles.wheel))
 
 
 CLEARPATH = (
