@@ -16,6 +16,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
+ABSURD = 1e30  # no measurement in SI units is larger
 OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw")
 
 

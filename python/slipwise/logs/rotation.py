@@ -16,7 +16,8 @@ def unit_quaternions(q: Floats) -> tuple[Floats, Bools]:
     Returns:
         The unit quaternions [N, 4], and whether each [N] was one to within 1e-2; the others are meaningless.
     """
-    norm = np.linalg.norm(q, axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):  # a damaged message can hold anything
+        norm = np.linalg.norm(q, axis=1)
     good = np.abs(norm - 1.0) <= _NORM_TOLERANCE
     return q / np.where(good, norm, 1.0)[:, None], np.asarray(good)
 

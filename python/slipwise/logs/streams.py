@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
+from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
 from slipwise.logs.stamps import forward_stamps
 
 
@@ -36,11 +36,11 @@ class RawStream:
 
 def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
     """Leave out, and count, samples that are not finite and stamps that do not go forward."""
-    finite = np.isfinite(stream.t)
+    finite = np.abs(stream.t) < ABSURD  # false for NaN
     for name, values in stream.columns.items():
         if name not in stream.optional:
-            finite &= np.isfinite(values)
-    stream = _keep(stream, finite, tally, "incomplete", "with a number missing")
+            finite &= np.abs(values) < ABSURD
+    stream = _keep(stream, finite, tally, "incomplete", "with a number missing or impossible")
     keep, duplicate, backward = forward_stamps(stream.t)
     if keep.all():
         return stream
@@ -64,6 +64,7 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
     others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
+    others = {name: v if v is None else np.where(np.abs(v) < ABSURD, v, np.nan) for name, v in others.items()}
     for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
         deviation = others[name]
         if deviation is not None:

@@ -16,12 +16,11 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Floats
+from slipwise.logs.log import ABSURD, Floats
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-_ABSURD = 1e30  # no measurement in SI units is larger
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
 
 
@@ -60,7 +59,7 @@ class Table:
         except (ValueError, NotImplementedError) as error:
             advice = f"column {name} must hold numbers"
             raise LogError(f"not a number in column {name}", where=str(self.path), advice=advice) from error
-        finite = np.abs(values) < _ABSURD  # false for NaN
+        finite = np.abs(values) < ABSURD  # false for NaN
         if finite.sum() < len(values) - column.null_count:
             wrong = np.asarray(column.is_valid().to_numpy(), dtype=bool) & ~finite
             reason = f"cells of {name} that are not finite, or absurdly large"
