@@ -23,6 +23,7 @@ void bind_settings(nb::module_& m) {
   nb::class_<IekfSettings>(m, "IekfSettings")
       .def(nb::init<>())
       .def_rw("iterations", &IekfSettings::iterations)
+      .def_rw("tolerance", &IekfSettings::tolerance)
       .def_rw("halvings", &IekfSettings::halvings)
       .def_rw("huber", &IekfSettings::huber)
       .def_rw("gate", &IekfSettings::gate);

@@ -3,17 +3,25 @@
 #include "slipwise/estimate/iekf.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 namespace {
 
-Eigen::Vector3d residual(const Segment& segment, const Pose2& predicted) {
-  return segment.measured.vector() - predicted.vector();
+using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of a perfect fit is no uphill step
+
+/// S = J P J^T + R.
+Eigen::Matrix3d innovation_covariance(const Eigen::MatrixXd& prior, const Jacobian& jacobian,
+                                      const Eigen::Matrix3d& noise) {
+  const Jacobian spread = jacobian * prior;
+  return spread * jacobian.transpose() + noise;
 }
 
 /// A point of the iteration. The mean is kept as prior + P dual, so that the prior's cost needs no inverse of P.
@@ -29,20 +37,21 @@ class MapProblem {
  public:
   MapProblem(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
              const Eigen::Matrix3d& noise)
-      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise) {}
+      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise), noise_factor_(noise) {}
 
   Iterate evaluate(Eigen::VectorXd dual) const {
-    Eigen::VectorXd mean = prior_.mean + prior_.covariance * dual;
+    const Eigen::VectorXd away = prior_.covariance * dual;
+    Eigen::VectorXd mean = prior_.mean + away;
     SegmentLinearization at = linearize_segment(model_, mean, inputs_, segment_);
-    const Eigen::Vector3d r = residual(segment_, at.predicted);
-    const double cost = dual.dot(prior_.covariance * dual) + r.dot(noise_.llt().solve(r));
+    const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
+    const double cost = dual.dot(away) + r.dot(noise_factor_.solve(r));
     return {std::move(dual), std::move(mean), std::move(at), r, cost};
   }
 
   /// p_{i+1} = p- + K_i [z - h(p_i) - J_i (p- - p_i)], as a dual vector.
   Eigen::VectorXd gauss_newton_dual(const Iterate& i) const {
     const auto& jacobian = i.at.by_parameter;
-    const Eigen::Matrix3d s = jacobian * prior_.covariance * jacobian.transpose() + noise_;
+    const Eigen::Matrix3d s = innovation_covariance(prior_.covariance, jacobian, noise_);
     return jacobian.transpose() * s.llt().solve(i.innovation - jacobian * (prior_.mean - i.mean));
   }
 
@@ -51,7 +60,7 @@ class MapProblem {
     const Eigen::VectorXd full = gauss_newton_dual(i) - i.dual;
     for (double step = 1.0; halvings >= 0; --halvings, step /= 2.0) {
       Iterate next = evaluate(i.dual + step * full);
-      if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12)) {
+      if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12) + kNegligibleCost) {
         i = std::move(next);
         return true;
       }
@@ -65,12 +74,14 @@ class MapProblem {
   const InputTrack& inputs_;
   const Segment& segment_;
   const Eigen::Matrix3d& noise_;
+  Eigen::LLT<Eigen::Matrix3d> noise_factor_;
 };
 
-Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Eigen::Matrix<double, 3, Eigen::Dynamic>& jacobian,
-                            const Eigen::Matrix3d& noise) {
-  const Eigen::Matrix3d s = jacobian * prior * jacobian.transpose() + noise;
-  const Eigen::MatrixXd gain = s.llt().solve(jacobian * prior).transpose();
+/// (I - K J) P (I - K J)^T + K R K^T.
+Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
+  const Jacobian spread = jacobian * prior;
+  const Eigen::Matrix3d s = spread * jacobian.transpose() + noise;
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = s.llt().solve(spread).transpose();
   const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
   const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
   return (posterior + posterior.transpose()) / 2.0;
@@ -79,22 +90,27 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Eigen::Matrix<do
 void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const Eigen::Matrix3d& noise) {
   model.check(prior.mean);
   if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
-    throw std::invalid_argument("the prior's covariance must be square with one row per parameter");
+    throw std::invalid_argument("the prior's covariance must be square with one row per parameter, " +
+                                std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
+                                " x " + std::to_string(prior.covariance.cols()));
   }
-  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite() || !noise.allFinite()) {
-    throw std::invalid_argument("a segment must end after it starts and have finite measurements and noise");
+  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
+    throw std::invalid_argument("a segment must end after it starts and have finite measurements");
+  }
+  if (!noise.allFinite() || noise.llt().info() != Eigen::Success) {
+    throw std::invalid_argument("a segment's noise covariance must be finite and positive definite");
   }
 }
 
 }  // namespace
 
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
-                       const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
   const MapProblem first(model, prior, inputs, segment, noise);
   Iterate now = first.evaluate(Eigen::VectorXd::Zero(model.size()));
-  IekfUpdate update{prior, now.innovation, noise, 0.0, 1.0, Status::Converged};
-  update.innovation_covariance += now.at.by_parameter * prior.covariance * now.at.by_parameter.transpose();
+  IekfUpdate update{prior, now.innovation,   innovation_covariance(prior.covariance, now.at.by_parameter, noise), 0.0,
+                    1.0,   Status::Converged};
   update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
@@ -109,10 +125,19 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   const MapProblem problem(model, prior, inputs, segment, weighted_noise);
   now.cost = now.innovation.dot(weighted_noise.llt().solve(now.innovation));
   for (int i = 0; i < settings.iterations; ++i) {
-    if (!problem.descend(now, settings.halvings)) {
-      update.status = i == 0 ? Status::NotConverged : update.status;
-      break;
+    const double cost_before = now.cost;
+    if (problem.descend(now, settings.halvings)) {
+      if (cost_before - now.cost < settings.tolerance) {
+        break;
+      }
+      continue;
     }
+    if (i == 0) {  // nothing was learned: the prior stands
+      update.weight = 0.0;
+      update.status = Status::NotConverged;
+      return update;
+    }
+    break;
   }
   update.estimate.mean = now.mean;
   update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);

@@ -47,6 +47,7 @@ class FilterTable(_Section):
     """The iterated extended Kalman filter."""
 
     iterations: Annotated[int, Field(ge=1, le=50)] = _IEKF.iterations
+    tolerance: Positive = _IEKF.tolerance
     halvings: Annotated[int, Field(ge=0, le=50)] = _IEKF.halvings
     huber: Positive = _IEKF.huber
     gate: Positive = _IEKF.gate
