@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Everything that a report shows, and what several sections ask of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from slipwise.calibration.result import Calibration
+from slipwise.evaluation.result import Evaluation, Predictions, Score
+from slipwise.logs.log import Inputs, Log, Run
+
+PLAIN = "none"  # the method that predicts without slip
+LEARNED = "auto"  # the method that is slipwise's own
+SIMPLE = "edd-2"  # two fitted numbers, today's practice
+VENDOR = "vendor"
+MAIN_METHODS = (PLAIN, VENDOR, SIMPLE, LEARNED)
+
+
+@dataclass(frozen=True, eq=False)
+class Contents:
+    """What a report is about."""
+
+    log: Log
+    calibration: Calibration
+    evaluation: Evaluation
+    title: str
+    command: str = ""  # the command line that made the report
+
+    @property
+    def longest_horizon(self) -> float | None:
+        """The longest horizon with predictions or scores [s], None where there is none."""
+        horizons = [part.horizon for part in self.evaluation.predictions]
+        horizons += [score.horizon for score in self.evaluation.scores]
+        return max(horizons, default=None)
+
+    @property
+    def learned_method(self) -> str | None:
+        """The learned method that stands for slipwise in the figures: `auto`, else the best causal one."""
+        methods = [name for name in self.evaluation.methods if name not in (PLAIN, VENDOR)]
+        if LEARNED in methods:
+            return LEARNED
+        scores = [
+            score
+            for score in self.evaluation.scores
+            if score.method in methods and score.causal and score.horizon == self.longest_horizon
+        ]
+        best = min(scores, key=lambda score: score.position.mean, default=None)
+        return best.method if best else next(iter(methods), None)
+
+    def score(self, method: str | None, horizon: float | None) -> Score | None:
+        """Return the score of a method, None where there is none."""
+        found = (s for s in self.evaluation.scores if s.method == method and s.horizon == horizon)
+        return next(found, None)
+
+    def predictions(self, method: str | None, horizon: float | None) -> Predictions | None:
+        """Return the predictions of a method, None where there are none at all."""
+        for part in self.evaluation.predictions:
+            if part.method == method and part.horizon == horizon and len(part.t_start):
+                return part
+        return None
+
+    def inputs(self, run: Run) -> Inputs | None:
+        """Return the inputs of a run that were evaluated: commands, or the twist from the wheels."""
+        inputs = run.wheels if self.evaluation.input == "wheel" else run.commands
+        return inputs if inputs is not None and len(inputs) else None

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws the figures of the report one after the other, and notes on the html element what went wrong:
+// data-figures (how many there are), data-drawn (how many are drawn), data-errors (messages, empty when all is well).
+"use strict";
+(() => {
+  const state = document.documentElement.dataset;
+  const errors = [];
+  const note = (message) => {
+    errors.push(String(message));
+    state.errors = errors.join(" | ");
+  };
+  state.errors = "";
+  state.drawn = "0";
+  window.addEventListener("error", (event) => note(event.message));
+  window.addEventListener("unhandledrejection", (event) => note(event.reason));
+  document.addEventListener("securitypolicyviolation", (event) => note("refused: " + event.violatedDirective));
+
+  const mouse = window.matchMedia("(hover: hover)").matches;
+  const config = {
+    responsive: true,
+    displayModeBar: mouse ? "hover" : false,
+    displaylogo: false,
+    showTips: false,
+    modeBarButtonsToRemove: ["select2d", "lasso2d", "sendDataToCloud"],
+  };
+  const sources = Array.from(document.querySelectorAll("script[data-figure]"));
+  state.figures = String(sources.length);
+
+  const draw = async (source) => {
+    const place = document.getElementById(source.dataset.figure);
+    try {
+      const figure = JSON.parse(source.textContent);
+      figure.layout.dragmode = mouse ? "zoom" : false; // a finger on a figure scrolls the page
+      if (figure.layout.scene) figure.layout.dragmode = "turntable";
+      await Plotly.newPlot(place, figure.data, figure.layout, config);
+      place.dataset.drawn = "yes";
+      state.drawn = String(Number(state.drawn) + 1);
+    } catch (problem) {
+      place.textContent = "This figure could not be drawn: " + problem;
+      note(source.dataset.figure + ": " + problem);
+    }
+  };
+  const drawAll = async () => {
+    for (const source of sources) {
+      await draw(source);
+      await new Promise((resume) => setTimeout(resume)); // lets the page scroll meanwhile
+    }
+    state.ready = "yes";
+  };
+
+  document.querySelectorAll("button[data-log-scale]").forEach((button) => {
+    button.setAttribute("aria-pressed", "false");
+    button.addEventListener("click", () => {
+      const pressed = button.getAttribute("aria-pressed") !== "true";
+      button.setAttribute("aria-pressed", String(pressed));
+      Plotly.relayout(button.dataset.logScale, { "yaxis.type": pressed ? "log" : "linear", "yaxis.autorange": true });
+    });
+  });
+  drawAll();
+})();

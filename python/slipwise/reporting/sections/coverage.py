@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which speeds and yaw rates the log holds, and for how long."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.logs.log import Inputs
+from slipwise.reporting.contents import Contents
+from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, numbers, top_colour_bar
+from slipwise.reporting.markup import legend, missing
+from slipwise.reporting.palette import SEQUENTIAL
+from slipwise.segments import WindowRules
+
+_BINS = 32
+Floats = NDArray[np.float64]
+
+
+class CoverageSection:
+    """Where in the plane of inputs did the robot drive?"""
+
+    title = "Speeds and yaw rates driven"
+    explanation = (
+        "How long the robot was told to drive (or its wheels drove) at each speed and yaw rate; the model is not "
+        "known to hold outside the dashed box."
+    )
+
+    def html(self, contents: Contents) -> str:
+        """Return the histogram over the plane of inputs."""
+        used = [inputs for run in contents.log.runs if (inputs := contents.inputs(run)) is not None]
+        if not used:
+            name = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
+            return missing(f"The log has no {name}, so there is no plane of inputs to cover.")
+        v, omega = (np.concatenate([getattr(part, name) for part in used]) for name in ("v", "omega"))
+        held = np.concatenate([_held_for(part) for part in used])
+        seconds, v_edges, omega_edges = np.histogram2d(
+            v, omega, bins=_BINS, range=(_range(v), _range(omega)), weights=held
+        )
+        heatmap = {
+            "type": "heatmap",
+            "x": numbers(0.5 * (v_edges[:-1] + v_edges[1:])),
+            "y": numbers(0.5 * (omega_edges[:-1] + omega_edges[1:])),
+            "z": numbers(np.where(seconds > 0.0, np.log10(np.maximum(seconds, 1e-3)), np.nan).T),
+            "customdata": numbers(seconds.T),
+            "colorscale": SEQUENTIAL,
+            "reversescale": True,
+            "colorbar": _colour_bar(seconds),
+            "hoverongaps": False,
+            "hovertemplate": "V %{x:.2f} m/s, ω %{y:.2f} rad/s<br>%{customdata:.1f} s<extra></extra>",
+        }
+        figure = Figure(
+            key="coverage",
+            label="Time spent at each speed and yaw rate",
+            traces=[heatmap],
+            layout={
+                "margin": TOP_BAR_MARGIN,
+                "xaxis": axis("speed V [m/s]"),
+                "yaxis": axis("yaw rate ω [rad/s]"),
+                "shapes": [_box(contents)],
+            },
+            height=420,
+            caption=f"{held.sum():.0f} s of known input; the colours are logarithmic, white was never driven.",
+        )
+        return legend((("range of the model", "#1b2430", "dash"),)) + figure.html()
+
+
+def _held_for(inputs: Inputs) -> Floats:
+    """How long each input was held [s]; an old one is unknown."""
+    longest = WindowRules().unknown_after
+    return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), longest)
+
+
+def _range(values: Floats) -> tuple[float, float]:
+    """The range of a histogram's axis: that of the values, a little wider."""
+    low, high = float(values.min()), float(values.max())
+    margin = 0.03 * (high - low) or 0.1
+    return low - margin, high + margin
+
+
+def _colour_bar(seconds: Floats) -> dict[str, Any]:
+    """Whole decades between the shortest and the longest time, written in seconds."""
+    driven = seconds[seconds > 0.0]
+    exponents = np.arange(-3, 7)
+    if len(driven):
+        low, high = np.floor(np.log10(max(driven.min(), 1e-3))), np.ceil(np.log10(max(driven.max(), 1e-3)))
+        exponents = exponents[(exponents >= low) & (exponents <= high)]
+    texts = [f"{10.0**exponent:g}" for exponent in exponents.tolist()]
+    return top_colour_bar("time [s]", tickvals=numbers(exponents), ticktext=texts)
+
+
+def _box(contents: Contents) -> dict[str, Any]:
+    span = contents.calibration.model.content.range
+    return {
+        "type": "rect",
+        "x0": span.speed[0],
+        "x1": span.speed[1],
+        "y0": span.yaw_rate[0],
+        "y1": span.yaw_rate[1],
+        "line": {"color": "#1b2430", "width": 1.5, "dash": "dash"},
+    }

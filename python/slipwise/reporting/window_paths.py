@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The measured, plain and predicted path of one window, seen from the robot at its start."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.logs.log import Floats, Inputs, Poses, Run
+from slipwise.reporting.chosen_windows import ChosenWindow
+from slipwise.reporting.contents import Contents
+from slipwise.segments import WindowRules, cut_windows
+
+_SAME_STAMP = 1e-6  # s
+
+
+@dataclass(frozen=True, eq=False)
+class WindowPaths:
+    """Paths of one window, [N, 3] each: x, y [m], yaw [rad] in the frame of the robot at the start."""
+
+    measured: Floats
+    plain: Floats
+    predicted: Floats
+    causal: bool  # the prediction uses what was known at the start, not the final model
+
+
+def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[ChosenWindow, WindowPaths]:
+    """Return the paths of the chosen windows, without those whose poses or inputs are not in the log."""
+    paths = {}
+    for place in sorted({window.run for window in chosen if 0 <= window.run < len(contents.log.runs)}):
+        run = contents.log.runs[place]
+        inputs = contents.inputs(run)
+        if inputs is None:
+            continue
+        track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        segments = _segments(contents, run, inputs)
+        for window in (window for window in chosen if window.run == place):
+            measured = _measured(run.poses, window)
+            if measured is not None:
+                segment = segments.get(_stamp(window.t_start)) or _level_segment(window)
+                paths[window] = _paths(contents, window, _Drive(track, segment, measured))
+    return paths
+
+
+@dataclass(frozen=True, eq=False)
+class _Drive:
+    """What is known of one window."""
+
+    track: _core.InputTrack
+    segment: _core.Segment
+    measured: Floats
+
+
+def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPaths:
+    model = contents.calibration.model
+    plain_model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
+    known = _known_parameters(contents, window)
+    parameters = model.mean if known is None else known
+    exact = _core.Integrator.Exact
+    return WindowPaths(
+        measured=drive.measured,
+        plain=_core.integrate_segment(plain_model, np.empty(0), drive.track, drive.segment, exact).poses,
+        predicted=_core.integrate_segment(model.motion, parameters, drive.track, drive.segment, exact).poses,
+        causal=known is not None,
+    )
+
+
+def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
+    """Return the measured poses seen from the first of the window, None where there are not two in its frame."""
+    inside = (poses.t >= window.t_start - _SAME_STAMP) & (poses.t <= window.t_end + _SAME_STAMP)
+    rows = np.flatnonzero(inside)
+    if len(rows) < 2 or poses.frame[rows[0]] != poses.frame[rows[-1]]:
+        return None
+    start = _core.Pose2(float(poses.x[rows[0]]), float(poses.y[rows[0]]), float(poses.yaw[rows[0]]))
+    seen = [
+        _core.between(start, _core.Pose2(float(poses.x[k]), float(poses.y[k]), float(poses.yaw[k]))).vector()
+        for k in rows
+    ]
+    return np.array(seen)
+
+
+def _segments(contents: Contents, run: Run, inputs: Inputs) -> dict[int, _core.Segment]:
+    """Return the run's windows by start, with gravity and measured twist there, as the evaluation cuts them."""
+    horizon = contents.longest_horizon
+    if horizon is None:
+        return {}
+    wheels = run.wheels if contents.evaluation.input == "command" else None
+    rules = WindowRules()
+    windows = cut_windows(run, inputs, horizon, rules)
+    stamps = (_stamp(start) for start in windows.start.tolist())
+    return dict(zip(stamps, windows.segments(wheels, rules.unknown_after), strict=True))
+
+
+def _stamp(t: float) -> int:
+    """Return a time [s] as whole microseconds, to look it up."""
+    return round(t * 1e6)
+
+
+def _level_segment(window: ChosenWindow) -> _core.Segment:
+    return _core.Segment(window.t_start, window.t_end, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+
+
+def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:
+    """Return the parameters learned until one horizon before the start, None where that is not recorded."""
+    history, model = contents.calibration.history, contents.calibration.model
+    if history is None or list(history.names) != [parameter.name for parameter in model.content.parameters]:
+        return None
+    until = window.t_start - (contents.longest_horizon or 0.0) + _SAME_STAMP
+    learned = np.flatnonzero(
+        (history.run < window.run) | ((history.run == window.run) & (history.t <= until))
+    )
+    if not len(learned) or not np.isfinite(history.mean[learned[-1]]).all():
+        return None
+    return np.ascontiguousarray(history.mean[learned[-1]])
