@@ -148,10 +148,11 @@ class ChainWalk {
     const LagDecay decay_v(chain_.lag_v, duration);
     const LagDecay decay_omega(chain_.lag_omega, duration);
     const Row slope = (to.slope - from.slope) / parts;
-    DriveStepJacobian jacobian;
+    const bool moving = with_slopes_ && (lagging || !slope.isZero(0.0));  // without lag, only moving ends matter
+    DriveStepJacobian jacobian = DriveStepJacobian::Zero();
     for (int i = 0; i < parts; ++i) {
       const DriveStep step =
-          with_slopes_ ? linearize_step(decay_v, decay_omega, slope, jacobian) : next_step(decay_v, decay_omega);
+          moving ? linearize_step(decay_v, decay_omega, slope, jacobian) : next_step(decay_v, decay_omega);
       if (out != nullptr) {
         out->steps.push_back(step);
         if (with_slopes_) {

@@ -3,8 +3,10 @@
 #include "slipwise/estimate/batch.hpp"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "slipwise/segment/integrate_segment.hpp"
 
@@ -34,7 +36,10 @@ HuberLoss huber_loss(double squared, double threshold) {
 class BatchProblem {
  public:
   BatchProblem(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data, double huber)
-      : model_(model), prior_(prior), data_(data), huber_(huber),
+      : model_(model),
+        prior_(prior),
+        data_(data),
+        huber_(huber),
         prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
 
   double cost(const Eigen::VectorXd& mean) const {
@@ -70,14 +75,35 @@ class BatchProblem {
   Eigen::MatrixXd prior_information_;
 };
 
+void check(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data) {
+  model.check(prior.mean);
+  if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
+    throw std::invalid_argument("the prior's covariance must be square with one row per parameter, " +
+                                std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
+                                " x " + std::to_string(prior.covariance.cols()));
+  }
+  if (prior.covariance.llt().info() != Eigen::Success) {
+    throw std::invalid_argument("the prior's covariance must be positive definite; give every parameter some spread");
+  }
+  if (data.empty()) {
+    throw std::invalid_argument("a batch fit needs at least one segment");
+  }
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const Segment& segment = data[i].segment;
+    if (data[i].inputs == nullptr || !(segment.end > segment.start) || !segment.measured.vector().allFinite() ||
+        data[i].noise.llt().info() != Eigen::Success) {
+      throw std::invalid_argument("segment " + std::to_string(i) +
+                                  " must have inputs, end after it starts, and have finite measurements and a positive "
+                                  "definite noise covariance");
+    }
+  }
+}
+
 }  // namespace
 
 BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
                    const BatchSettings& settings) {
-  model.check(prior.mean);
-  if (data.empty()) {
-    throw std::invalid_argument("a batch fit needs at least one segment");
-  }
+  check(model, prior, data);
   const BatchProblem problem(model, prior, data, settings.huber);
   Eigen::VectorXd mean = prior.mean;
   double cost = problem.cost(mean);

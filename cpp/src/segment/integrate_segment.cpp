@@ -97,7 +97,7 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
 /// Derivative of a step's tangent by the chain's parameters: through duration and integrals, and through the slip they
 /// cause.
 ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& jacobian, const Basis& basis,
-                              const Eigen::Ref<const Eigen::VectorXd>& alpha, const Segment& segment) {
+                              const Eigen::VectorXd& alpha, const Segment& segment) {
   ChainColumns result = jacobian.bottomRows<3>();
   if (!(step.duration > 0.0)) {
     return result + slip_rate(basis, alpha, slip_state(jacobian, segment)) * jacobian.row(0);

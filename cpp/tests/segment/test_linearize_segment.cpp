@@ -85,22 +85,21 @@ TEST_CASE("linearised segments are exact from a measured initial twist and under
   }
 }
 
-TEST_CASE("the derivative where both channels have the same delay is the limit of nearly equal delays") {
+// A step's slip is that of its mean twist, so the path has a faint kink where the two channels' changes swap their order.
+TEST_CASE("the derivative where both channels have the same delay is the limit of a yaw rate slightly later") {
   const Basis basis = named_basis("odd-even-10");
   const MotionModel model(basis, {.dynamics = true, .clock_offset = true});
   Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains().back().chain);
   equal[model.slip_size() + 3] = equal[model.slip_size() + 2];
+  Eigen::VectorXd later = equal;
+  later[model.slip_size() + 3] += 1e-7;
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(drive.name);
     const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
     const auto at = [&](const Eigen::VectorXd& p) {
       return linearize_segment(model, p, inputs, kSegment).by_parameter;
     };
-    for (const double apart : {1e-5, -1e-5}) {
-      Eigen::VectorXd nearly = equal;
-      nearly[model.slip_size() + 3] += apart;
-      CHECK(tests::jacobian_error(at(equal), at(nearly), 0.1) < 1e-4);
-    }
+    CHECK(tests::jacobian_error(at(equal), at(later), 0.1) < 1e-6);
   }
 }
 
