@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise calibrate`: from logs to a model file with a verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from slipwise.cli.options import (
+    Basis,
+    Input,
+    Json,
+    Logs,
+    Report,
+    Runs,
+    SettingsFile,
+    chosen_settings,
+    takes_log_options,
+)
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Calibration, Settings
+    from slipwise.cli.output import Output
+    from slipwise.logs import Log, LogOptions
+
+
+@takes_log_options
+def calibrate(
+    logs: Logs,
+    log_options: LogOptions,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--output", metavar="MODEL.yaml", show_default=False, help="Write the model here too."
+        ),
+    ] = None,
+    input_name: Input = None,
+    basis: Basis = None,
+    settings: SettingsFile = None,
+    batch: Annotated[bool, typer.Option("--batch", help="Fit all windows at once, off-line.")] = False,
+    report: Report = None,
+    no_report: Annotated[bool, typer.Option("--no-report", help="Write no HTML report.")] = False,
+    runs: Runs = Path("runs"),
+    json: Json = None,
+) -> int:
+    """Learn the motion model of the robot in one or several logs.
+
+    Learns causally, as it would on the robot, and judges itself on what it had not seen. Model, settings, result and report
+    go into a new folder below `runs`; -o writes the model to a place of your choice as well. The model is written even
+    where the verdict is bad; it says so itself, and the exit code is 1.
+
+    \b
+    Examples:
+      slipwise calibrate drive.mcap -o model.yaml
+      slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
+      slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
+      slipwise calibrate drive.csv --no-report --json - | jq .verdict
+    """  # noqa: D301
+    from slipwise.calibration import calibrate as learn
+    from slipwise.cli.document import calibration_part, head, log_part, verdict_part
+    from slipwise.cli.output import Output, to_json
+    from slipwise.cli.progress import progress_bar
+    from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.files import write_text_whole
+    from slipwise.logs import open_log
+
+    out = Output(json)
+    chosen = chosen_settings(settings, basis)
+    refuse_unwritable(output, report, out.written_file)
+    with progress_bar("reading") as update:
+        log = open_log(*logs, options=log_options)
+        with run_folder(runs, "calibrate") as folder:
+            calibration = learn(
+                log,
+                input_name=input_name and input_name.value,
+                settings=chosen,
+                batch=batch,
+                progress=lambda share: update("learning", share),
+            )
+            files = {
+                "model": calibration.model.save(folder / "model.yaml"),
+                "settings": write_settings(folder, chosen),
+            }
+            if output is not None:
+                files["model"] = calibration.model.save(output)
+            if not no_report:
+                files["report"] = report or folder / "report.html"
+                update("writing the report", 1.0)
+                _write_report(files["report"], log, calibration, chosen)
+            document = (
+                head("calibrate")
+                | {
+                    "exit_code": _exit_code(calibration),
+                    "verdict": verdict_part(calibration.verdict),
+                    "files": files,
+                }
+                | calibration_part(calibration)
+                | log_part(log, calibration.left_out)
+            )
+            write_text_whole(folder / "result.json", to_json(document))
+            out.document(document)
+    _show(out, calibration, files | {"run folder": folder})
+    return _exit_code(calibration)
+
+
+def _exit_code(calibration: Calibration) -> int:
+    return 0 if calibration.verdict.good else 1
+
+
+def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
+    from slipwise.cli.tables import show_files, show_left_out, show_notes, show_parameters, show_verdict
+
+    content = calibration.model.content
+    learned = content.provenance
+    out.line(
+        f"Learned {content.slip.basis} from {content.input}s: "
+        f"{learned.learned_windows} windows, {learned.learned_seconds:.0f} s of driving."
+    )
+    show_notes(out, calibration.notes)
+    show_left_out(out, calibration.left_out)
+    show_parameters(out, content.parameters)
+    show_verdict(out, calibration.verdict)
+    show_files(out, files)
+
+
+def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
+    """Judge the basis beside doing nothing and edd-2, and write the page."""
+    from slipwise.cli.command_line import command_line
+    from slipwise.evaluation import EvaluationOptions, evaluate
+    from slipwise.reporting import write_report
+
+    methods = tuple(dict.fromkeys(("none", "edd-2", settings.basis)))
+    evaluation = evaluate(
+        log,
+        input_name=calibration.model.content.input,
+        settings=settings,
+        options=EvaluationOptions(methods=methods),
+    )
+    title = ", ".join(run.name for run in log.runs[:3])
+    write_report(
+        path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()
+    )

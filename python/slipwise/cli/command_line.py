@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The command line as a user would type it again."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+
+
+def command_line() -> str:
+    """Return `slipwise` and its arguments, quoted where needed."""
+    return shlex.join(["slipwise", *sys.argv[1:]])

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of the JSON documents that several commands write."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Calibration, Verdict
+    from slipwise.evaluation import Evaluation
+    from slipwise.logs import LeftOut, Log
+
+
+def head(command: str) -> dict[str, Any]:
+    """Return what every document starts with."""
+    return {"command": command, "arguments": sys.argv[1:], "slipwise_version": version("slipwise")}
+
+
+def log_part(log: Log, left_out: Sequence[LeftOut]) -> dict[str, Any]:
+    """Return where a log came from, what was guessed and what was left out."""
+    return {
+        "sources": [asdict(source) for source in log.sources],
+        "notes": list(log.notes),
+        "left_out": [asdict(entry) for entry in left_out],
+    }
+
+
+def verdict_part(verdict: Verdict | None) -> dict[str, Any] | None:
+    """Return a verdict."""
+    return None if verdict is None else asdict(verdict)
+
+
+def calibration_part(calibration: Calibration) -> dict[str, Any]:
+    """Return what was learned, in the units of the model file."""
+    content = calibration.model.content
+    return {
+        "input": content.input,
+        "basis": content.slip.basis,
+        "parameters": [parameter.model_dump() for parameter in content.parameters],
+        "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
+        "learned_windows": content.provenance.learned_windows,
+        "learned_seconds": content.provenance.learned_seconds,
+    }
+
+
+def evaluation_part(evaluation: Evaluation) -> dict[str, Any]:
+    """Return all scores, in m and rad."""
+    return {
+        "input": evaluation.input,
+        "horizons": list(evaluation.horizons),
+        "methods": list(evaluation.methods),
+        "scores": [asdict(score) for score in evaluation.scores],
+    }

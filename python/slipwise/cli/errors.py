@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Turns whatever ends a command into an exit code and at most one line on stderr."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable
+from types import FrameType
+
+import typer
+
+from slipwise.errors import SlipwiseError
+
+BAD_USE = 2
+_UsageError = typer.BadParameter.__mro__[1]  # typer's own copy of click, or click: wherever this typer has it
+
+
+def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
+    """Run a command; return its exit code, or 2 after one line that says what went wrong."""
+    _never_fail_on_a_character()
+    before = signal.signal(signal.SIGTERM, _stop)
+    try:
+        code = command()
+        sys.stdout.flush()
+        return code
+    except typer.Exit as exit_request:
+        return int(exit_request.exit_code)
+    except BrokenPipeError:
+        silence_stdout()
+        return 0
+    except (Exception, KeyboardInterrupt) as error:
+        if debug:
+            traceback.print_exc()
+        print(f"slipwise: {line_for(error)}", file=sys.stderr)
+        return BAD_USE
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def line_for(error: BaseException) -> str:
+    """Return the one line that a user sees."""
+    if isinstance(error, SlipwiseError):
+        line = str(error)
+    elif isinstance(error, (KeyboardInterrupt, typer.Abort)):
+        line = "stopped by the user; no half-written file is left"
+    elif isinstance(error, MemoryError):
+        line = "out of memory: use a shorter log, or a machine with more memory"
+    elif isinstance(error, _UsageError):
+        line = _usage_line(error)
+    else:
+        name, text = type(error).__name__, str(error)
+        line = (
+            f"unexpected {name}{f': {text}' if text else ''}; this is a fault of slipwise, please report it"
+            " with what `slipwise --debug ...` prints"
+        )
+    return printable(" ".join(line.split()))
+
+
+def printable(text: str) -> str:
+    """Return the text with control characters replaced: text from a log must not steer a terminal."""
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def silence_stdout() -> None:
+    """Stop writing where nobody reads any more, as in `slipwise ... | head`."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, sys.stdout.fileno())
+    os.close(null)
+
+
+def _usage_line(error: BaseException) -> str:
+    """Return what typer says, and where help is."""
+    message = error.format_message().rstrip(".")  # type: ignore[attr-defined]
+    context = error.ctx  # type: ignore[attr-defined]
+    command = context.command_path if context is not None else "slipwise"
+    return f"{message}: see `{command} --help`"
+
+
+def _never_fail_on_a_character() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def _stop(_signal: int, _frame: FrameType | None) -> None:
+    raise KeyboardInterrupt

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise evaluate`: methods compared on what they had not seen."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from slipwise.cli.options import (
+    Basis,
+    Input,
+    Json,
+    Logs,
+    Report,
+    Runs,
+    SettingsFile,
+    chosen_settings,
+    takes_log_options,
+)
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Settings, Verdict
+    from slipwise.cli.output import Output
+    from slipwise.evaluation import Evaluation
+    from slipwise.evaluation.evaluate import EvaluationOptions
+    from slipwise.logs import Log, LogOptions
+
+
+@takes_log_options
+def evaluate(
+    logs: Logs,
+    log_options: LogOptions,
+    model: Annotated[
+        Path | None,
+        typer.Option(metavar="MODEL.yaml", show_default=False, help="Judge this model file too, as it is."),
+    ] = None,
+    input_name: Input = None,
+    horizons: Annotated[
+        str, typer.Option(metavar="SECONDS", help="How far ahead, separated by commas.")
+    ] = "1,2,5",
+    methods: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAMES",
+            show_default=False,
+            help="Separated by commas: none, vendor, batch, model, auto, a basis; by default all. `none` is always there.",
+        ),
+    ] = None,
+    vendor_track_multiplier: Annotated[
+        float | None,
+        typer.Option(
+            metavar="X", show_default=False, help="wheel_separation_multiplier of the method `vendor`."
+        ),
+    ] = None,
+    predictions: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE.csv", show_default=False, help="Write every prediction with its covariance."
+        ),
+    ] = None,
+    basis: Basis = None,
+    settings: SettingsFile = None,
+    report: Report = None,
+    runs: Runs = Path("runs"),
+    json: Json = None,
+) -> int:
+    """Compare methods on logs: each window is predicted from what was known before it.
+
+    The exit code is 1 where the learned method (`model` if given, else `auto`, else the first that learns) does not beat
+    doing nothing at the longest horizon. Settings and result go into a new folder below `runs`.
+
+    \b
+    Examples:
+      slipwise evaluate drive.mcap
+      slipwise evaluate drive.mcap --model model.yaml --horizons 2,5
+      slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
+      slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
+      slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
+    """  # noqa: D301
+    from slipwise.cli.output import Output
+    from slipwise.cli.progress import progress_bar
+    from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.evaluation import evaluate as judge_methods
+    from slipwise.evaluation import write_predictions
+    from slipwise.logs import open_log
+
+    out = Output(json)
+    chosen = chosen_settings(settings, basis)
+    options = _options(horizons, methods, vendor_track_multiplier, model)
+    refuse_unwritable(predictions, report, out.written_file)
+    with progress_bar("reading") as update:
+        log = open_log(*logs, options=log_options)
+        with run_folder(runs, "evaluate") as folder:
+            evaluation = judge_methods(
+                log,
+                input_name=input_name and input_name.value,
+                settings=chosen,
+                options=options,
+                progress=lambda name, share: update(f"method {name}", share),
+            )
+            files = {"settings": write_settings(folder, chosen)}
+            if predictions is not None:
+                write_predictions(predictions, evaluation)
+                files["predictions"] = predictions
+            if report is not None:
+                update("writing the report", 1.0)
+                _write_report(report, log, evaluation, chosen)
+                files["report"] = report
+            verdict = verdict_on(evaluation)
+            _write_result(out, folder, (log, evaluation, verdict), files)
+    _show(out, evaluation, verdict, files | {"run folder": folder})
+    return 0 if verdict is None or verdict.good else 1
+
+
+def verdict_on(evaluation: Evaluation) -> Verdict | None:
+    """Judge the learned method against `none` at the longest horizon; None where no method was learned."""
+    from slipwise.calibration.plain import plain_forecaster
+    from slipwise.calibration.settings import Settings
+    from slipwise.calibration.verdict import give_verdict, judge
+
+    names = [name for name in evaluation.methods if name not in ("none", "vendor", "batch")]
+    method = next((name for name in ("model", "auto") if name in names), names[0] if names else None)
+    longest = [p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)]
+    learned = next((p for p in longest if p.method == method), None)
+    plain = next((p for p in longest if p.method == "none"), None)
+    if learned is None or plain is None:
+        return None
+    nothing_learned = plain_forecaster(Settings()).belief(0)
+    return give_verdict(judge(learned, plain), (), nothing_learned)
+
+
+def _options(
+    horizons: str, methods: str | None, multiplier: float | None, model: Path | None
+) -> EvaluationOptions:
+    from slipwise.errors import SettingsError
+    from slipwise.evaluation import EvaluationOptions
+    from slipwise.models import load_model
+
+    try:
+        seconds = tuple(float(part) for part in horizons.split(",") if part.strip())
+    except ValueError:
+        raise SettingsError(
+            f"'{horizons}' is no list of seconds", where="--horizons", advice="such as 1,2,5"
+        ) from None
+    names = None
+    if methods is not None:
+        names = tuple(dict.fromkeys(["none", *(part.strip() for part in methods.split(",") if part.strip())]))
+    return EvaluationOptions(seconds, names, multiplier, load_model(model) if model is not None else None)
+
+
+def _show(out: Output, evaluation: Evaluation, verdict: Verdict | None, files: dict[str, Path]) -> None:
+    from slipwise.cli.tables import show_files, show_left_out, show_notes, show_scores, show_verdict
+
+    show_notes(out, evaluation.notes)
+    show_left_out(out, evaluation.left_out)
+    show_scores(out, evaluation)
+    if verdict is None:
+        out.line("No method that learns was asked for, so there is no verdict.")
+    else:
+        show_verdict(out, verdict)
+    show_files(out, files)
+
+
+def _write_result(
+    out: Output, folder: Path, result: tuple[Log, Evaluation, Verdict | None], files: dict[str, Path]
+) -> None:
+    from slipwise.cli.document import evaluation_part, head, log_part, verdict_part
+    from slipwise.cli.output import to_json
+    from slipwise.files import write_text_whole
+
+    log, evaluation, verdict = result
+    document = (
+        head("evaluate")
+        | {
+            "exit_code": 0 if verdict is None or verdict.good else 1,
+            "verdict": verdict_part(verdict),
+            "files": files,
+        }
+        | evaluation_part(evaluation)
+        | log_part(log, evaluation.left_out)
+    )
+    write_text_whole(folder / "result.json", to_json(document))
+    out.document(document)
+
+
+def _write_report(path: Path, log: Log, evaluation: Evaluation, settings: Settings) -> None:
+    from slipwise.calibration import calibrate
+    from slipwise.cli.command_line import command_line
+    from slipwise.reporting import write_report
+
+    calibration = calibrate(log, input_name=evaluation.input, settings=settings)
+    title = ", ".join(run.name for run in log.runs[:3])
+    write_report(
+        path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()
+    )

@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The entry point `slipwise`: registers the commands; each loads what it needs only when it is called."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from slipwise.cli.calibrate import calibrate
+from slipwise.cli.convert import convert
+from slipwise.cli.demo import demo
+from slipwise.cli.errors import exit_code_of
+from slipwise.cli.evaluate import evaluate
+from slipwise.cli.inspect import inspect
+from slipwise.cli.simulate import simulate
+
+DEBUG = "--debug"
+
+app = typer.Typer(
+    name="slipwise",
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+_COMMANDS = (
+    (demo, "See it work: a simulated robot, learned and judged."),
+    (inspect, "Say what is in a log and what can be learned."),
+    (calibrate, "Learn a motion model from logs."),
+    (evaluate, "Compare methods on logs, honestly."),
+    (simulate, "Record a simulated drive."),
+    (convert, "Write logs as a tidy table or as MCAP."),
+)
+for _command, _summary in _COMMANDS:
+    app.command(_command.__name__, short_help=_summary)(_command)
+
+
+def _show_version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"slipwise {version('slipwise')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _slipwise(
+    debug: Annotated[bool, typer.Option(DEBUG, help="Show the traceback of an unexpected error.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", help="Show the version.", callback=_show_version, is_eager=True)
+    ] = False,
+) -> None:
+    """Learn a robot's motion model - slip, lag, delay and their uncertainty - from what it was told and where it went.
+
+    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use.
+
+    \b
+    Examples:
+      slipwise demo
+      slipwise inspect drive.mcap
+      slipwise calibrate drive.mcap -o model.yaml
+      slipwise evaluate other.mcap --model model.yaml
+    """  # noqa: D301 - \b keeps the lines below it as they are
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and leave the process with its exit code."""
+    given = list(sys.argv[1:] if arguments is None else arguments)
+    sys.exit(run(given))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command; return its exit code: 0 success, 1 a verdict of not good enough, 2 bad input or use."""
+    plain = [argument for argument in arguments if argument != DEBUG] or ["--help"]
+    return exit_code_of(lambda: _invoke(plain), debug=DEBUG in arguments)
+
+
+def _invoke(arguments: list[str]) -> int:
+    command = typer.main.get_command(app)
+    with command.make_context("slipwise", arguments) as context:
+        return int(command.invoke(context) or 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Options that several commands share, each stated once."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Settings
+    from slipwise.logs import LogOptions
+
+
+class InputName(str, Enum):
+    """What a model is learned from."""
+
+    command = "command"
+    wheel = "wheel"
+
+
+Logs = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="LOG...",
+        show_default=False,
+        help="Tidy CSV, CSV.gz or Parquet, or a ROS bag (.mcap, .db3, .bag, rosbag2 folder).",
+    ),
+]
+Input = Annotated[
+    InputName | None,
+    typer.Option(
+        "--input",
+        show_default=False,
+        help="Learn from commands or from wheel speeds; commands if the log has them.",
+    ),
+]
+Basis = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        show_default=False,
+        help="Slip basis, such as edd-2 or odd-even-10; default auto, an average of several.",
+    ),
+]
+SettingsFile = Annotated[
+    Path | None,
+    typer.Option("--settings", metavar="FILE.toml", show_default=False, help="Settings of learning."),
+]
+Report = Annotated[
+    Path | None,
+    typer.Option(metavar="FILE.html", show_default=False, help="Write the HTML report to this file."),
+]
+Json = Annotated[
+    Path | None,
+    typer.Option(
+        "--json",
+        metavar="FILE",
+        show_default=False,
+        help="Write the result as JSON; `-` prints it instead of tables.",
+    ),
+]
+Runs = Annotated[Path, typer.Option(metavar="DIR", help="Where run folders are kept.")]
+
+_LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
+    "pose_topic": (
+        str,
+        "TOPIC",
+        "Measured pose: Odometry, Pose[WithCovariance]Stamped, NavSatFix, TFMessage.",
+    ),
+    "command_topic": (str, "TOPIC", "Commands: Twist, TwistStamped, AckermannDriveStamped."),
+    "wheel_topic": (str, "TOPIC", "Wheel odometry: Odometry (its twist) or JointState."),
+    "imu_topic": (str, "TOPIC", "Imu that gives the heading beside a NavSatFix."),
+    "pose_frame": (str, "FRAME", "TF: the fixed frame, such as map."),
+    "child_frame": (str, "FRAME", "TF: the robot's frame, such as base_link."),
+    "left_joints": (str, "NAMES", "JointState: left wheels, separated by commas."),
+    "right_joints": (str, "NAMES", "JointState: right wheels, separated by commas."),
+    "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
+    "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
+    "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+}
+
+
+def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command with a parameter `log_options` one option for each field of LogOptions."""
+    unloaded = {"LogOptions": object}  # its module is heavy, and its type is never looked at
+    signature = inspect.signature(command, eval_str=True, locals=unloaded)
+    own = [parameter for parameter in signature.parameters.values() if parameter.name != "log_options"]
+    added = [_parameter(name, *about) for name, about in _LOG_OPTIONS.items()]
+
+    @functools.wraps(command)
+    def wrapper(**given: Any) -> int:
+        options = _log_options({name: given.pop(name) for name in _LOG_OPTIONS})
+        return command(log_options=options, **given)
+
+    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (*own, *added)]
+    wrapper.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    wrapper.__annotations__ = {p.name: p.annotation for p in parameters}
+    return wrapper
+
+
+def chosen_settings(file: Path | None, basis: str | None) -> Settings:
+    """Return the settings of a file, or the defaults, with the basis replaced where one is given.
+
+    Raises:
+        SettingsError: the file or the basis is wrong.
+    """
+    from slipwise.calibration import Settings, load_settings
+
+    settings = load_settings(file) if file is not None else Settings()
+    if basis is not None:
+        settings = settings.model_copy(update={"basis": basis})
+    settings.bases()
+    return settings
+
+
+def _parameter(name: str, kind: type, metavar: str, text: str) -> inspect.Parameter:
+    option = typer.Option(
+        f"--{name.replace('_', '-')}", metavar=metavar, help=text, show_default=False, rich_help_panel="Log"
+    )
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[kind | None, option]
+    )
+
+
+def _log_options(given: dict[str, Any]) -> LogOptions:
+    from slipwise.logs import LogOptions
+
+    joints = ("left_joints", "right_joints")
+    split = {name: tuple(part for part in (given[name] or "").split(",") if part) for name in joints}
+    return LogOptions(**(given | split))

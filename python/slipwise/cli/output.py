@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a command prints: lines and tables for people, or one JSON document for machines."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from slipwise.cli.errors import printable, silence_stdout
+from slipwise.errors import OutputError
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+STDOUT = "-"
+WIDTH_OF_A_PIPE = 160  # characters; nothing is cut where a file or a pipe takes the tables
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table."""
+
+    head: str
+    right: bool = False  # numbers are aligned to the right
+
+
+@dataclass
+class Output:
+    """Where a command's results go; with JSON on stdout, nothing else is printed there."""
+
+    json_file: Path | None
+    _console: Console | None = field(default=None, init=False)
+
+    @property
+    def for_people(self) -> bool:
+        """Whether lines and tables are shown."""
+        return str(self.json_file) != STDOUT
+
+    @property
+    def written_file(self) -> Path | None:
+        """The JSON file to write, None where there is none."""
+        return self.json_file if self.for_people else None
+
+    def line(self, text: str = "") -> None:
+        """Print one line; a terminal wraps it."""
+        if not self.for_people:
+            return
+        try:
+            print(printable(text))
+        except BrokenPipeError:
+            silence_stdout()
+
+    def table(
+        self, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], *, caption: str = ""
+    ) -> None:
+        """Print a table."""
+        if not self.for_people:
+            return
+        from rich import box
+        from rich.table import Table
+
+        table = Table(
+            title=title,
+            caption=caption or None,
+            box=box.SIMPLE_HEAD,
+            title_justify="left",
+            caption_justify="left",
+        )
+        for column in columns:
+            table.add_column(printable(column.head), justify="right" if column.right else "left")
+        for row in rows:
+            table.add_row(*(printable(cell) for cell in row))
+        try:
+            self._out().print(table)
+        except BrokenPipeError:
+            silence_stdout()
+
+    def document(self, content: Mapping[str, Any]) -> None:
+        """Write the JSON document to where `--json` says.
+
+        Raises:
+            OutputError: the file cannot be written.
+        """
+        if self.json_file is None:
+            return
+        if self.for_people:
+            from slipwise.files import write_text_whole
+
+            write_text_whole(self.json_file, to_json(content))
+            return
+        try:
+            sys.stdout.write(to_json(content))
+            sys.stdout.flush()
+        except BrokenPipeError:
+            silence_stdout()
+        except OSError as error:
+            raise OutputError(f"cannot write: {error.strerror}", where="stdout") from error
+
+    def _out(self) -> Console:
+        if self._console is None:
+            from rich.console import Console
+
+            width = (
+                None
+                if sys.stdout.isatty()
+                else max(WIDTH_OF_A_PIPE, shutil.get_terminal_size((0, 0)).columns)
+            )
+            self._console = Console(width=width, markup=False, emoji=False, highlight=False)
+        return self._console
+
+
+def to_json(content: Mapping[str, Any]) -> str:
+    """Return JSON that every reader takes: what is not a finite number becomes null."""
+    return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return float(value) if math.isfinite(value) else None
+    if isinstance(value, Path):
+        return str(value)
+    return value

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The time-stamped folder of one run, with its settings and a `latest` link beside it."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import shutil
+from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from slipwise.files import output_errors, write_text_whole
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Settings
+
+LATEST = "latest"
+
+
+@contextlib.contextmanager
+def run_folder(runs: Path, command: str) -> Iterator[Path]:
+    """Create `runs/<UTC time>-<command>`; point `runs/latest` to it at the end, or remove it if the run fails.
+
+    Raises:
+        OutputError: the folder cannot be created.
+    """
+    folder = _create(runs, command)
+    try:
+        yield folder
+        with output_errors(runs / LATEST):
+            _link(runs / LATEST, folder.name)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            runs.rmdir()  # only if this run was the first and left it empty
+        raise
+
+
+def write_settings(folder: Path, settings: Settings) -> Path:
+    """Write the settings as TOML that `--settings` takes again; return the path.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
+    path = folder / "settings.toml"
+    write_text_whole(path, to_toml(settings.model_dump(exclude_none=True)))
+    return path
+
+
+def to_toml(content: Mapping[str, Any]) -> str:
+    """Return tables of plain values as TOML: single values first, then one section for each table."""
+    lines = [f"{key} = {json.dumps(value)}" for key, value in content.items() if not isinstance(value, dict)]
+    for name, table in content.items():
+        if isinstance(table, dict):
+            lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _create(runs: Path, command: str) -> Path:
+    stamp = f"{datetime.now(UTC):%Y%m%dT%H%M%SZ}-{command}"
+    number = 1
+    while True:
+        folder = runs / (stamp if number == 1 else f"{stamp}-{number}")
+        with output_errors(folder):
+            try:
+                folder.mkdir(parents=True)
+            except FileExistsError:
+                if not runs.is_dir():
+                    raise NotADirectoryError(20, os.strerror(20)) from None
+                number += 1
+                continue
+        return folder
+
+
+def _link(link: Path, target: str) -> None:
+    """Replace the link in one step; something else of that name, of the user's, stays as it is."""
+    if link.exists() and not link.is_symlink():
+        return
+    temporary = link.with_name(f".{LATEST}.{os.getpid()}")
+    temporary.unlink(missing_ok=True)
+    temporary.symlink_to(target)
+    temporary.replace(link)
