@@ -39,6 +39,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("shape", &NoiseSettings::shape)
       .def_rw("adapt", &NoiseSettings::adapt)
       .def_rw("prior_segments", &NoiseSettings::prior_segments)
+      .def_rw("memory", &NoiseSettings::memory)
       .def_rw("largest", &NoiseSettings::largest);
   nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
       .def(nb::init<>())

@@ -70,9 +70,9 @@ void CausalFilter::adapt_noise(const InputTrack& inputs, const Segment& segment,
   const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
   const Eigen::Matrix3d open = at.by_parameter * estimate_.covariance * at.by_parameter.transpose();
   const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
-  noise_sum_ += squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_);
   segments_ += 1.0;
-  noise_scale_ = (noise_sum_.array() + settings_.noise.prior_segments) / (segments_ + settings_.noise.prior_segments);
+  const double gain = std::max(1.0 / (segments_ + settings_.noise.prior_segments), 1.0 / settings_.noise.memory);
+  noise_scale_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_) - noise_scale_);
 }
 
 Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at, const Eigen::Ref<const Eigen::MatrixXd>& parameters,

@@ -20,6 +20,7 @@ struct NoiseSettings {
                     .pose_std_yaw = 0.01};
   bool adapt = true;           ///< learn the factor from the residuals
   double prior_segments = 5.0; ///< the shape counts as much as this many segments [-]
+  double memory = 40.0;        ///< the factor is a mean over about this many segments, so that it follows the ground [-]
   double largest = 9.0;        ///< a squared residual counts at most this many times its expected value [-]
 };
 
@@ -61,7 +62,6 @@ class CausalFilter {
   Estimate estimate_;
   Eigen::VectorXd slip_std_;
   Eigen::Vector3d noise_scale_ = Eigen::Vector3d::Ones();
-  Eigen::Vector3d noise_sum_ = Eigen::Vector3d::Zero();
   double segments_ = 0.0;
 };
 
