@@ -47,9 +47,9 @@ def calibrate(
 ) -> int:
     """Learn the motion model of the robot in one or several logs.
 
-    Learns causally, as it would on the robot, and judges itself on what it had not seen. Model, settings, result and report
-    go into a new folder below `runs`; -o writes the model to a place of your choice as well. The model is written even
-    where the verdict is bad; it says so itself, and the exit code is 1.
+    Learns causally, as it would on the robot, and judges itself on what it had not seen. Model, settings,
+    result and report go into a new folder below `runs`; -o writes the model to a place of your choice as
+    well. The model is written even where the verdict is bad; it says so itself, and the exit code is 1.
 
     \b
     Examples:

@@ -33,8 +33,8 @@ def demo(
 ) -> int:
     """Simulate a drive, learn the robot's motion model from its bag, and compare it with today's practice.
 
-    A six-wheel, 1000 kg skid-steered vehicle is driven for five minutes with RTK-like poses; the bag, the model and an
-    HTML report are kept. Everything is learned from commands, because they are all that a planner knows.
+    A six-wheel, 1000 kg skid-steered vehicle is driven for five minutes with RTK-like poses; the bag, the
+    model and an HTML report are kept. Everything is learned from commands: they are all that a planner knows.
 
     \b
     Examples:

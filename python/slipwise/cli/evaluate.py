@@ -21,7 +21,7 @@ from slipwise.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from slipwise.calibration import Settings, Verdict
+    from slipwise.calibration import Calibration, Settings, Verdict
     from slipwise.cli.output import Output
     from slipwise.evaluation import Evaluation
     from slipwise.evaluation.evaluate import EvaluationOptions
@@ -45,7 +45,7 @@ def evaluate(
         typer.Option(
             metavar="NAMES",
             show_default=False,
-            help="Separated by commas: none, vendor, batch, model, auto, a basis; by default all. `none` is always there.",
+            help="vendor, batch, model, auto or bases, separated by commas; `none` always is. Default: all.",
         ),
     ] = None,
     vendor_track_multiplier: Annotated[
@@ -68,8 +68,8 @@ def evaluate(
 ) -> int:
     """Compare methods on logs: each window is predicted from what was known before it.
 
-    The exit code is 1 where the learned method (`model` if given, else `auto`, else the first that learns) does not beat
-    doing nothing at the longest horizon. Settings and result go into a new folder below `runs`.
+    The exit code is 1 where the learned method (`model` if given, else `auto`, else the first that learns)
+    does not beat doing nothing at the longest horizon. Settings and result go into a new folder below `runs`.
 
     \b
     Examples:
@@ -79,6 +79,7 @@ def evaluate(
       slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
+    from slipwise.cli.evaluation_verdict import verdict_on
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -105,31 +106,15 @@ def evaluate(
             if predictions is not None:
                 write_predictions(predictions, evaluation)
                 files["predictions"] = predictions
+            calibration = _learned(log, evaluation, chosen)
             if report is not None:
                 update("writing the report", 1.0)
-                _write_report(report, log, evaluation, chosen)
+                _write_report(report, log, evaluation, calibration)
                 files["report"] = report
-            verdict = verdict_on(evaluation)
+            verdict = verdict_on(evaluation, options.model or calibration)
             _write_result(out, folder, (log, evaluation, verdict), files)
     _show(out, evaluation, verdict, files | {"run folder": folder})
     return 0 if verdict is None or verdict.good else 1
-
-
-def verdict_on(evaluation: Evaluation) -> Verdict | None:
-    """Judge the learned method against `none` at the longest horizon; None where no method was learned."""
-    from slipwise.calibration.plain import plain_forecaster
-    from slipwise.calibration.settings import Settings
-    from slipwise.calibration.verdict import give_verdict, judge
-
-    names = [name for name in evaluation.methods if name not in ("none", "vendor", "batch")]
-    method = next((name for name in ("model", "auto") if name in names), names[0] if names else None)
-    longest = [p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)]
-    learned = next((p for p in longest if p.method == method), None)
-    plain = next((p for p in longest if p.method == "none"), None)
-    if learned is None or plain is None:
-        return None
-    nothing_learned = plain_forecaster(Settings()).belief(0)
-    return give_verdict(judge(learned, plain), (), nothing_learned)
 
 
 def _options(
@@ -186,12 +171,26 @@ def _write_result(
     out.document(document)
 
 
-def _write_report(path: Path, log: Log, evaluation: Evaluation, settings: Settings) -> None:
+def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibration | None:
+    """Learn what the judged method learns, for its parameters; None where no method learns."""
     from slipwise.calibration import calibrate
+    from slipwise.cli.evaluation_verdict import judged_method
+
+    method = judged_method(evaluation.methods)
+    if method is None:
+        return None
+    if method != "model":
+        settings = settings.model_copy(update={"basis": method})
+    return calibrate(log, input_name=evaluation.input, settings=settings)
+
+
+def _write_report(path: Path, log: Log, evaluation: Evaluation, calibration: Calibration | None) -> None:
     from slipwise.cli.command_line import command_line
+    from slipwise.errors import SettingsError
     from slipwise.reporting import write_report
 
-    calibration = calibrate(log, input_name=evaluation.input, settings=settings)
+    if calibration is None:
+        raise SettingsError("no method learns", where="--report", advice="add auto to --methods")
     title = ", ".join(run.name for run in log.runs[:3])
     write_report(
         path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()

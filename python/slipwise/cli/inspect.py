@@ -1,9 +1,144 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`slipwise inspect`."""
+"""`slipwise inspect`: what is in a log, and what could be learned from it."""
 
-from slipwise.cli.options import Logs
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from slipwise.cli.options import (
+    Basis,
+    Json,
+    Logs,
+    SettingsFile,
+    chosen_settings,
+    takes_log_options,
+)
+
+if TYPE_CHECKING:
+    from slipwise.cli.output import Output
+    from slipwise.inspection import Inspection, Learnability, Stream, Timing
+    from slipwise.logs import LogOptions
 
 
-def inspect(logs: Logs) -> int:
-    """Inspect."""
+@takes_log_options
+def inspect(
+    logs: Logs,
+    log_options: LogOptions,
+    basis: Basis = None,
+    settings: SettingsFile = None,
+    json: Json = None,
+) -> int:
+    """Say what is in one or several logs and what could be learned from them.
+
+    Shows streams with rates and gaps, what had to be left out, how late the poses are, which speeds and yaw
+    rates were driven, and which parameters the log determines. A log that can be read is never an error here.
+
+    \b
+    Examples:
+      slipwise inspect drive.mcap
+      slipwise inspect drive.bag --pose-topic /rtk/odom --wheel-topic /husky/odom
+      slipwise inspect drive.csv --json - | jq .streams
+    """  # noqa: D301
+    from slipwise.cli.output import Output
+    from slipwise.cli.progress import progress_bar
+    from slipwise.inspection import inspect_log
+    from slipwise.logs import open_log
+
+    out = Output(json)
+    chosen = chosen_settings(settings, basis)
+    with progress_bar("reading") as update:
+        log = open_log(*logs, options=log_options)
+        update("learning", 0.5)
+        inspection = inspect_log(log, chosen)
+    out.document(_document(inspection))
+    _show(out, inspection)
     return 0
+
+
+def _document(inspection: Inspection) -> dict[str, object]:
+    from dataclasses import asdict
+
+    from slipwise.cli.document import head, log_part
+
+    log = inspection.log
+    learnable = [
+        {name: value for name, value in asdict(item).items() if name != "parameters"}
+        | {"parameters": [asdict(p) | {"determined": p.determined} for p in item.parameters]}
+        for item in inspection.learned
+    ]
+    return (
+        head("inspect")
+        | {"exit_code": 0, "runs": [run.name for run in log.runs]}
+        | {"streams": [asdict(stream) for stream in inspection.streams]}
+        | {"timing": [asdict(timing) for timing in inspection.timing]}
+        | {"learnable": learnable, "maps": inspection.maps}
+        | log_part(log, log.left_out)
+    )
+
+
+def _show(out: Output, inspection: Inspection) -> None:
+    from slipwise.cli.tables import show_left_out, show_notes
+
+    log = inspection.log
+    for source in log.sources:
+        out.line(f"{source.path}: {source.format}, {source.rows} rows or messages")
+    show_notes(out, log.notes)
+    _show_streams(out, inspection.streams)
+    show_left_out(out, log.left_out)
+    if inspection.timing:
+        _show_timing(out, inspection.timing)
+    for name, lines in inspection.maps.items():
+        out.line(f"Driven by {name}s")
+        for line in lines:
+            out.line(f"  {line}")
+        out.line()
+    for item in inspection.learned:
+        _show_learnability(out, item)
+
+
+def _show_streams(out: Output, streams: Sequence[Stream]) -> None:
+    from slipwise.cli.output import Column
+    from slipwise.cli.tables import number
+
+    columns = [Column("stream")]
+    heads = ("runs", "samples", "duration [s]", "rate [Hz]", "gaps", "longest gap [s]", "frames")
+    columns += [Column(head, True) for head in heads]
+    rows = [
+        (
+            s.name,
+            *(str(s.runs), str(s.samples), f"{s.seconds:.1f}", number(s.rate), str(s.gaps)),
+            *(number(s.longest_gap), str(s.frames or "")),
+        )
+        for s in streams
+    ]
+    out.table("Streams", columns, rows)
+
+
+def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
+    from slipwise.cli.output import Column
+    from slipwise.cli.tables import number
+
+    columns = [Column("input"), Column("time"), Column("value [s]", True), Column("std [s]", True)]
+    columns += [Column("determined"), Column("meaning")]
+    rows = [
+        (t.input, t.name, number(t.seconds), number(t.std, 2), "yes" if t.determined else "no", t.meaning)
+        for t in timing
+    ]
+    out.table("Clock offset, delay and lag between inputs and poses", columns, rows)
+
+
+def _show_learnability(out: Output, item: Learnability) -> None:
+    if item.missing:
+        out.line(f"From {item.input}s nothing can be learned: {item.missing}")
+        return
+    known = [p.name for p in item.parameters if p.determined]
+    unknown = [p.name for p in item.parameters if not p.determined]
+    out.line(f"From {item.input}s: {item.windows} windows, {item.seconds:.0f} s of driving")
+    out.line(f"  determined: {', '.join(known) or 'nothing'}")
+    if unknown:
+        out.line(f"  not determined: {', '.join(unknown)}")
+    for entry in item.left_out:
+        out.line(f"  left out: {entry.count} x {entry.reason}, first at {entry.where}")
+    for advice in item.advice:
+        out.line(f"  {advice}")

@@ -53,7 +53,7 @@ def _slipwise(
         bool, typer.Option("--version", help="Show the version.", callback=_show_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Learn a robot's motion model - slip, lag, delay and their uncertainty - from what it was told and where it went.
+    """Learn a robot's motion model - slip, lag, delay, uncertainty - from what it was told and where it went.
 
     Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use.
 
@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run one command; return its exit code: 0 success, 1 a verdict of not good enough, 2 bad input or use."""
+    """Run one command; return its exit code: 0 success, 1 not good enough, 2 bad input or use."""
     plain = [argument for argument in arguments if argument != DEBUG] or ["--help"]
     return exit_code_of(lambda: _invoke(plain), debug=DEBUG in arguments)
 

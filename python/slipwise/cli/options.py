@@ -6,7 +6,7 @@ from __future__ import annotations
 import functools
 import inspect
 from collections.abc import Callable
-from enum import Enum
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from slipwise.logs import LogOptions
 
 
-class InputName(str, Enum):
+class InputName(StrEnum):
     """What a model is learned from."""
 
     command = "command"

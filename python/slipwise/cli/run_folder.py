@@ -22,7 +22,7 @@ LATEST = "latest"
 
 @contextlib.contextmanager
 def run_folder(runs: Path, command: str) -> Iterator[Path]:
-    """Create `runs/<UTC time>-<command>`; point `runs/latest` to it at the end, or remove it if the run fails.
+    """Create `runs/<UTC time>-<command>`; at the end point `runs/latest` to it, or remove it after a failure.
 
     Raises:
         OutputError: the folder cannot be created.

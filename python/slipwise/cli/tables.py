@@ -111,10 +111,10 @@ _SCORE_COLUMNS = (
     Column("50/90/95 %", True),
 )
 _LEGEND = (
-    "Mean errors with 95 % intervals; /none and /rival: relative to doing nothing and to the best other method. "
-    "NIS is 3 and the shares are 50/90/95 % where the predicted covariance is true.\n"
+    "Mean errors with 95 % intervals; /none and /rival: relative to doing nothing and to the best other one. "
+    "NIS is 3 and the shares are 50/90/95 % where the predicted covariance is true. "
     "* too optimistic: the error after the window itself was learned, as in the thesis."
-).replace("\n", " ")
+)
 
 
 def _score_row(score: Score) -> tuple[str, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Simulates a drive, writes it as a bag, and treats that bag as any user's: read, calibrate, evaluate, report."""
+"""Simulates a drive and treats its bag as any user's: read, calibrate, evaluate, report."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def run_demo(
         progress: told what is being done and which share of the whole is done, 0 to 1.
 
     Raises:
-        SlipwiseError: MuJoCo is not installed, the drive is too short to learn from, or a file cannot be written.
+        SlipwiseError: MuJoCo is missing, the drive is too short to learn from, or a file cannot be written.
     """
     progress("simulating", 0.0)
     scenario = Scenario(duration=options.duration)

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Puts together what is in a log: streams, faults, timing, coverage and what can be learned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from slipwise.calibration import Settings
+from slipwise.inspection.coverage_map import coverage_map
+from slipwise.inspection.learnability import Learnability, learnability_of
+from slipwise.inspection.streams import Stream, streams_of
+from slipwise.inspection.timing import Timing, timing_of
+from slipwise.logs import Log
+
+
+@dataclass(frozen=True)
+class Inspection:
+    """What is in a log."""
+
+    log: Log
+    streams: tuple[Stream, ...]
+    learned: tuple[Learnability, ...]  # one for each kind of input, commands first
+    timing: tuple[Timing, ...]
+    maps: dict[str, tuple[str, ...]]  # lines of the coverage map, by kind of input
+
+
+def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
+    """Look at a log; one without anything to learn is looked at as well.
+
+    Args:
+        log: what `open_log` returned.
+        settings: rules of windows, and the basis to learn; `auto` by default.
+    """
+    settings = settings or Settings()
+    inputs = {
+        "command": [run.commands for run in log.runs if run.commands is not None],
+        "wheel": [run.wheels for run in log.runs if run.wheels is not None],
+    }
+    present = [name for name, series in inputs.items() if any(len(part) for part in series)]
+    learned = tuple(learnability_of(log, name, settings) for name in present or ["command"])
+    return Inspection(
+        log=log,
+        streams=streams_of(log, settings.rules()),
+        learned=learned,
+        timing=tuple(timing for item in learned for timing in timing_of(item)),
+        maps={name: coverage_map(inputs[name]) for name in present},
+    )

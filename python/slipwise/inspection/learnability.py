@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which parameters a log determines, found by learning from it once, causally."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.calibration import Settings
+from slipwise.calibration.calibrate import learning_windows, refuse_empty
+from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.learner import Belief, learn_causally, make_learner
+from slipwise.calibration.verdict import UNDETERMINED_RATIO, drives_for
+from slipwise.errors import LogError
+from slipwise.logs import LeftOut, Log
+
+
+@dataclass(frozen=True)
+class LearnableParameter:
+    """One parameter as far as the log tells."""
+
+    name: str
+    unit: str
+    value: float
+    std: float
+    variance_ratio: float  # posterior / prior variance: 0 all is known, 1 the log says nothing
+
+    @property
+    def determined(self) -> bool:
+        """Whether the log tells more than was assumed before."""
+        return self.variance_ratio <= UNDETERMINED_RATIO
+
+
+@dataclass(frozen=True)
+class Learnability:
+    """What could be learned from one kind of input."""
+
+    input: str  # "command" or "wheel"
+    windows: int
+    seconds: float  # s of driving in these windows
+    parameters: tuple[LearnableParameter, ...]
+    left_out: tuple[LeftOut, ...]  # while windows were cut
+    missing: str  # why nothing could be learned; empty where something could
+    advice: tuple[str, ...]  # the drives that would determine the rest
+
+    def parameter(self, name: str) -> LearnableParameter | None:
+        """Return a parameter, None where the model has no such."""
+        return next((p for p in self.parameters if p.name == name), None)
+
+
+def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnability:
+    """Learn from one kind of input and say what is determined; nothing to learn is no error."""
+    try:
+        windows = learning_windows(prepare_drive(log, input_name), input_name, settings)
+        refuse_empty(windows, log)
+    except LogError as nothing:
+        reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
+        return Learnability(input_name, 0, 0.0, (), (), reason, ())
+    average = make_learner(settings, input_name).fresh()
+    belief = learn_causally(average, windows, [len(windows)])[len(windows)]
+    parameters = tuple(
+        _parameter((info.name, info.unit), belief, i) for i, info in enumerate(average.model.parameters)
+    )
+    unknown = tuple(parameter.name for parameter in parameters if not parameter.determined)
+    return Learnability(
+        input=input_name,
+        windows=len(windows),
+        seconds=float(np.sum(windows.end - windows.start)),
+        parameters=parameters,
+        left_out=windows.left_out,
+        missing="",
+        advice=drives_for(unknown),
+    )
+
+
+def _parameter(named: tuple[str, str], belief: Belief, i: int) -> LearnableParameter:
+    return LearnableParameter(
+        *named,
+        float(belief.mean[i]),
+        float(np.sqrt(belief.covariance[i, i])),
+        float(belief.variance_ratio[i]),
+    )

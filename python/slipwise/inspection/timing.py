@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How late poses are against the inputs: the clock offset of wheel speeds, delay and lag of commands."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from slipwise.inspection.learnability import Learnability, LearnableParameter
+
+
+@dataclass(frozen=True)
+class Timing:
+    """A time between inputs and poses."""
+
+    input: str  # "command" or "wheel"
+    name: str
+    seconds: float  # s
+    std: float  # s
+    determined: bool
+    meaning: str
+
+
+_MEANINGS = {
+    "clock_offset": "poses are stamped this much later than wheel speeds",
+    "log_delay_v": "from a speed command to the first effect, clock offset included",
+    "log_delay_omega": "from a yaw rate command to the first effect, clock offset included",
+    "log_lag_v": "then the speed follows with this time constant",
+    "log_lag_omega": "then the yaw rate follows with this time constant",
+}
+
+
+def timing_of(learned: Learnability) -> tuple[Timing, ...]:
+    """Return the times that were learned, in s; none where nothing could be learned."""
+    found = ((learned.parameter(name), meaning) for name, meaning in _MEANINGS.items())
+    return tuple(_timing(learned.input, p, meaning) for p, meaning in found if p is not None)
+
+
+def _timing(input_name: str, parameter: LearnableParameter, meaning: str) -> Timing:
+    name = parameter.name.removeprefix("log_")
+    seconds, std = parameter.value, parameter.std
+    if name != parameter.name:
+        seconds, std = math.exp(seconds), math.exp(seconds) * std
+    return Timing(input_name, name, seconds, std, parameter.determined, meaning)
