@@ -21,7 +21,7 @@ _UsageError = typer.BadParameter.__mro__[1]  # typer's own copy of click, or cli
 
 def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
     """Run a command; return its exit code, or 2 after one line that says what went wrong."""
-    _never_fail_on_a_character()
+    _make_streams_safe()
     before = signal.signal(signal.SIGTERM, _stop)
     try:
         code = command()
@@ -32,13 +32,20 @@ def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
     except BrokenPipeError:
         silence_stdout()
         return 0
+    except OSError as error:
+        silence_stdout()
+        return _report(error, debug=debug)
     except (Exception, KeyboardInterrupt) as error:
-        if debug:
-            traceback.print_exc()
-        print(f"slipwise: {line_for(error)}", file=sys.stderr)
-        return BAD_USE
+        return _report(error, debug=debug)
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def _report(error: BaseException, *, debug: bool) -> int:
+    if debug:
+        traceback.print_exception(error)
+    print(f"slipwise: {line_for(error)}", file=sys.stderr)
+    return BAD_USE
 
 
 def line_for(error: BaseException) -> str:
@@ -49,6 +56,8 @@ def line_for(error: BaseException) -> str:
         line = "stopped by the user; no half-written file is left"
     elif isinstance(error, MemoryError):
         line = "out of memory: use a shorter log, or a machine with more memory"
+    elif isinstance(error, OSError) and error.strerror:
+        line = f"{error.strerror} ({error.filename or 'stdout'}): check the path and the disk"
     elif isinstance(error, _UsageError):
         line = _usage_line(error)
     else:
@@ -80,7 +89,10 @@ def _usage_line(error: BaseException) -> str:
     return f"{message}: see `{command} --help`"
 
 
-def _never_fail_on_a_character() -> None:
+def _make_streams_safe() -> None:
+    """Print to nowhere where a stream is closed, and never fail on a character that a terminal lacks."""
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: PTH123, SIM115 - for the whole process
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: PTH123, SIM115
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")

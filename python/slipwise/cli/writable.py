@@ -18,7 +18,8 @@ def refuse_unwritable(*paths: Path | None) -> None:
     """Raise where one of the files could not be written; nothing is left behind.
 
     Raises:
-        OutputError: a folder is read-only or full, a part of the path is a file, or the path is a folder.
+        OutputError: a path is a folder, or a device or pipe that a file would replace; or its folder is
+            read-only, full, or below a file.
     """
     for path in paths:
         if path is None:
@@ -26,6 +27,10 @@ def refuse_unwritable(*paths: Path | None) -> None:
         with output_errors(path):
             if path.is_dir():
                 raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+            if path.exists() and not path.is_file():
+                raise OutputError(
+                    "not a file", where=str(path), advice="name a file, or use `--json -` to print"
+                )
             with tempfile.TemporaryFile(dir=_existing(path.absolute().parent)):
                 pass
 
