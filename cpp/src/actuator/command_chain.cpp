@@ -13,13 +13,22 @@ namespace {
 
 using Row = Eigen::Matrix<double, 1, kChainParameters>;
 constexpr Eigen::Index kLagV = 0, kLagOmega = 1, kDelayV = 2, kDelayOmega = 3, kOffset = 4;
+constexpr Eigen::Index kFixed = -1;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kSettledLags = 8.0;  // after this many time constants the start of a lag is forgotten (e^-8)
 
-/// A moment that moves with the chain's parameters.
+/// A moment that moves with one of the chain's parameters: later with a delay, earlier with the clock offset.
 struct Moment {
   double t;
-  Row slope;
+  Eigen::Index parameter;
+
+  Row slope() const {
+    Row row = Row::Zero();
+    if (parameter != kFixed) {
+      row[parameter] = parameter == kOffset ? -1.0 : 1.0;
+    }
+    return row;
+  }
 };
 
 /// A lag's output with its total derivative.
@@ -40,11 +49,7 @@ class DelayedCursor {
 
   BodyTwist held() const { return next_ == 0 ? BodyTwist{} : inputs_.sample(next_ - 1); }
   double next_change() const { return next_ < end_ ? inputs_.time(next_) + delay_ : kNever; }
-  Moment change_moment() const {
-    Row slope = Row::Zero();
-    slope[index_] = 1.0;
-    return {next_change(), slope};
-  }
+  Moment change_moment() const { return {next_change(), index_}; }
   void advance() { ++next_; }
   std::size_t changes_left() const { return end_ - next_; }
 
@@ -63,16 +68,23 @@ double advance(LagState& state, double input, const LagDecay& decay) {
   return step.integral;
 }
 
-/// The same for a step whose duration moves with the parameters: also writes the integral's slope.
-double advance(LagState& state, double input, const LagDecay& decay, Eigen::Index lag_index, const Row& duration_slope,
-               Eigen::Ref<Row, 0, Eigen::InnerStride<>> integral_slope) {
+/// An integral with its slope.
+struct Integral {
+  double value;
+  Row slope;
+};
+
+/// The same for a step whose duration moves with the parameters.
+Integral advance(LagState& state, double input, const LagDecay& decay, Eigen::Index lag_index,
+                 const Row& duration_slope) {
   const auto step = linearize_lag_step(state.output, input, decay);
-  integral_slope = step.by_duration.integral * duration_slope + step.by_output.integral * state.slope;
-  integral_slope[lag_index] += step.by_time_constant.integral;
+  Integral integral{step.value.integral,
+                    step.by_duration.integral * duration_slope + step.by_output.integral * state.slope};
+  integral.slope[lag_index] += step.by_time_constant.integral;
   state.slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope;
   state.slope[lag_index] += step.by_time_constant.output;
   state.output = step.value.output;
-  return step.value.integral;
+  return integral;
 }
 
 /// Walks over the delayed input changes of a window, with or without slopes.
@@ -96,7 +108,7 @@ class ChainWalk {
 
   DriveSteps run() {
     if (warm_up_ > 0.0) {
-      cover({start_.t - warm_up_, Row::Zero()}, start_, nullptr);
+      cover({start_.t - warm_up_, kFixed}, start_, nullptr);
     }
     DriveSteps result;
     const std::size_t steps = cursor_v_.changes_left() + cursor_omega_.changes_left() + 2;
@@ -107,11 +119,7 @@ class ChainWalk {
   }
 
  private:
-  Moment moment_of(double stamp) const {
-    Row slope = Row::Zero();
-    slope[kOffset] = -1.0;
-    return {stamp - chain_.clock_offset, slope};
-  }
+  Moment moment_of(double stamp) const { return {stamp - chain_.clock_offset, kOffset}; }
 
   /// Steps from `now` to `until`; they are recorded where there is an `out`.
   void cover(Moment now, const Moment& until, DriveSteps* out) {
@@ -147,17 +155,27 @@ class ChainWalk {
     const double duration = (to.t - from.t) / parts;
     const LagDecay decay_v(chain_.lag_v, duration);
     const LagDecay decay_omega(chain_.lag_omega, duration);
-    const Row slope = (to.slope - from.slope) / parts;
-    const bool moving = with_slopes_ && (lagging || !slope.isZero(0.0));  // without lag, only moving ends matter
-    DriveStepJacobian jacobian = DriveStepJacobian::Zero();
+    // Without lag, only steps whose duration moves have slopes.
+    if (with_slopes_ && (lagging || from.parameter != to.parameter)) {
+      const Row slope = (to.slope() - from.slope()) * (1.0 / parts);
+      for (int i = 0; i < parts; ++i) {
+        DriveStepJacobian jacobian;
+        const DriveStep step = linearize_step(decay_v, decay_omega, slope, jacobian);
+        record(step, jacobian, out);
+      }
+      return;
+    }
+    const DriveStepJacobian no_slopes = DriveStepJacobian::Zero();
     for (int i = 0; i < parts; ++i) {
-      const DriveStep step =
-          moving ? linearize_step(decay_v, decay_omega, slope, jacobian) : next_step(decay_v, decay_omega);
-      if (out != nullptr) {
-        out->steps.push_back(step);
-        if (with_slopes_) {
-          out->jacobians.push_back(jacobian);
-        }
+      record(next_step(decay_v, decay_omega), no_slopes, out);
+    }
+  }
+
+  void record(const DriveStep& step, const DriveStepJacobian& jacobian, DriveSteps* out) const {
+    if (out != nullptr) {
+      out->steps.push_back(step);
+      if (with_slopes_) {
+        out->jacobians.push_back(jacobian);
       }
     }
   }
@@ -171,10 +189,11 @@ class ChainWalk {
   DriveStep linearize_step(const LagDecay& decay_v, const LagDecay& decay_omega, const Row& duration_slope,
                            DriveStepJacobian& jacobian) {
     const BodyTwist linear = cursor_v_.held();
-    jacobian.row(0) = duration_slope;
-    return {decay_v.duration, advance(v_, linear.v, decay_v, kLagV, duration_slope, jacobian.row(1)),
-            advance(vy_, linear.vy, decay_v, kLagV, duration_slope, jacobian.row(2)),
-            advance(omega_, cursor_omega_.held().omega, decay_omega, kLagOmega, duration_slope, jacobian.row(3))};
+    const Integral forward = advance(v_, linear.v, decay_v, kLagV, duration_slope);
+    const Integral left = advance(vy_, linear.vy, decay_v, kLagV, duration_slope);
+    const Integral turn = advance(omega_, cursor_omega_.held().omega, decay_omega, kLagOmega, duration_slope);
+    jacobian << duration_slope, forward.slope, left.slope, turn.slope;
+    return {decay_v.duration, forward.value, left.value, turn.value};
   }
 
   const CommandChain& chain_;

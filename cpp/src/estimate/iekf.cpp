@@ -21,7 +21,7 @@ constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of 
 Eigen::Matrix3d innovation_covariance(const Eigen::MatrixXd& prior, const Jacobian& jacobian,
                                       const Eigen::Matrix3d& noise) {
   const Jacobian spread = jacobian * prior;
-  return spread * jacobian.transpose() + noise;
+  return spread.lazyProduct(jacobian.transpose()) + noise;
 }
 
 /// A point of the iteration. The mean is kept as prior + P dual, so that the prior's cost needs no inverse of P.
@@ -37,14 +37,14 @@ class MapProblem {
  public:
   MapProblem(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
              const Eigen::Matrix3d& noise)
-      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise), noise_factor_(noise) {}
+      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise) {}
 
   Iterate evaluate(Eigen::VectorXd dual) const {
     const Eigen::VectorXd away = prior_.covariance * dual;
     Eigen::VectorXd mean = prior_.mean + away;
     SegmentLinearization at = linearize_segment(model_, mean, inputs_, segment_);
     const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
-    const double cost = dual.dot(away) + r.dot(noise_factor_.solve(r));
+    const double cost = dual.dot(away) + r.dot(noise_.llt().solve(r));
     return {std::move(dual), std::move(mean), std::move(at), r, cost};
   }
 
@@ -68,19 +68,32 @@ class MapProblem {
     return false;
   }
 
+  /// Gauss-Newton steps until they gain little. False when not even the first one helps.
+  bool minimize(Iterate& i, const IekfSettings& settings) const {
+    for (int steps = 0; steps < settings.iterations; ++steps) {
+      const double cost_before = i.cost;
+      if (!descend(i, settings.halvings)) {
+        return steps > 0;
+      }
+      if (cost_before - i.cost < settings.tolerance) {
+        break;
+      }
+    }
+    return true;
+  }
+
  private:
   const MotionModel& model_;
   const Estimate& prior_;
   const InputTrack& inputs_;
   const Segment& segment_;
   const Eigen::Matrix3d& noise_;
-  Eigen::LLT<Eigen::Matrix3d> noise_factor_;
 };
 
 /// (I - K J) P (I - K J)^T + K R K^T.
 Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
   const Jacobian spread = jacobian * prior;
-  const Eigen::Matrix3d s = spread * jacobian.transpose() + noise;
+  const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
   const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = s.llt().solve(spread).transpose();
   const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
   const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
@@ -104,13 +117,18 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 
 }  // namespace
 
+// NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was seen, and settings with defaults.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
   const MapProblem first(model, prior, inputs, segment, noise);
   Iterate now = first.evaluate(Eigen::VectorXd::Zero(model.size()));
-  IekfUpdate update{prior, now.innovation,   innovation_covariance(prior.covariance, now.at.by_parameter, noise), 0.0,
-                    1.0,   Status::Converged};
+  IekfUpdate update{.estimate = prior,
+                    .innovation = now.innovation,
+                    .innovation_covariance = innovation_covariance(prior.covariance, now.at.by_parameter, noise),
+                    .nis = 0.0,
+                    .weight = 1.0,
+                    .status = Status::Converged};
   update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
@@ -124,20 +142,10 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   const Eigen::Matrix3d weighted_noise = noise / update.weight;
   const MapProblem problem(model, prior, inputs, segment, weighted_noise);
   now.cost = now.innovation.dot(weighted_noise.llt().solve(now.innovation));
-  for (int i = 0; i < settings.iterations; ++i) {
-    const double cost_before = now.cost;
-    if (problem.descend(now, settings.halvings)) {
-      if (cost_before - now.cost < settings.tolerance) {
-        break;
-      }
-      continue;
-    }
-    if (i == 0) {  // nothing was learned: the prior stands
-      update.weight = 0.0;
-      update.status = Status::NotConverged;
-      return update;
-    }
-    break;
+  if (!problem.minimize(now, settings)) {  // nothing was learned: the prior stands
+    update.weight = 0.0;
+    update.status = Status::NotConverged;
+    return update;
   }
   update.estimate.mean = now.mean;
   update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);

@@ -85,7 +85,7 @@ TEST_CASE("linearised segments are exact from a measured initial twist and under
   }
 }
 
-// A step's slip is that of its mean twist, so the path has a faint kink where the two channels' changes swap their order.
+// A step slips as its mean twist does, so the path has a faint kink where the two channels' changes swap their order.
 TEST_CASE("the derivative where both channels have the same delay is the limit of a yaw rate slightly later") {
   const Basis basis = named_basis("odd-even-10");
   const MotionModel model(basis, {.dynamics = true, .clock_offset = true});

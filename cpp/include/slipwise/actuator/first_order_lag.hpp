@@ -25,12 +25,11 @@ struct LagStepLinearization {
 struct LagDecay {
   double time_constant;  ///< [s]; zero follows the input at once
   double duration;       ///< [s]
-  double gone;           ///< the share of the gap that has closed, 1 - a of method.md
-  double left;           ///< the share that is left, a
-  double by_rate;        ///< a * duration / time_constant
+  double gone = 1.0;     ///< the share of the gap that has closed, 1 - a of method.md
+  double left = 0.0;     ///< the share that is left, a
+  double by_rate = 0.0;  ///< a * duration / time_constant
 
-  LagDecay(double time_constant_s, double duration_s)
-      : time_constant(time_constant_s), duration(duration_s), gone(1.0), left(0.0), by_rate(0.0) {
+  LagDecay(double time_constant_s, double duration_s) : time_constant(time_constant_s), duration(duration_s) {
     if (time_constant > 0.0) {
       const double ratio = duration / time_constant;
       gone = -std::expm1(-ratio);

@@ -36,9 +36,11 @@ ArcFunctions<Scalar> arc_functions(Scalar f) {
   const Scalar half_cos = std::cos(f / 2);
   const Scalar s = 2 * half_sin * half_cos;
   const Scalar one_minus_c = 2 * half_sin * half_sin;
-  const Scalar a = s / f;
-  const Scalar b = one_minus_c / f;
-  return {a, b, (1 - one_minus_c - a) / f, (s - b) / f, s, 1 - one_minus_c};
+  const Scalar c = 1 - one_minus_c;
+  const Scalar per_f = 1 / f;
+  const Scalar a = s * per_f;
+  const Scalar b = one_minus_c * per_f;
+  return {a, b, (c - a) * per_f, (s - b) * per_f, s, c};
 }
 
 }  // namespace slipwise
