@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.calibration.statistics import held_out_half
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
 
@@ -26,12 +27,12 @@ class ChosenWindow:
 
 
 def choose_windows(contents: Contents) -> list[ChosenWindow]:
-    """Choose among the second half of the windows at the longest horizon; in time order, numbered from 1."""
+    """Choose among the scored windows of the longest horizon; in time order, numbered from 1."""
     predictions = contents.predictions(contents.learned_method, contents.longest_horizon)
     if predictions is None:
         return []
     total = len(predictions.t_start)
-    candidates = np.arange(total // 2 if total > 2 * MOST_WINDOWS else 0, total)
+    candidates = np.arange(total)[held_out_half(total)]
     candidates = candidates[np.isfinite(predictions.measured[candidates]).all(axis=1)]
     rows = sorted(candidates[_spread(_motions(predictions, candidates))].tolist())
     return [
@@ -47,7 +48,7 @@ def choose_windows(contents: Contents) -> list[ChosenWindow]:
 
 
 def _motions(predictions: Predictions, rows: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Return motion and, with less weight, place in the log of each window, scaled to their spread, [N, 4]."""
+    """Return motion and, with less weight, place in the log of each window, scaled to spread, [N, 4]."""
     place = 0.5 * np.linspace(0.0, 1.0, len(rows))
     motion = predictions.measured[rows]
     spread = np.ptp(motion, axis=0) if len(rows) else np.ones(3)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from slipwise.reporting.markup import escape
 
 DIGITS = 6  # significant digits of every number in a figure
-TOP_BAR_MARGIN = {"t": 62}  # px above a plot for a colour bar
+TOP_BAR_MARGIN = {"t": 42}  # px above a plot for a colour bar
 
 _AXIS = {
     "gridcolor": "#e6eaef",
@@ -79,8 +79,11 @@ def axis(title: str, **options: object) -> dict[str, Any]:
     return {**_AXIS, "title": {"text": title, "font": {"size": 13}, "standoff": 8}, **options}
 
 
-def top_colour_bar(title: str, **options: object) -> dict[str, Any]:
-    """Return a colour bar above the plot, where it takes no width; the layout needs TOP_BAR_MARGIN."""
+def top_colour_bar(**options: object) -> dict[str, Any]:
+    """Return a colour bar above the plot, where it takes no width; the layout needs TOP_BAR_MARGIN.
+
+    It has no title, which Plotly draws into the bar there: the figure's heading says what the colours are.
+    """
     place = {
         "orientation": "h",
         "x": 0.5,
@@ -89,8 +92,16 @@ def top_colour_bar(title: str, **options: object) -> dict[str, Any]:
         "y": 1.0,
         "yanchor": "top",
     }
-    title_box = {"text": title, "side": "top", "font": {"size": 12}}
-    return {**place, "len": 0.9, "thickness": 9, "outlinewidth": 0, "ypad": 2, "title": title_box, **options}
+    return {
+        **place,
+        "len": 0.9,
+        "thickness": 9,
+        "outlinewidth": 0,
+        "ypad": 2,
+        "tickangle": 0,
+        "nticks": 5,
+        **options,
+    }
 
 
 def plain_label(text: str) -> str:

@@ -69,7 +69,7 @@ def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPat
 
 
 def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
-    """Return the measured poses seen from the first of the window, None where there are not two in its frame."""
+    """Return the measured poses seen from the first of the window, None without two in one frame."""
     inside = (poses.t >= window.t_start - _SAME_STAMP) & (poses.t <= window.t_end + _SAME_STAMP)
     rows = np.flatnonzero(inside)
     if len(rows) < 2 or poses.frame[rows[0]] != poses.frame[rows[-1]]:
@@ -83,7 +83,7 @@ def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
 
 
 def _segments(contents: Contents, run: Run, inputs: Inputs) -> dict[int, _core.Segment]:
-    """Return the run's windows by start, with gravity and measured twist there, as the evaluation cuts them."""
+    """Return the run's windows by start, with gravity and twist there, as the evaluation cuts them."""
     horizon = contents.longest_horizon
     if horizon is None:
         return {}

@@ -29,12 +29,12 @@ class ConvergenceSection:
 
     title = "Parameters while learning"
     explanation = (
-        "Each parameter after every window learned, with a band of one standard deviation: what is determined "
-        "settles and its band narrows."
+        "Each parameter after every window learned, with a band of one standard deviation: what is "
+        "determined settles and its band narrows."
     )
 
     def html(self, contents: Contents) -> str:
-        """Return figures of the parameters that matter most, all final values, and the weights of the bases."""
+        """Return figures of the parameters that matter, all final values, and the weights of the bases."""
         model, history = contents.calibration.model, contents.calibration.history
         if not model.content.parameters:
             return missing("The model has no parameters: it predicts without slip.")
@@ -145,6 +145,8 @@ class _Shown:
         return np.exp(values) if self.exponential else values
 
     def final(self, parameter: Parameter) -> str:
+        if not self.exponential:
+            return f"Final value {number(parameter.value)} ± {number(parameter.std, 2)} {self.unit}"
         spread = parameter.std * np.array([0.0, -1.0, 1.0])
         value, low, high = self.values(parameter.value + spread).tolist()
         return f"Final value {number(value)} {self.unit}, ± 1 sigma: {number(low)} to {number(high)}"

@@ -24,8 +24,8 @@ class CoverageSection:
 
     title = "Speeds and yaw rates driven"
     explanation = (
-        "How long the robot was told to drive (or its wheels drove) at each speed and yaw rate; the model is not "
-        "known to hold outside the dashed box."
+        "How long the robot was told to drive (or its wheels drove) at each speed and yaw rate; the model is "
+        "not known to hold outside the dashed box."
     )
 
     def html(self, contents: Contents) -> str:
@@ -53,6 +53,7 @@ class CoverageSection:
         }
         figure = Figure(
             key="coverage",
+            heading="The colour is the time [s]",
             label="Time spent at each speed and yaw rate",
             traces=[heatmap],
             layout={
@@ -62,7 +63,7 @@ class CoverageSection:
                 "shapes": [_box(contents)],
             },
             height=420,
-            caption=f"{held.sum():.0f} s of known input; the colours are logarithmic, white was never driven.",
+            caption=f"{held.sum():.0f} s of known input; colours are logarithmic, white was never driven.",
         )
         return legend((("range of the model", "#1b2430", "dash"),)) + figure.html()
 
@@ -88,7 +89,7 @@ def _colour_bar(seconds: Floats) -> dict[str, Any]:
         low, high = np.floor(np.log10(max(driven.min(), 1e-3))), np.ceil(np.log10(max(driven.max(), 1e-3)))
         exponents = exponents[(exponents >= low) & (exponents <= high)]
     texts = [f"{10.0**exponent:g}" for exponent in exponents.tolist()]
-    return top_colour_bar("time [s]", tickvals=numbers(exponents), ticktext=texts)
+    return top_colour_bar(tickvals=numbers(exponents), ticktext=texts)
 
 
 def _box(contents: Contents) -> dict[str, Any]:

@@ -81,7 +81,7 @@ def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], one: bool) ->
         "size": 4,
         "color": numbers(t),
         "colorscale": SEQUENTIAL,
-        "colorbar": top_colour_bar("time [s]"),
+        "colorbar": top_colour_bar(),
     }
     path = {
         "type": "scatter",
@@ -96,7 +96,7 @@ def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], one: bool) ->
     return Figure(
         key=f"map-{place}",
         label=f"Map of the drive {drive.name}",
-        heading=drive.name,
+        heading=f"{drive.name}: the colour is the time [s]",
         traces=[path, _starts(drive, chosen)],
         layout={
             "margin": TOP_BAR_MARGIN,

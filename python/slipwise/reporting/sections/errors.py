@@ -22,8 +22,8 @@ class ErrorsSection:
 
     title = "Errors over time"
     explanation = (
-        "The error of each prediction at the time of its start, from the first window on: a model that learns "
-        "leaves the plain one behind within the first windows and stays below it."
+        "The error of each prediction at the time of its start, from the first window on: a model that "
+        "learns leaves the plain one behind within the first windows and stays below it."
     )
 
     def html(self, contents: Contents) -> str:

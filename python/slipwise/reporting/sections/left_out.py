@@ -31,7 +31,7 @@ class LeftOutSection:
                     seen.add(entry)
                     rows.append((entry.kind, str(entry.count), entry.where, entry.reason, stage))
         head = ("what", "count", "first place", "why", "while")
-        html = table(head, rows, kind="facts") if rows else paragraph("Nothing was left out.")
+        html = table(head, rows, kind="listing") if rows else paragraph("Nothing was left out.")
         notes = list(dict.fromkeys(note for _, result in stages for note in result.notes))
         return html + (
             paragraph("Guessed or worked out:") + bullets(notes)

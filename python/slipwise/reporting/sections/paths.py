@@ -28,9 +28,9 @@ class PathsSection:
 
     title = "Measured and predicted paths"
     explanation = (
-        "Drives of the longest horizon from starts chosen for the variety of their motion, seen from the robot "
-        "at the start; arrow heads point where the robot does, and the ellipse should hold the measured end in "
-        "95 of 100 cases."
+        "Drives of the longest horizon from starts chosen for the variety of their motion, seen from the "
+        "robot at the start; arrow heads point where it does, and the ellipse should hold the measured "
+        "end in 95 of 100 cases."
     )
 
     def html(self, contents: Contents) -> str:
@@ -71,9 +71,11 @@ def _notes(drawn: list[WindowPaths]) -> str:
     if causal == len(drawn):
         text = "Each predicted path uses the parameters known at its start; nothing measured later is in it."
     elif causal == 0:
-        text = "The predicted paths use the final model, which may have seen these windows; the ellipses have not."
+        text = "The predicted paths use the final model, which may know these windows; the ellipses do not."
     else:
-        text = f"{causal} of {len(drawn)} predicted paths use what was known at their start, others the final model."
+        text = (
+            f"{causal} of {len(drawn)} predicted paths use what was known at their start, others at the end."
+        )
     return paragraph(text)
 
 

@@ -33,8 +33,8 @@ class ScoresSection:
 
     title = "How far the predictions are off"
     explanation = (
-        "Mean errors of predictions made from the commands or wheel speeds alone, with nothing measured after "
-        "their start; smaller is better, and a ratio below 1 beats its rival."
+        "Mean errors of predictions made from the commands or wheel speeds alone, with nothing measured "
+        "after their start; smaller is better, and a ratio below 1 beats its rival."
     )
 
     def html(self, contents: Contents) -> str:
@@ -115,8 +115,9 @@ def _percent(share: float) -> str:
 def _notes(contents: Contents) -> str:
     source = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
     return (
-        f'<p class="explanation"><b>none</b> follows the {source} without any slip, <b>vendor</b> turns by the '
-        "maker's track multiplier, <b>edd-2</b> fits two numbers (speed and yaw rate), <b>auto</b> is slipwise. "
-        "The scores are over the second half of the windows. The best rival is the best other method than none. "
-        "NIS is the normalised innovation squared: 3 where the predicted covariance is true.</p>"
+        f'<p class="explanation"><b>none</b> follows the {source} without any slip, <b>vendor</b> turns by '
+        "the maker's track multiplier, <b>edd-2</b> fits two numbers (speed and yaw rate), <b>auto</b> is "
+        "slipwise. The scores are over the second half of the windows. The best rival is the best other "
+        "method than none. NIS is the normalised innovation squared: 3 where the predicted covariance is "
+        "true.</p>"
     )

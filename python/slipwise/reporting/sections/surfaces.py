@@ -42,8 +42,9 @@ class SurfacesSection:
 
     title = "Learned slip"
     explanation = (
-        "The slip rates that the model adds to the commanded motion on level ground, within the speeds and yaw "
-        "rates of the log; red takes away, blue adds, and the grey sheets lie one standard deviation above and below."
+        "The slip rates that the model adds to the commanded motion on level ground, within the speeds and "
+        "yaw rates of the log; red takes away, blue adds, and the grey sheets lie one standard deviation "
+        "above and below."
     )
 
     def html(self, contents: Contents) -> str:
@@ -55,13 +56,19 @@ class SurfacesSection:
         if speed[1] - speed[0] < 1e-6 or yaw_rate[1] - yaw_rate[0] < 1e-6:
             return missing("The log holds one speed or one yaw rate only, so slip cannot be drawn over both.")
         grid = _grid(model)
-        surfaces = "".join(_surface(grid, channel).html() for channel in range(len(_CHANNELS)))
-        maps = "".join(_contours(grid, channel).html() for channel in range(len(_CHANNELS)))
+        basis = model.motion.basis
+        terms = (basis.lon, basis.lat, basis.ang)
+        drawn = [channel for channel in range(len(_CHANNELS)) if terms[channel]]
+        surfaces = "".join(_surface(grid, channel).html() for channel in drawn)
+        maps = "".join(_contours(grid, channel).html() for channel in drawn)
+        names = [name for (name, _, _), given in zip(_CHANNELS, terms, strict=True) if not given]
+        absent = (missing(f"The model has no terms for {name} slip.") for name in names)
         keys = (("± 1 sigma", "#7b8794", "area"),)
         return (
             paragraph("Drag to turn a surface, pinch or use the wheel to zoom.", kind="explanation")
             + legend(keys)
             + f'<div class="grid">{surfaces}</div><div class="grid">{maps}</div>'
+            + "".join(absent)
         )
 
 
@@ -142,12 +149,13 @@ def _contours(grid: _Grid, channel: int) -> Figure:
         "zmax": limit,
         "contours": {"showlabels": True, "labelfont": {"size": 11, "color": "#1b2430"}},
         "line": {"width": 0.7, "color": "#566270"},
-        "colorbar": top_colour_bar(title, nticks=6),
+        "colorbar": top_colour_bar(),
         "hovertemplate": _HOVER + f" {unit}<extra></extra>",
     }
     return Figure(
         key=f"contours-{name}",
         label=f"Contours of the {title} over speed and yaw rate",
+        heading=title[0].upper() + title[1:],
         traces=[contour],
         layout={"margin": TOP_BAR_MARGIN, "xaxis": axis(_SPEED), "yaxis": axis(_YAW_RATE)},
         height=320,

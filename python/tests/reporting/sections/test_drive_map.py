@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of the map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from reporting.page_parts import contents_of, figures_of
+from reporting.synthetic_results import make_results
+from slipwise.logs.log import Log, empty_poses
+from slipwise.reporting.sections.drive_map import DriveMapSection
+
+
+def test_map_has_equal_axes_and_starts_at_the_first_pose() -> None:
+    figure = figures_of(DriveMapSection().html(contents_of(make_results())))["figure-map-1"]
+    assert figure["layout"]["yaxis"]["scaleanchor"] == "x"
+    assert (figure["data"][0]["x"][0], figure["data"][0]["y"][0]) == (0, 0)
+
+
+def test_starts_of_the_shown_paths_are_marked_by_their_numbers() -> None:
+    figure = figures_of(DriveMapSection().html(contents_of(make_results())))["figure-map-1"]
+    assert figure["data"][1]["text"] == [str(n) for n in range(1, 13)]
+
+
+def test_every_run_and_frame_has_a_map_of_its_own() -> None:
+    results = make_results(runs=2)
+    first = results.log.runs[0]
+    frame = np.repeat(np.array([0, 1]), len(first.poses) // 2)
+    split = replace(first, poses=replace(first.poses, frame=frame))
+    html = DriveMapSection().html(contents_of(replace(results, log=Log(runs=(split, results.log.runs[1])))))
+    assert list(figures_of(html)) == ["figure-map-1", "figure-map-2", "figure-map-3"]
+    assert "field 0, frame 1" in html
+
+
+def test_many_drives_show_the_longest_and_say_so() -> None:
+    html = DriveMapSection().html(contents_of(make_results(runs=8)))
+    assert len(figures_of(html)) == 6
+    assert "The 6 longest of 8 drives are shown" in html
+
+
+def test_far_away_poses_keep_their_shape() -> None:
+    results = make_results()
+    run = results.log.runs[0]
+    far = replace(run, poses=replace(run.poses, x=run.poses.x + 5.4e6))
+    near, moved = (
+        figures_of(DriveMapSection().html(contents_of(replace(results, log=Log(runs=(r,))))))["figure-map-1"]
+        for r in (run, far)
+    )
+    assert np.allclose(near["data"][0]["x"], moved["data"][0]["x"], atol=1e-4)
+
+
+def test_log_without_poses_gives_a_sentence() -> None:
+    results = make_results()
+    bare = replace(results, log=Log(runs=(replace(results.log.runs[0], poses=empty_poses()),)))
+    assert "no measured poses" in DriveMapSection().html(contents_of(bare))

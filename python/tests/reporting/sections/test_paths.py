@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of the paths."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from reporting.page_parts import contents_of, figures_of, text_of
+from reporting.synthetic_results import make_results, without_history
+from slipwise.reporting.sections.paths import PathsSection
+
+
+def test_each_chosen_window_shows_ellipse_plain_measured_and_predicted() -> None:
+    html = PathsSection().html(contents_of(make_results()))
+    figures = figures_of(html)
+    assert len(figures) == 12
+    for figure in figures.values():
+        assert figure["data"][0]["fill"] == "toself"
+        assert [trace["name"] for trace in figure["data"][1:4]] == ["none", "measured", "predicted"]
+    assert "nothing measured later is in it" in text_of(html)
+
+
+def test_arrow_head_points_along_the_heading() -> None:
+    contents = contents_of(make_results())
+    figure = figures_of(PathsSection().html(contents))["figure-path-1"]
+    auto = contents.predictions("auto", 5.0)
+    assert auto is not None
+    end = figure["data"][-1]
+    row = int(np.argmin(np.abs(auto.pose[:, 0] - end["x"][0]) + np.abs(auto.pose[:, 1] - end["y"][0])))
+    expected = (90.0 - np.degrees(auto.pose[row, 2])) % 360.0
+    assert abs(end["marker"]["angle"] - expected) < 0.1
+
+
+def test_batch_fit_says_that_the_final_model_is_drawn() -> None:
+    html = PathsSection().html(contents_of(without_history(make_results())))
+    assert "use the final model" in text_of(html)
+
+
+def test_covariance_that_is_none_leaves_the_ellipse_out() -> None:
+    results = make_results()
+    parts = tuple(
+        replace(p, covariance=np.full_like(p.covariance, np.nan)) for p in results.evaluation.predictions
+    )
+    html = PathsSection().html(
+        contents_of(replace(results, evaluation=replace(results.evaluation, predictions=parts)))
+    )
+    assert [trace["name"] for trace in figures_of(html)["figure-path-1"]["data"][:3]] == [
+        "none",
+        "measured",
+        "predicted",
+    ]
+
+
+def test_evaluation_without_predictions_gives_a_sentence() -> None:
+    results = make_results()
+    bare = replace(results, evaluation=replace(results.evaluation, predictions=()))
+    assert "no paths to compare" in PathsSection().html(contents_of(bare))

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of the slip surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+from reporting.page_parts import contents_of, figures_of
+from reporting.synthetic_results import make_results, with_model
+from slipwise.models.schema import Range, Slip
+from slipwise.reporting.sections.surfaces import SurfacesSection
+
+
+def test_surface_shows_the_slip_with_one_sigma_above_and_below() -> None:
+    figure = figures_of(SurfacesSection().html(contents_of(make_results())))["figure-surface-angular"]
+    mean, above, below = (np.array(trace["z"]) for trace in figure["data"])
+    yaw_rate = np.array(figure["data"][0]["y"])
+    assert np.allclose(mean, -0.348 * yaw_rate[:, None], atol=1e-5)
+    assert np.allclose(above - mean, 0.01 * np.abs(yaw_rate)[:, None], atol=1e-5)
+    assert np.allclose(mean - below, above - mean, atol=1e-5)
+
+
+def test_domain_is_the_range_of_the_model() -> None:
+    surface = figures_of(SurfacesSection().html(contents_of(make_results())))["figure-surface-forward"][
+        "data"
+    ][0]
+    assert (surface["x"][0], surface["x"][-1]) == (0.2, 1.8)
+    assert (surface["y"][0], surface["y"][-1]) == (-0.7, 0.7)
+
+
+def test_contours_show_the_same_slip() -> None:
+    figures = figures_of(SurfacesSection().html(contents_of(make_results())))
+    assert (
+        figures["figure-contours-forward"]["data"][0]["z"]
+        == figures["figure-surface-forward"]["data"][0]["z"]
+    )
+
+
+def test_channel_without_terms_is_named() -> None:
+    html = SurfacesSection().html(contents_of(make_results()))
+    assert "figure-surface-sideways" not in figures_of(html)
+    assert "The model has no terms for sideways slip." in html
+
+
+def test_single_speed_gives_a_sentence() -> None:
+    results = with_model(make_results(), range=Range(speed=[1.0, 1.0], yaw_rate=[-1.0, 1.0], slope=0.0))
+    assert "one speed or one yaw rate only" in SurfacesSection().html(contents_of(results))
+
+
+def test_model_without_slip_gives_a_sentence() -> None:
+    bare = Slip(basis="none", lon=[], lat=[], ang=[])
+    results = with_model(make_results(), slip=bare, parameters=[], covariance=[])
+    assert "no slip terms" in SurfacesSection().html(contents_of(results))

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The section of the verdict."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from reporting.page_parts import contents_of, text_of
+from reporting.synthetic_results import make_results, with_verdict
+from slipwise.calibration.result import Verdict
+from slipwise.reporting.sections.verdict import VerdictSection
+
+
+@pytest.mark.parametrize(
+    ("verdict", "state"),
+    [
+        (Verdict(True, "Fine."), "good"),
+        (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "partly"),
+        (Verdict(False, "No.", ("lat.w",)), "bad"),
+    ],
+)
+def test_colour_follows_the_verdict(verdict: Verdict, state: str) -> None:
+    html = VerdictSection().html(contents_of(with_verdict(make_results(), verdict)))
+    assert f'<div class="verdict {state}"' in html
+
+
+def test_verdict_names_what_is_not_determined_and_the_drive_that_would() -> None:
+    verdict = Verdict(True, "Fine.", ("lat.w", "ang.V"), ("Turn on the spot.",))
+    text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
+    assert "This log does not determine: lat.w, ang.V." in text
+    assert "What to do: Turn on the spot." in text
+
+
+def test_errors_stand_beside_those_of_the_plain_model() -> None:
+    results = make_results()
+    contents = contents_of(results)
+    plain, auto = (results.evaluation.score(name, 5.0) for name in ("none", "auto"))
+    text = text_of(VerdictSection().html(contents))
+    less = round(100 * (1 - auto.position.mean / plain.position.mean))
+    assert (
+        f"{auto.position.mean:.4f} m instead of {plain.position.mean:.2f} m without slip: {less} % less"
+        in text
+    )
+
+
+def test_verdict_without_scores_is_still_a_verdict() -> None:
+    results = make_results()
+    bare = replace(results, evaluation=replace(results.evaluation, scores=()))
+    text = text_of(VerdictSection().html(contents_of(bare)))
+    assert "The learned model misses by 0.1 m after 5 s." in text
+    assert "There are no held-out scores" in text
