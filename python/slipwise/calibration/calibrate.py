@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 
 import numpy as np
@@ -15,7 +15,6 @@ from slipwise.calibration.drive import (
     WindowSet,
     choose_input,
     collect_windows,
-    fitting_length,
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_growth, forecast
@@ -100,9 +99,9 @@ def calibrate(
 
 
 def learning_windows(drive: tuple[DriveRun, ...], input_name: str, settings: Settings) -> WindowSet:
-    """Cut the windows to learn from: of the length in the settings, or shorter where the frames are."""
-    rules = settings.rules()
-    return collect_windows(drive, fitting_length(drive, settings.window_length(input_name), rules), rules)
+    """Cut the windows to learn from: of the length in the settings, or whole frames that are shorter."""
+    rules = replace(settings.rules(), whole_frames=True)
+    return collect_windows(drive, settings.window_length(input_name), rules)
 
 
 def refuse_empty(windows: WindowSet, log: Log) -> None:

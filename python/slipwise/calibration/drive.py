@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
-from slipwise.segments import WindowRules, cut_windows
+from slipwise.segments import RECENT, WindowRules, cut_windows, pose_intervals
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -85,7 +85,11 @@ def choose_input(log: Log) -> str:
 
 def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRules) -> WindowSet:
     """Cut all runs into windows of `length` [s]."""
-    cuts = [cut_windows(run.run, run.inputs, length, rules) for run in drive]
+    cuts = []
+    intervals = np.empty(0)
+    for run in drive:
+        cuts.append(cut_windows(run.run, run.inputs, length, rules, earlier=intervals))
+        intervals = np.concatenate((intervals, pose_intervals(run.run.poses)))[-RECENT:]
     segments = [
         s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules.unknown_after)
     ]
@@ -99,18 +103,6 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
         segments=tuple(segments),
         left_out=_merged([item for cut in cuts for item in cut.left_out]),
     )
-
-
-def fitting_length(drive: tuple[DriveRun, ...], wanted: float, rules: WindowRules) -> float:
-    """Return `wanted` [s], or the longest window that fits into half of the frames where those are shorter."""
-    durations = [span for run in drive for span in _frame_durations(run.run)]
-    longest = float(np.median(durations)) / (1.0 + rules.length_tolerance) if durations else wanted
-    return min(wanted, longest) if longest > 0.0 else wanted
-
-
-def _frame_durations(run: Run) -> list[float]:
-    edges = np.flatnonzero(np.diff(run.poses.frame)) + 1
-    return [float(part[-1] - part[0]) for part in np.split(run.poses.t, edges) if len(part) > 1]
 
 
 def _merged(items: list[LeftOut]) -> tuple[LeftOut, ...]:

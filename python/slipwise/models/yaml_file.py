@@ -19,15 +19,12 @@ class _PlainLoader(yaml.SafeLoader):
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         event = self.peek_event()  # type: ignore[no-untyped-call]
+        mark: Any = event.start_mark
         if isinstance(event, yaml.AliasEvent):
-            raise yaml.constructor.ConstructorError(
-                problem="aliases are not allowed", problem_mark=event.start_mark
-            )
+            raise yaml.constructor.ConstructorError(None, None, "aliases are not allowed", mark)
         tag = getattr(event, "tag", None)
         if tag is not None:
-            raise yaml.constructor.ConstructorError(
-                None, None, f"the tag {tag} is not allowed", event.start_mark
-            )
+            raise yaml.constructor.ConstructorError(None, None, f"the tag {tag} is not allowed", mark)
         node: yaml.Node | None = super().compose_node(parent, index)
         return node
 

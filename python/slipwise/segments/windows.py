@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 STANDARD_GRAVITY = 9.80665  # m/s^2
+RECENT = 64  # intervals between poses that tell the usual one
+LEAST_SHARE = 0.25  # of the length asked for; a frame shorter than this is no window
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class WindowRules:
     )
     length_tolerance: float = 0.05  # a window may be this fraction longer or shorter than asked for
     still_speed: float = 0.02  # m/s and rad/s; a window whose inputs never exceed this teaches nothing
+    whole_frames: bool = False  # a frame that is shorter than a window is one window
 
 
 _REASONS = {
@@ -68,9 +71,16 @@ class Windows:
         ]
 
 
-def cut_windows(run: Run, inputs: Inputs, length: float, rules: WindowRules) -> Windows:
-    """Cut one run into disjoint windows of `length` [s], each as soon after the last as the poses allow."""
+def cut_windows(
+    run: Run, inputs: Inputs, length: float, rules: WindowRules, *, earlier: Floats | None = None
+) -> Windows:
+    """Cut one run into disjoint windows of `length` [s], each as soon after the last as the poses allow.
+
+    `earlier` are the pose intervals [s] of the runs before this one. No window depends on a pose measured
+    after its end, so that a log cut off at any time has the same windows until then.
+    """
     cutter = _Cutter(run, inputs, length, rules)
+    cutter.learn_intervals(earlier)
     for first, last in _frame_spans(run.poses.frame):
         cutter.cut(first, last)
     return cutter.windows()
@@ -86,26 +96,36 @@ class _Cutter:
         self._first: dict[str, float] = {}
         poses = run.poses
         self._yaw = np.array(poses.yaw)
-        self._interval = _usual_interval(poses)
+        self._interval = np.zeros(len(poses))
         gaps = np.diff(inputs.t) > rules.unknown_after
         self._gap_from = np.append(inputs.t[:-1][gaps], inputs.t[-1:]) + rules.unknown_after
         self._gap_to = np.append(inputs.t[1:][gaps], np.inf)
         self._speed = np.maximum(np.hypot(inputs.v, inputs.vy), np.abs(inputs.omega))
+
+    def learn_intervals(self, earlier: Floats | None) -> None:
+        """Learn the usual time between poses, as known at each pose, from those before it."""
+        within = np.diff(self._run.poses.frame) == 0
+        before = np.empty(0) if earlier is None else earlier
+        intervals = np.concatenate((before, pose_intervals(self._run.poses)))
+        self._interval = _usual(intervals, len(before) + np.concatenate(([0], np.cumsum(within))))
 
     def cut(self, first: int, last: int) -> None:
         """Cut the poses first..last-1, which lie in one frame."""
         poses, rules = self._run.poses, self._rules
         self._yaw[first:last] = np.unwrap(poses.yaw[first:last])
         late = np.zeros(last - first, dtype=bool)
-        late[1:] = np.diff(poses.t[first:last]) > rules.late_factor * self._interval
+        late[1:] = np.diff(poses.t[first:last]) > rules.late_factor * self._interval[first : last - 1]
         for t_late in poses.t[first:last][late].tolist():
             self._leave_out("late-pose", t_late)
         usable = first + np.flatnonzero(~late)
         times = poses.t[usable]
-        tolerance = max(0.5 * self._interval, rules.length_tolerance * self._length)
+        length = self._length
+        if rules.whole_frames and LEAST_SHARE * length <= float(times[-1] - times[0]) < length:
+            length = float(times[-1] - times[0])
         at = 0
         while at < len(usable) - 1:
-            end = self._nearest(times, float(times[at]) + self._length, tolerance)
+            tolerance = max(0.5 * float(self._interval[usable[at]]), rules.length_tolerance * length)
+            end = self._nearest(times, float(times[at]) + length, tolerance)
             if end <= at:
                 at += 1
                 continue
@@ -170,10 +190,22 @@ def _frame_spans(frame: Ints) -> list[tuple[int, int]]:
     return [(a, b) for a, b in itertools.pairwise(bounds) if b - a > 1]
 
 
-def _usual_interval(poses: Poses) -> float:
-    """Median time between poses of one frame [s]; 0 where there are no two."""
-    intervals = np.diff(poses.t)[np.diff(poses.frame) == 0]
-    return float(np.median(intervals)) if len(intervals) else 0.0
+def pose_intervals(poses: Poses) -> Floats:
+    """Time between poses of one frame [s]."""
+    return np.asarray(np.diff(poses.t)[np.diff(poses.frame) == 0], dtype=np.float64)
+
+
+def _usual(intervals: Floats, known: Ints) -> Floats:
+    """Median of the last of the first `known` intervals [s], [len(known)]; taken anew every `RECENT`.
+
+    Where none is known yet, the first stands in; 0 where there is none at all.
+    """
+    if len(intervals) == 0:
+        return np.zeros(len(known))
+    known = np.where(known < RECENT, np.maximum(known, 1), known // RECENT * RECENT)
+    counts, places = np.unique(known, return_inverse=True)
+    medians = [float(np.median(intervals[max(0, n - RECENT) : n])) for n in counts.tolist()]
+    return np.array(medians)[places]
 
 
 def _gravity(poses: Poses, i: Ints) -> Floats:
