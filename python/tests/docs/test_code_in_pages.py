@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Code in the documents runs, on a small simulated log, and the commands in them exist."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import slipwise as sw
+
+from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
+
+WITH_PYTHON = [page for page in PAGES if blocks(page, "python")]
+COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
+
+
+@pytest.fixture(scope="module")
+def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder that holds a short bag and a model learned from it, as the pages take for granted."""
+    pytest.importorskip("mujoco", reason="the log is simulated, which needs MuJoCo")
+    from slipwise.simulation import Scenario, simulate
+
+    folder = tmp_path_factory.mktemp("drive")
+    log = simulate(Scenario(duration=90.0), seed=2).log
+    sw.save_log(log, folder / "run.mcap")
+    sw.calibrate(log, basis="edd-2").model.save(folder / "model.yaml")
+    return folder
+
+
+@pytest.mark.parametrize("page", WITH_PYTHON, ids=name_of)
+def test_python_of_a_page_runs(page: Path, drive: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(drive)
+    for number, block in enumerate(blocks(page, "python"), start=1):
+        exec(compile(block, f"{page.name}, block {number}", "exec"), {})
+
+
+def test_the_readme_learns_a_model_that_is_good_and_predicts_five_seconds(
+    drive: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(drive)
+    names: dict[str, object] = {}
+    (block,) = blocks(ROOT / "README.md", "python")
+    exec(block, names)
+    result, path = names["result"], names["path"]
+    assert isinstance(result, sw.Calibration)
+    assert isinstance(path, sw.Path)
+    assert result.verdict.good
+    assert str(result.verdict) in capsys.readouterr().out
+    assert path.t[-1] - path.t[0] == 5.0
+    assert sw.load_model("model.yaml").content == result.model.content
+
+
+def command_lines() -> list[tuple[str, str]]:
+    """Return every slipwise command line in the pages, with the page's name."""
+    found = []
+    for page in PAGES:
+        for block in blocks(page, "sh"):
+            found += [(name_of(page), line) for line in block.splitlines() if COMMAND.match(line)]
+    return found
+
+
+@pytest.mark.parametrize(("page", "line"), command_lines())
+def test_a_command_line_is_understood(page: str, line: str) -> None:
+    import typer
+    from slipwise.cli.main import app
+
+    name, *arguments = shlex.split(line, comments=True)[1:]
+    group = typer.main.get_command(app)
+    assert name in group.commands, f"{page}: no command {name}"  # type: ignore[attr-defined]
+    context = group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]
+    assert context.params
+
+
+def test_make_targets_in_the_pages_exist() -> None:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = set(re.findall(r"^([a-z-]+):", makefile, re.MULTILINE))
+    used = set()
+    for page in PAGES:
+        for block in blocks(page, "sh"):
+            used |= set(re.findall(r"^make ([a-z-]+)", block, re.MULTILINE))
+    assert used
+    assert used <= targets
+
+
+def test_the_figure_of_the_readme_is_small_and_drawn_by_a_script() -> None:
+    figure = ROOT / "docs/figures/prediction.png"
+    assert 10_000 < figure.stat().st_size < 150_000
+    assert figure.name in (ROOT / "docs/figures/make_figures.py").read_text(encoding="utf-8")

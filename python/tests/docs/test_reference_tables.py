@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tables in the documents say what the code says: settings, bases, columns, names."""
+
+import re
+import tomllib
+from typing import Any
+
+from slipwise import _core
+from slipwise.calibration import forecast, statistics, verdict
+from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
+from slipwise.evaluation.prediction_file import COLUMNS
+from slipwise.evaluation.result import Score
+from slipwise.logs.tidy_columns import NUMERIC, TEXT
+from slipwise.models.schema import ModelFile
+
+from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
+
+DOCS = ROOT / "docs"
+
+
+def read(name: str) -> str:
+    return (DOCS / name).read_text(encoding="utf-8")
+
+
+def keys(table: dict[str, Any], prefix: str = "") -> set[str]:
+    """Return the dotted names of all values in nested tables."""
+    found: set[str] = set()
+    for key, value in table.items():
+        found |= keys(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}"}
+    return found
+
+
+def test_the_settings_page_lists_every_key_with_its_default() -> None:
+    (block,) = blocks(DOCS / "settings.md", "toml")
+    shown = tomllib.loads(block)
+    assert make_settings(shown) == Settings()
+    every_key = keys(Settings().model_dump())
+    assert keys(shown) | {"window.length"} == every_key, "say in docs/settings.md what is new"
+    assert "# length = " in block
+    defaults = re.search(r"without it ([\d.]+) from wheel speeds and ([\d.]+) from commands", block)
+    assert defaults is not None
+    assert (float(defaults[1]), float(defaults[2])) == (WINDOW_SECONDS["wheel"], WINDOW_SECONDS["command"])
+
+
+def test_the_settings_blocks_of_other_pages_are_valid() -> None:
+    for page in sorted(DOCS.glob("*.md")):
+        for block in blocks(page, "toml"):
+            make_settings(tomllib.loads(block)).bases()
+
+
+def test_the_table_of_bases_has_the_terms_that_ship() -> None:
+    rows = table_rows(read("choosing-a-basis.md"), "| name | lon |")
+    shown = {code_words(row[0])[0]: [code_words(cell) for cell in row[1:4]] for row in rows}
+    assert set(shown) == {"none", *_core.basis_names()}
+    shown["ipem-13"] = [shown["ipem-9"][i] + shown["ipem-13"][i][1:] for i in range(3)]
+    shown["thesis-15"] = [shown["thesis-15"][0]] * 3
+    for name in _core.basis_names():
+        basis, written = _core.named_basis(name), _core.Basis(name, *shown[name])
+        assert (basis.lon, basis.lat, basis.ang) == (written.lon, written.lat, written.ang), name
+
+
+def test_number_in_a_name_of_a_basis_is_its_number_of_parameters() -> None:
+    for name in _core.basis_names():
+        assert int(name.rpartition("-")[2]) == _core.named_basis(name).size
+
+
+def test_the_prediction_file_table_has_its_columns_in_order() -> None:
+    rows = table_rows(
+        read("statistics.md")[read("statistics.md").index("## The prediction file") :], "| column |"
+    )
+    shown = [name for row in rows for name in code_words(row[0])]
+    assert shown == list(COLUMNS)
+
+
+def test_every_score_is_explained() -> None:
+    text = re.sub(r"[^a-z]", "", read("statistics.md").lower())
+    for name in Score.__dataclass_fields__:
+        assert name.replace("_", "") in text, name
+
+
+def test_every_tidy_column_is_explained() -> None:
+    rows = table_rows(read("getting-started.md"), "| column | unit |")
+    shown = {word for row in rows for cell in row for word in code_words(cell)}
+    assert {*NUMERIC, *TEXT} - {"terrain"} <= shown
+
+
+def test_every_key_of_the_model_file_is_explained() -> None:
+    rows = table_rows(read("getting-started.md"), "| key | what |")
+    shown = {word for row in rows for word in code_words(row[0])}
+    assert shown == set(ModelFile.model_fields)
+
+
+def test_names_in_the_notation_exist_in_the_code() -> None:
+    folders = (ROOT / "cpp/include", ROOT / "cpp/src", ROOT / "python/slipwise")
+    sources = [p for folder in folders for p in folder.rglob("*") if p.suffix in (".hpp", ".cpp", ".py")]
+    text = "\n".join(path.read_text(encoding="utf-8") for path in sources)
+    words = [
+        word for row in table_rows(read("notation.md"), "| symbol | code |") for word in code_words(row[1])
+    ]
+    names = {name for word in words for name in re.split(r"[.:\s]+", word)}
+    assert len(names) > 50
+    assert not {name for name in names if not re.search(rf"\b{re.escape(name)}\b", text)}
+
+
+def test_the_readme_table_of_real_logs_has_its_columns() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    start, end = text.index("<!-- table: real logs -->"), text.index("<!-- end of table -->")
+    header = text[start:end].splitlines()[1]
+    assert [cell.strip() for cell in header.strip("|").split("|")] == [
+        *("method", "wheel position", "wheel heading", "command position", "command heading", "worst log")
+    ]
+
+
+def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
+    derivations, settings = read("derivations.md"), " ".join(read("settings.md").split())
+    header = (ROOT / "cpp/include/slipwise/segment/segment_covariance.hpp").read_text(encoding="utf-8")
+    turn, straight = (re.search(rf"{name} = ([\d.]+)", header) for name in ("kTurnRadius", "kStraightRadius"))
+    assert turn is not None
+    assert straight is not None
+    assert f"{float(turn[1]):g} m per radian" in derivations
+    assert f"{float(turn[1]):g} m per radian" in settings
+    assert f"over {float(straight[1]):g} m" in derivations
+    noise, average, iekf = _core.NoiseSettings(), _core.ModelAverageSettings(), _core.IekfSettings()
+    assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.memory:g})" in derivations
+    assert f"{noise.largest:g} s_i" in derivations
+    assert f"η = {average.learning_rate:g} and share α = {average.share:g}" in derivations
+    assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
+    assert f"by less than {iekf.tolerance:g}" in derivations
+
+
+def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
+    derivations = read("derivations.md")
+    prior, largest = forecast.GROWTH_PRIOR_WINDOWS, forecast.LARGEST_NIS
+    assert f"growth = (Σ min(NIS_j, {largest:g})/3 + {prior:g}) / (m + {prior:g})" in derivations
+    assert f"from {statistics.RESAMPLES} samples of moving blocks" in derivations
+    assert f"undetermined above a ratio of {verdict.UNDETERMINED_RATIO:g}" in " ".join(derivations.split())
+    assert f"fewer than {verdict.FEWEST_WINDOWS} held-out windows" in read("getting-started.md")
+    assert statistics.BLOCK_WINDOWS == 3, "the pages say blocks of three windows"
+    points = ", ".join(f"{point:.3f}" for point in statistics.ELLIPSOIDS.values())
+    assert points.replace(", 7", " and 7") in derivations

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every example runs as it stands and checks itself."""
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+EXAMPLES = Path(__file__).resolve().parents[3] / "examples"
+SCRIPTS = sorted(EXAMPLES.glob("*.py"))
+
+pytest.importorskip("mujoco", reason="the examples simulate a robot, which needs MuJoCo")
+
+
+def test_examples_are_numbered_from_one_without_gaps() -> None:
+    numbers = [int(re.match(r"(\d\d)_", script.name)[1]) for script in SCRIPTS]  # type: ignore[index]
+    assert numbers == list(range(1, len(SCRIPTS) + 1))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_an_example_runs_and_its_claims_hold(script: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = script.read_text(encoding="utf-8")
+    assert text.count("\nassert ") >= 1, "an example asserts something about its result"
+    assert "# %% [markdown]" in text, "an example is in percent format"
+    runpy.run_path(str(script), run_name="__main__")
+    assert capsys.readouterr().out.strip(), "an example shows what it found"
