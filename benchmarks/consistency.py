@@ -2,8 +2,8 @@
 """Is the stated uncertainty of the parameters true? Seeded Monte-Carlo drives with known slip and noise.
 
 For each run the true parameters are drawn from the prior, a ten-minute drive with white slip noise and pose
-noise is simulated step by step, and a filter learns from it: the IEKF on disjoint 5 s windows. For comparison the
-same filter is fed 20 times a second with overlapping 5 s windows, as the thesis does (its Table 6.1).
+noise is simulated step by step, and a filter learns from it: the IEKF on disjoint 5 s windows. For comparison
+the same filter is fed 20 times a second with overlapping 5 s windows, as the thesis does (its Table 6.1).
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ SLIP_FRACTION = (
 )
 NOISE = _core.MotionNoise([4e-4, 4e-4, 2e-4], [0.0] * 3, [0.0] * 3, 0.01, 0.003)
 SIGMAS_90 = 1.6448536269514722
-# Label, steps between the starts of windows, most runs. One step more than the window makes windows independent:
-# neighbours share no pose and so no pose noise.
+# Label, steps between the starts of windows, most runs. One step more than the window makes windows
+# independent: neighbours share no pose and so no pose noise.
 FILTERS = (
     ("iekf, disjoint", int(WINDOW / STEP) + 1, 1_000_000),
     ("overlapping (thesis)", 1, 100),
@@ -41,7 +41,7 @@ CHI_SQUARE_90 = {10: 15.987179172105261, 15: 22.307129581578689}
 
 @dataclass(frozen=True)
 class RunResult:
-    """One filter on one drive: NEES / m, shares of parameters within their intervals, and the joint region."""
+    """One filter on one drive: NEES / m, parameters within their intervals, and the joint region."""
 
     nees: float
     within_sigma: float
@@ -157,7 +157,8 @@ def show(name: str, label: str, results: list[RunResult]) -> None:
         for k in ("within_sigma", "within_90", "in_region_90")
     ]
     print(
-        f"{name:12s} {label:21s} {len(results):5d} {np.mean([r.nees for r in results]):7.3f}  {low:.3f} .. {high:.3f}"
+        f"{name:12s} {label:21s} {len(results):5d} {np.mean([r.nees for r in results]):7.3f}"
+        f"  {low:.3f} .. {high:.3f}"
         f" {shares[0]:7.1f} % {shares[1]:9.1f} % {shares[2]:8.1f} %",
         flush=True,
     )
