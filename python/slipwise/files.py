@@ -20,6 +20,7 @@ _ADVICE = {
     errno.ENOSPC: "the disk is full, free some space or choose another folder",
     errno.EDQUOT: "your quota is used up, free some space or choose another folder",
     errno.EISDIR: "this is a folder, name a file",
+    errno.EEXIST: "a part of the path is a file, choose another folder",
     errno.ENOTDIR: "a part of the path is a file, choose another folder",
 }
 

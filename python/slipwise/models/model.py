@@ -18,6 +18,8 @@ from slipwise.files import write_text_whole
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
 
+LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
+
 
 @dataclass(frozen=True)
 class Model:
@@ -37,13 +39,21 @@ class Model:
                 f"the parameters are {', '.join(stated)} where slip and chain have {', '.join(names)}",
                 advice="calibrate again, or restore the file",
             )
-        covariance = self.covariance
-        scale = np.sqrt(np.outer(np.diag(covariance), np.diag(covariance))) + 1e-300
-        if not np.allclose(covariance, covariance.T) or (
-            names and np.linalg.eigvalsh(covariance / scale).min() < -1e-6
-        ):
+        seconds = np.exp([min(p.value, 700.0) for p in self.content.parameters if p.name.startswith("log_")])
+        if (seconds > LONGEST_CHAIN).any():
             raise ModelError(
-                "the covariance is not symmetric and positive", advice="calibrate again, or restore the file"
+                f"parameters: a lag or delay is longer than {LONGEST_CHAIN:g} s",
+                advice="calibrate again, or restore the file",
+            )
+        if not _is_covariance(self.covariance):
+            raise ModelError(
+                "covariance: not symmetric and positive", advice="calibrate again, or restore the file"
+            )
+        stds = [parameter.std for parameter in self.content.parameters]
+        if not np.allclose(np.square(stds), np.diag(self.covariance), rtol=1e-6, atol=0.0):
+            raise ModelError(
+                "parameters: a standard deviation is not the root of its variance in the covariance",
+                advice="calibrate again, or restore the file",
             )
 
     @cached_property
@@ -96,6 +106,23 @@ class Model:
         return head + body
 
 
+def _is_covariance(matrix: NDArray[np.float64]) -> bool:
+    """Whether the matrix, scaled to correlations, is symmetric without negative eigenvalues."""
+    variances = np.diag(matrix)
+    if (variances < 0.0).any():
+        return False
+    stds = np.sqrt(variances)
+    known = stds > 0.0
+    if matrix[~known].any() or matrix[:, ~known].any():
+        return False
+    correlation = matrix[np.ix_(known, known)] / stds[known] / stds[known, None]
+    if not known.any():
+        return True
+    if (np.abs(correlation) > 1.0 + 1e-6).any() or not np.allclose(correlation, correlation.T, atol=1e-6):
+        return False
+    return bool(np.linalg.eigvalsh(correlation).min() >= -1e-6)
+
+
 def load_model(path: str | Path) -> Model:
     """Read a model file.
 
@@ -105,7 +132,7 @@ def load_model(path: str | Path) -> Model:
     source = Path(path)
     content = read_yaml(source)
     version = content.get("slipwise_model")
-    if version != SCHEMA_VERSION:
+    if isinstance(version, bool) or version != SCHEMA_VERSION:
         raise ModelError(
             f"the file has schema version {version!r}, this slipwise reads {SCHEMA_VERSION}",
             where=str(source),

@@ -5,12 +5,23 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 SCHEMA_VERSION = 1
 
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+LARGEST = 1e12  # of any number; nothing about a ground robot is larger in SI units
+
+
+def _refuse_flag(value: object) -> object:
+    if isinstance(value, bool):
+        raise ValueError("a number is needed, not true or false")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_refuse_flag)]
+Finite = Annotated[Number, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
+NotNegative = Annotated[Number, Field(ge=0.0, le=LARGEST, allow_inf_nan=False)]
+Positive = Annotated[Number, Field(gt=0.0, le=LARGEST, allow_inf_nan=False)]
 Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 InputName = Literal["command", "wheel"]
@@ -50,8 +61,8 @@ class Noise(_Section):
     pose_std_yaw: NotNegative  # [rad]
     scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
     growth: dict[
-        Finite, NotNegative
-    ] = {}  # horizon [s] -> further factor of the variances, from held-out predictions
+        NotNegative, Positive
+    ] = {}  # horizon [s] -> factor of the variances that held-out errors need
 
 
 class Range(_Section):
