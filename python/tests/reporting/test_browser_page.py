@@ -71,7 +71,7 @@ def test_page_never_scrolls_sideways(browser: Browser, width: int) -> None:
     assert wide == []
 
 
-def test_table_of_scores_fits_a_desktop_and_scrolls_in_its_box_on_a_phone(
+def test_table_of_scores_fits_a_desktop_and_scrolls_in_its_box_on_phones(
     browser: Browser, width: int
 ) -> None:
     hidden = browser.value("(b => b.scrollWidth - b.clientWidth)(document.querySelector('.scroll'))")

@@ -16,6 +16,7 @@ from slipwise.reporting.palette import SEQUENTIAL
 from slipwise.segments import WindowRules
 
 _BINS = 32
+_SHORTEST = 1e-3  # s; shorter is drawn like this
 Floats = NDArray[np.float64]
 
 
@@ -43,7 +44,7 @@ class CoverageSection:
             "type": "heatmap",
             "x": numbers(0.5 * (v_edges[:-1] + v_edges[1:])),
             "y": numbers(0.5 * (omega_edges[:-1] + omega_edges[1:])),
-            "z": numbers(np.where(seconds > 0.0, np.log10(np.maximum(seconds, 1e-3)), np.nan).T),
+            "z": numbers(np.where(seconds > 0.0, np.log10(np.maximum(seconds, _SHORTEST)), np.nan).T),
             "customdata": numbers(seconds.T),
             "colorscale": SEQUENTIAL,
             "reversescale": True,
@@ -82,14 +83,15 @@ def _range(values: Floats) -> tuple[float, float]:
 
 
 def _colour_bar(seconds: Floats) -> dict[str, Any]:
-    """Whole decades between the shortest and the longest time, written in seconds."""
-    driven = seconds[seconds > 0.0]
-    exponents = np.arange(-3, 7)
-    if len(driven):
-        low, high = np.floor(np.log10(max(driven.min(), 1e-3))), np.ceil(np.log10(max(driven.max(), 1e-3)))
-        exponents = exponents[(exponents >= low) & (exponents <= high)]
-    texts = [f"{10.0**exponent:g}" for exponent in exponents.tolist()]
-    return top_colour_bar(tickvals=numbers(exponents), ticktext=texts)
+    """Round times between the shortest and the longest: decades where these are far apart, else 1, 2, 5."""
+    driven = np.maximum(seconds[seconds > 0.0], _SHORTEST)
+    low, high = (float(driven.min()), float(driven.max())) if len(driven) else (1.0, 1.0)
+    steps = (1.0,) if high > 100.0 * low else (1.0, 2.0, 5.0)
+    times = np.array([step * 10.0**decade for decade in range(-3, 8) for step in steps])
+    times = times[(times >= 0.999 * low) & (times <= 1.001 * high)]
+    return top_colour_bar(
+        tickvals=numbers(np.log10(times)), ticktext=[f"{time:g}" for time in times.tolist()]
+    )
 
 
 def _box(contents: Contents) -> dict[str, Any]:

@@ -115,6 +115,7 @@ def _starts(drive: _Drive, chosen: list[ChosenWindow]) -> dict[str, object]:
     return {
         "type": "scatter",
         "mode": "markers+text",
+        "cliponaxis": False,
         "x": numbers(np.interp(at, drive.t, drive.x)),
         "y": numbers(np.interp(at, drive.t, drive.y)),
         "text": [str(c.number) for c in here],
