@@ -89,9 +89,9 @@ def _colour_bar(seconds: Floats) -> dict[str, Any]:
     steps = (1.0,) if high > 100.0 * low else (1.0, 2.0, 5.0)
     times = np.array([step * 10.0**decade for decade in range(-3, 8) for step in steps])
     times = times[(times >= 0.999 * low) & (times <= 1.001 * high)]
-    return top_colour_bar(
-        tickvals=numbers(np.log10(times)), ticktext=[f"{time:g}" for time in times.tolist()]
-    )
+    shown = times if len(times) > 1 else np.array([low, high])
+    texts = [f"{time:.2g}" for time in shown.tolist()]
+    return top_colour_bar(tickvals=numbers(np.log10(shown)), ticktext=texts)
 
 
 def _box(contents: Contents) -> dict[str, Any]:
