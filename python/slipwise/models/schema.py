@@ -9,7 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 SCHEMA_VERSION = 1
 
-LARGEST = 1e12  # of any number; nothing about a ground robot is larger in SI units
+LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
 
 def _refuse_flag(value: object) -> object:
