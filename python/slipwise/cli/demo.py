@@ -52,7 +52,7 @@ def demo(
     from slipwise.files import write_text_whole
 
     out = Output(json)
-    refuse_unwritable(out.written_file)
+    refuse_unwritable(out.written_file, output and output / "report.html")
     with progress_bar("simulating") as update:
         place = run_folder(runs, "demo") if output is None else contextlib.nullcontext(output)
         with place as folder:

@@ -22,7 +22,7 @@ _UsageError = typer.BadParameter.__mro__[1]  # typer's own copy of click, or cli
 def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
     """Run a command; return its exit code, or 2 after one line that says what went wrong."""
     _make_streams_safe()
-    before = signal.signal(signal.SIGTERM, _stop)
+    stop = _StopOnSignal()
     try:
         code = command()
         sys.stdout.flush()
@@ -36,9 +36,10 @@ def exit_code_of(command: Callable[[], int], *, debug: bool) -> int:
         silence_stdout()
         return _report(error, debug=debug)
     except (Exception, KeyboardInterrupt) as error:
-        return _report(error, debug=debug)
+        # a library may turn the interrupt into an error of its own
+        return _report(KeyboardInterrupt() if stop.asked else error, debug=debug)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        stop.restore()
 
 
 def _report(error: BaseException, *, debug: bool) -> int:
@@ -98,5 +99,19 @@ def _make_streams_safe() -> None:
             stream.reconfigure(errors="replace")
 
 
-def _stop(_signal: int, _frame: FrameType | None) -> None:
-    raise KeyboardInterrupt
+class _StopOnSignal:
+    """Raises KeyboardInterrupt on Ctrl-C and on SIGTERM, and remembers it."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        self._before = {
+            number: signal.signal(number, self._stop) for number in (signal.SIGINT, signal.SIGTERM)
+        }
+
+    def restore(self) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _stop(self, _signal: int, _frame: FrameType | None) -> None:
+        self.asked = True
+        raise KeyboardInterrupt

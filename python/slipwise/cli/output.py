@@ -51,10 +51,7 @@ class Output:
         """Print one line; a terminal wraps it."""
         if not self.for_people:
             return
-        try:
-            print(printable(text))
-        except BrokenPipeError:
-            silence_stdout()
+        _print(printable(text))
 
     def table(
         self, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], *, caption: str = ""
@@ -76,10 +73,10 @@ class Output:
             table.add_column(printable(column.head), justify="right" if column.right else "left")
         for row in rows:
             table.add_row(*(printable(cell) for cell in row))
-        try:
-            self._out().print(table)
-        except BrokenPipeError:
-            silence_stdout()
+        console = self._out()
+        with console.capture() as captured:  # rich itself would end the process on a closed pipe
+            console.print(table)
+        _print(captured.get())
 
     def document(self, content: Mapping[str, Any]) -> None:
         """Write the JSON document to where `--json` says.
@@ -113,6 +110,13 @@ class Output:
             )
             self._console = Console(width=width, markup=False, emoji=False, highlight=False)
         return self._console
+
+
+def _print(text: str) -> None:
+    try:
+        print(text, flush=True)
+    except BrokenPipeError:
+        silence_stdout()
 
 
 def to_json(content: Mapping[str, Any]) -> str:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.calibration import Calibration, Settings, calibrate
+from slipwise.errors import SettingsError
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.logs import Log, open_log, save_log
 from slipwise.simulation import Scenario, simulate
@@ -16,6 +17,7 @@ INPUT = "command"  # what a planner knows: where the robot was told to go, not h
 METHODS = ("none", "vendor", "edd-2", "auto")
 VENDOR_TRACK_MULTIPLIER = 1.875  # Clearpath's for the Husky, a number such as a vendor would have typed in
 HORIZONS = (1.0, 2.0, 5.0)  # [s]
+SHORTEST = 60.0  # [s] a shorter drive has too few held-out windows to judge by
 
 Progress = Callable[[str, float], None]
 
@@ -54,6 +56,9 @@ def run_demo(
     Raises:
         SlipwiseError: MuJoCo is missing, the drive is too short to learn from, or a file cannot be written.
     """
+    if not options.duration >= SHORTEST:
+        what = f"the demonstration lasts {options.duration:g} s"
+        raise SettingsError(what, where="--duration", advice=f"give at least {SHORTEST:g} s to learn from")
     progress("simulating", 0.0)
     scenario = Scenario(duration=options.duration)
     simulation = simulate(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A slipping robot's log as a table to damage, and two ways to run the command line: here, or as a process."""
+"""A slipping robot's log as a table to damage, and ways to run the command line, here or as a process."""
 
 from __future__ import annotations
 

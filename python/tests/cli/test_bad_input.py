@@ -245,7 +245,7 @@ def test_wrong_settings_are_refused(slipwise: Slipwise, drive_csv: Path, content
         (["convert", "drive.csv", "-o", "drive.doc"], "unknown kind of log file (drive.doc)"),
         (["simulate", "-o", "drive.csv", "--drive", "wild"], "unknown drive 'wild'"),
         (["simulate", "-o", "drive.csv", "--duration", "-5"], "duration is -5.0"),
-        (["demo", "--duration", "nan"], "duration is nan"),
+        (["demo", "--duration", "nan"], "the demonstration lasts nan s"),
     ],
 )
 def test_wrong_use_is_said_in_one_line(
