@@ -13,9 +13,9 @@
 namespace slipwise {
 
 struct BatchSettings {
-  int iterations = 30;        ///< at most
-  double tolerance = 1e-8;    ///< relative decrease of the cost that counts as converged [-]
-  double huber = 2.5;         ///< a residual of more than this many sigma counts for less [-]
+  int iterations = 30;      ///< at most
+  double tolerance = 1e-8;  ///< relative decrease of the cost that counts as converged [-]
+  double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
 };
 
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.

@@ -12,11 +12,11 @@
 namespace slipwise {
 
 struct IekfSettings {
-  int iterations = 10;        ///< Gauss-Newton iterations per segment, at most; two are usual once the prior is tight
-  double tolerance = 1e-2;    ///< iterations stop when they lower the MAP cost (in units of NIS) by less than this [-]
-  int halvings = 4;           ///< step halvings per iteration before the iteration is given up
-  double huber = 2.5;         ///< a residual of more than this many sigma counts for less [-]
-  double gate = 50.0;         ///< NIS (3 degrees of freedom) beyond which a segment is left out [-]
+  int iterations = 10;      ///< Gauss-Newton iterations per segment, at most; two are usual once the prior is tight
+  double tolerance = 1e-2;  ///< iterations stop when they lower the MAP cost (in units of NIS) by less than this [-]
+  int halvings = 4;         ///< step halvings per iteration before the iteration is given up
+  double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
+  double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is left out [-]
 };
 
 /// One segment's update.
@@ -30,7 +30,7 @@ struct IekfUpdate {
 };
 
 /// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
-                       const Eigen::Matrix3d& noise, const IekfSettings& settings = {});
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings = {});
 
 }  // namespace slipwise

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "slipwise/actuator/command_chain.hpp"
@@ -17,8 +18,8 @@ struct ChainParameters {
   bool clock_offset = false;  ///< offset between inputs and poses
 };
 
-/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then clock offset [s].
-/// Logarithms keep lags and delays positive.
+/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then clock
+/// offset [s]. Logarithms keep lags and delays positive.
 class MotionModel {
  public:
   MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {}

@@ -22,7 +22,8 @@ struct DifferentialDrive {
   /// \throws std::invalid_argument when a dimension is not positive.
   DifferentialDrive(double wheel_radius_m, double track_m) : wheel_radius(wheel_radius_m), track(track_m) {
     if (!(wheel_radius > 0.0) || !(track > 0.0)) {
-      throw std::invalid_argument("wheel radius and track must be positive [m]; measure them or take the maker's figures");
+      throw std::invalid_argument(
+          "wheel radius and track must be positive [m]; measure them or take the maker's figures");
     }
   }
 
