@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Posterior against prior, in units of the prior (method.md, section 6).
+// Posterior against prior, in units of the prior (derivations.md, section 6).
 #include "slipwise/estimate/observability.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Priors in physical units (method.md, section 10).
+// Priors in physical units (derivations.md, section 10).
 #include "slipwise/estimate/prior.hpp"
 
 #include <Eigen/Cholesky>

@@ -33,7 +33,7 @@ SlipState slip_state(const DriveStepJacobian& jacobian, const Segment& segment) 
           .gy = segment.gy};
 }
 
-/// (u_body + du) dt of method.md, section 1.
+/// (u_body + du) dt of derivations.md, section 1.
 Eigen::Vector3d tangent_of(const DriveStep& step, const Eigen::Vector3d& slip) {
   return Eigen::Vector3d(step.forward, step.left, step.turn) + slip * step.duration;
 }
@@ -82,7 +82,7 @@ class GrowingPath {
 };
 
 /// Appends an exact step; returns the derivative of the pose by the step's tangent, carried back to the path's start:
-/// Phi(0, k+1) blkdiag(R_k, 1) E_k of method.md, section 3.
+/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations.md, section 3.
 Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
   const auto arc = arc_functions(tangent.z());
   Eigen::Matrix3d world = chart_jacobian(tangent, arc);
@@ -110,7 +110,7 @@ ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& ja
   return result;
 }
 
-/// Sums of method.md, section 3: the steps' derivatives carried back to the path's start, one column per parameter.
+/// Sums of derivations.md, section 3: the steps' derivatives carried back to the path's start, one column per parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
   ChainColumns chain = ChainColumns::Zero();

@@ -41,7 +41,7 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise) {
-  // H of method.md, section 5: a start measured too far left and turned too far left moves the end right and back.
+  // H of derivations.md, section 5: a start measured too far left and turned too far left moves the end right and back.
   Eigen::Matrix3d from_start = -Eigen::Matrix3d::Identity();
   from_start(0, 2) = measured.y;
   from_start(1, 2) = -measured.x;

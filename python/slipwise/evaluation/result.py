@@ -20,7 +20,7 @@ class Score:
     windows: int
     position: ErrorSummary  # m
     heading: ErrorSummary  # rad
-    percent_of_distance: float  # mean position error / mean distance driven * 100
+    percent_of_distance: float  # mean position error / mean straight-line distance of the windows * 100
     position_ratio: tuple[float, float, float]  # mean error relative to `none`: value, low, high
     heading_ratio: tuple[float, float, float]
     position_to_rival: float  # mean error relative to the best other method than `none`

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Iterated extended Kalman filter over disjoint segments (method.md, sections 6 and 10).
+// Iterated extended Kalman filter over disjoint segments (derivations.md, sections 6 and 10).
 #pragma once
 
 #include <Eigen/Core>

@@ -7,7 +7,7 @@
 
 namespace slipwise {
 
-/// The functions that carry a constant twist over a turn of f [rad] into a displacement (method.md, section 2).
+/// The functions that carry a constant twist over a turn of f [rad] into a displacement (derivations.md, section 2).
 template <typename Scalar>
 struct ArcFunctions {
   Scalar a;         ///< sin(f) / f
