@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The real logs below SLIPWISE_DATA by name, and how each is evaluated."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+VENDOR_MULTIPLIERS = {"husky": 1.875, "warthog": 1.125}  # the wheel-separation multipliers Clearpath ships
+LONG_HORIZON = 5.0  # s
+SHORT_HORIZON = 1.9  # s, where every 2 s have a frame of their own
+SHORT_FOLDERS = ("warthog_windows", "drive_test")
+
+
+@dataclass(frozen=True)
+class DataSet:
+    """One log and how to evaluate it."""
+
+    name: str  # folder/file without suffix
+    path: Path
+    horizon: float  # s
+    vendor_track_multiplier: float | None
+
+
+def data_folder() -> Path | None:
+    """Return the folder that SLIPWISE_DATA names, None where it is not set."""
+    value = os.environ.get("SLIPWISE_DATA")
+    return Path(value) if value else None
+
+
+def data_sets(folder: Path) -> list[DataSet]:
+    """Return all logs of the folder by name."""
+    return [
+        _data_set(path.relative_to(folder).as_posix().removesuffix(".csv.gz"), path)
+        for path in sorted(folder.rglob("*.csv.gz"))
+    ]
+
+
+def _data_set(name: str, path: Path) -> DataSet:
+    vendor = [multiplier for robot, multiplier in VENDOR_MULTIPLIERS.items() if robot in name]
+    horizon = SHORT_HORIZON if name.startswith(SHORT_FOLDERS) else LONG_HORIZON
+    return DataSet(name, path, horizon, vendor[0] if vendor else None)

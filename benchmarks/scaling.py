@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Cost against log length: time and peak memory of opening, calibrating and evaluating logs of 1 to 1000 minutes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from simulated_log import simulated_log
+
+import slipwise
+from slipwise.logs import Inputs, Log, Poses, save_log
+
+MINUTES = (1, 10, 100, 1000)
+METHODS = ("none", "auto")
+INPUT = "wheel"
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What one log cost, in a process of its own."""
+
+    minutes: float
+    file_megabytes: float
+    log_megabytes: float  # the arrays of the log in memory
+    open_s: float
+    calibrate_s: float
+    evaluate_s: float
+    import_megabytes: float  # resident after importing slipwise, before anything is opened
+    open_megabytes: float  # peak resident memory so far, each
+    calibrate_megabytes: float
+    evaluate_megabytes: float
+
+
+def measure(path: Path, minutes: float) -> Cost:
+    """Open, calibrate and evaluate one log in this process."""
+    marks, peaks = [time.perf_counter()], [peak_megabytes()]
+    log = slipwise.open_log(path)
+    marks.append(time.perf_counter())
+    peaks.append(peak_megabytes())
+    slipwise.calibrate(log, input_name=INPUT)
+    marks.append(time.perf_counter())
+    peaks.append(peak_megabytes())
+    slipwise.evaluate(log, input_name=INPUT, options=slipwise.EvaluationOptions(methods=METHODS))
+    marks.append(time.perf_counter())
+    peaks.append(peak_megabytes())
+    times = [after - before for before, after in zip(marks, marks[1:], strict=False)]
+    return Cost(minutes, path.stat().st_size / 1e6, log_megabytes(log), *times, *peaks)
+
+
+def peak_megabytes() -> float:
+    """Return the largest resident memory of this process so far.
+
+    Linux's VmHWM starts anew with the program; ru_maxrss, the fallback, also counts the process that started it.
+    """
+    status = Path("/proc/self/status")
+    if status.exists():
+        lines = status.read_text(encoding="ascii", errors="replace").splitlines()
+        return float(next(line for line in lines if line.startswith("VmHWM")).split()[1]) * 1024 / 1e6
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e6
+
+
+def log_megabytes(log: Log) -> float:
+    """Return the size of all arrays of the log."""
+    size = 0
+    for run in log.runs:
+        for series in (run.commands, run.wheels, run.poses):
+            if series is not None:
+                size += sum(array.nbytes for array in _arrays(series))
+    return size / 1e6
+
+
+def _arrays(series: Inputs | Poses) -> list[slipwise.logs.log.Floats]:
+    if isinstance(series, Inputs):
+        return [series.t, series.v, series.vy, series.omega]
+    optional = [array for array in series.optional().values() if array is not None]
+    return [series.t, series.x, series.y, series.yaw, series.frame, *optional]
+
+
+def measure_apart(path: Path, minutes: float) -> Cost:
+    """Measure one log in a fresh process, so that its peak memory is its own."""
+    command = [sys.executable, __file__, "--measure", str(path), "--minutes", str(minutes)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise SystemExit(f"{minutes:g} minutes failed: {done.stderr.strip()[-800:]}")
+    return Cost(**json.loads(done.stdout))
+
+
+def print_costs(costs: list[Cost]) -> None:
+    """Print times, memory, and how both grow from one length to the next."""
+    print("20 Hz, tidy CSV, wheel input; evaluate: " + ", ".join(METHODS) + " at 1, 2 and 5 s\n")
+    print(f"{'minutes':>8}{'rows':>10}{'open [s]':>10}{'calibrate':>11}{'evaluate':>10}{'us per row':>12}"
+          f"{'log [MB]':>10}{'peak [MB]: import':>19}{'open':>7}{'calibrate':>11}{'evaluate':>10}")  # fmt: skip
+    for c in costs:
+        rows = c.minutes * 1200
+        total = c.open_s + c.calibrate_s + c.evaluate_s
+        print(
+            f"{c.minutes:8g}{rows:10.0f}{c.open_s:10.3f}{c.calibrate_s:11.3f}{c.evaluate_s:10.3f}"
+            f"{1e6 * total / rows:12.1f}{c.log_megabytes:10.2f}{c.import_megabytes:19.0f}"
+            f"{c.open_megabytes:7.0f}{c.calibrate_megabytes:11.0f}{c.evaluate_megabytes:10.0f}"
+        )
+    print("\nGrowth from one length to the next (linear: the ratio of the lengths, or less where start-up counts):")
+    for short, long in zip(costs, costs[1:], strict=False):
+        print(
+            f"  {short.minutes:g} -> {long.minutes:g} min, {long.minutes / short.minutes:g} x: open "
+            f"{long.open_s / short.open_s:.1f} x, calibrate {long.calibrate_s / short.calibrate_s:.1f} x, "
+            f"evaluate {long.evaluate_s / short.evaluate_s:.1f} x; memory beyond the import "
+            f"{beyond(long):.0f} MB = {beyond(long) / long.log_megabytes:.1f} x the log"
+        )
+
+
+def beyond(cost: Cost) -> float:
+    """Return the peak memory less what importing takes [MB]."""
+    return cost.evaluate_megabytes - cost.import_megabytes
+
+
+def main() -> int:
+    """Run the benchmark, or measure one file for it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--json", type=Path, help="write the figures to this file too")
+    parser.add_argument("--quick", action="store_true", help="leave out the longest log")
+    parser.add_argument("--measure", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--minutes", type=float, help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.measure:
+        print(json.dumps(asdict(measure(arguments.measure, arguments.minutes))))
+        return 0
+    costs = []
+    with tempfile.TemporaryDirectory() as name:
+        for minutes in MINUTES[:-1] if arguments.quick else MINUTES:
+            path = Path(name) / f"{minutes}.csv"
+            save_log(simulated_log(minutes, seed=minutes), path)
+            costs.append(measure_apart(path, minutes))
+            path.unlink()
+    print_costs(costs)
+    if arguments.json:
+        arguments.json.write_text(json.dumps([asdict(c) for c in costs], indent=1) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A long drive with known slip and noisy poses, made with the core's integrator, as long as wanted."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.logs import Inputs, Log, Poses, Run
+
+Floats = NDArray[np.float64]
+
+RATE = 20.0  # Hz, inputs and poses
+BASIS = "odd-even-10"
+# One value per term of the basis: lon V, V|w|, sgn(V)w^2; lat w, Vw, w|w|; ang w, Vw, w|w|, V.
+SLIP = np.array([-0.05, -0.02, 0.01, 0.06, 0.02, -0.03, -0.35, 0.02, 0.05, 0.01])
+POSE_STD_XY, POSE_STD_YAW = 0.01, 0.003  # m, rad
+CHUNK = 12_000  # steps integrated at a time
+
+
+def simulated_log(minutes: float, *, seed: int) -> Log:
+    """Return a log of one run: held random wheel speeds, the poses they lead to, and pose noise."""
+    rng = np.random.default_rng(seed)
+    count = round(minutes * 60.0 * RATE)
+    t = np.round(np.arange(count) / RATE, 3)
+    v, omega = _held_inputs(count, rng)
+    x, y, yaw = _poses(v, omega)
+    inputs = Inputs(t=t, v=v, vy=np.zeros(count), omega=omega)
+    yaw = yaw + POSE_STD_YAW * rng.standard_normal(count)
+    poses = Poses(
+        t=t,
+        x=x + POSE_STD_XY * rng.standard_normal(count),
+        y=y + POSE_STD_XY * rng.standard_normal(count),
+        yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
+        frame=np.zeros(count, np.int64),
+    )
+    return Log((Run(name=f"simulated{minutes:g}min", commands=None, wheels=inputs, poses=poses),))
+
+
+def _held_inputs(count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Return speeds and yaw rates that are held for 1 to 4 s each, one drive in four backwards."""
+    lengths = rng.integers(round(RATE), round(4 * RATE), size=count // round(RATE) + 1)
+    speed = rng.uniform(0.3, 2.0, len(lengths)) * rng.choice((1.0, 1.0, 1.0, -1.0), len(lengths))
+    turn = speed * rng.uniform(-0.5, 0.5, len(lengths))
+    return np.repeat(speed, lengths)[:count], np.repeat(turn, lengths)[:count]
+
+
+def _poses(v: Floats, omega: Floats) -> tuple[Floats, Floats, Floats]:
+    """Integrate exactly, in chunks; return x, y [m] and yaw [rad] at every sample."""
+    model = _core.MotionModel(_core.named_basis(BASIS), False, False)
+    parts, origin = [], np.zeros(3)
+    for begin in range(0, len(v), CHUNK):
+        forward, turn = v[begin : begin + CHUNK], omega[begin : begin + CHUNK]
+        t = np.arange(len(forward)) / RATE
+        track = _core.InputTrack(t, forward, np.zeros_like(forward), turn)
+        segment = _core.Segment(0.0, len(forward) / RATE, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+        path = _core.integrate_segment(model, SLIP, track, segment, _core.Integrator.Exact)
+        world = _moved(origin, path.poses)
+        parts.append(world[:-1])
+        origin = world[-1]
+    x, y, yaw = np.concatenate(parts).T
+    return x, y, yaw
+
+
+def _moved(origin: Floats, poses: Floats) -> Floats:
+    """Return poses seen from `origin`, [N, 3], in the frame that the origin is given in."""
+    c, s = np.cos(origin[2]), np.sin(origin[2])
+    x = origin[0] + c * poses[:, 0] - s * poses[:, 1]
+    y = origin[1] + s * poses[:, 0] + c * poses[:, 1]
+    return np.column_stack((x, y, origin[2] + poses[:, 2]))
