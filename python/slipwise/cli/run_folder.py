@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
@@ -27,15 +28,19 @@ def run_folder(runs: Path, command: str) -> Iterator[Path]:
     Raises:
         OutputError: the folder cannot be created.
     """
-    folder = _create(runs, command)
+    folder: Path | None = None
     try:
+        with _signals_held():
+            folder = _create(runs, command)
         yield folder
         with output_errors(runs / LATEST):
             _link(runs / LATEST, folder.name)
     except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
-        with contextlib.suppress(OSError):
-            runs.rmdir()  # only if this run was the first and left it empty
+        with _signals_held():
+            if folder is not None:
+                shutil.rmtree(folder, ignore_errors=True)
+            with contextlib.suppress(OSError):
+                runs.rmdir()  # only if this run was the first and left it empty
         raise
 
 
@@ -57,6 +62,16 @@ def to_toml(content: Mapping[str, Any]) -> str:
         if isinstance(table, dict):
             lines += ["", f"[{name}]", *(f"{key} = {json.dumps(value)}" for key, value in table.items())]
     return "\n".join(lines) + "\n"
+
+
+@contextlib.contextmanager
+def _signals_held() -> Iterator[None]:
+    """Let Ctrl-C and SIGTERM wait, so that a folder is never created and then forgotten."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM))
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _create(runs: Path, command: str) -> Path:

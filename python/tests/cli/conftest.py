@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sample_logs import Drive, simulated_run
+
 from slipwise import _core
 from slipwise.cli.main import run
 

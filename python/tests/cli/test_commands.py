@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from cli.conftest import EDD_2, Columns, Result, left_in, make_columns, write_csv
 from sample_logs import Drive
+
 from slipwise import load_model, load_settings, open_log
 
 Slipwise = Callable[..., Result]

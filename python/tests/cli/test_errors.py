@@ -7,6 +7,7 @@ import os
 import signal
 
 import pytest
+
 from slipwise.cli.errors import exit_code_of, line_for, printable
 from slipwise.errors import SlipwiseError
 

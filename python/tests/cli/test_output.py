@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
+
 from slipwise.cli.output import Column, Output, to_json
 from slipwise.cli.tables import in_plain_units, number
 from slipwise.models.schema import Parameter

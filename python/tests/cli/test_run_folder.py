@@ -8,6 +8,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+
 from slipwise.cli.run_folder import run_folder, to_toml
 from slipwise.errors import OutputError
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from slipwise import load_model, open_log
 from slipwise.demo import DemoOptions, DemoResult, run_demo
 

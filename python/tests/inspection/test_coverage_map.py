@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from sample_logs import held
+
 from slipwise.inspection.coverage_map import MapSize, coverage_map, held_for
 from slipwise.logs import Inputs
 

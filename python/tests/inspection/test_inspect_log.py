@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log, steady_run
+
 from slipwise import open_log
 from slipwise.inspection import inspect_log
 from slipwise.logs import Log, empty_poses
