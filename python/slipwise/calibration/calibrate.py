@@ -30,7 +30,7 @@ from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.verdict import UNDETERMINED_RATIO, Judgement, give_verdict, judge
+from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.models import schema
@@ -109,7 +109,7 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     if len(windows):
         return
     reasons = "; ".join(f"{item.count} x {item.reason}" for item in windows.left_out)
-    still = {item.kind for item in windows.left_out} == {"standing-still"}
+    still = {item.kind for item in windows.left_out} - {"late-pose"} == {"standing-still"}
     raise LogError(
         "the robot never moves in this log" if still else "the log has no window to learn from",
         where=", ".join(source.path for source in log.sources[:3]),
@@ -119,7 +119,7 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
 
 
 def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings, belief: Belief) -> _Learned:
-    """Judge the causal pass on its own held-out windows at every horizon that the log allows."""
+    """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
     growth: dict[float, float] = {}
     pair: tuple[Predictions, Predictions] | None = None
     for horizon in JUDGING_HORIZONS:
@@ -128,7 +128,8 @@ def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings, beli
             continue
         learned = forecast(forecaster, windows, targets)
         growth[horizon] = final_growth(learned)
-        pair = (learned, forecast(plain_forecaster(settings), windows, targets))
+        if pair is None or len(targets) >= 2 * FEWEST_WINDOWS:
+            pair = (learned, forecast(plain_forecaster(settings), windows, targets))
     if pair is None:
         learned = forecast(forecaster, windows, windows)
         pair = (learned, forecast(plain_forecaster(settings), windows, windows))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,14 +51,23 @@ class WindowSet:
         return run.track
 
     def count_until(self, position: Ints, time: Floats) -> Ints:
-        """Return how many windows had ended by `time` of run `position`, earlier runs whole. [M] each."""
+        """Return how many windows had ended by `time` of run `position`, [M] each.
+
+        Earlier runs on another clock count whole. Runs whose stamps follow each other are on one clock.
+        """
+        clocks = self._clocks()
         counts = np.empty(len(time), dtype=np.int64)
-        for run in np.unique(position):
-            here = np.flatnonzero(self.position == run)
-            before = int(np.count_nonzero(self.position < run))
-            at = position == run
-            counts[at] = before + np.searchsorted(self.end[here], time[at] + 1e-9, side="right")
+        for clock in np.unique(clocks[position]).tolist():
+            first, last = np.searchsorted(clocks[self.position], (clock, clock + 1)).tolist()
+            at = clocks[position] == clock
+            counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
         return counts
+
+    def _clocks(self) -> Ints:
+        """Number of each run's clock, [runs]."""
+        runs = [run.run for run in self.drive]
+        restarts = [earlier.poses.t[-1] > later.poses.t[0] for earlier, later in itertools.pairwise(runs)]
+        return np.cumsum([0, *restarts], dtype=np.int64)
 
 
 def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:

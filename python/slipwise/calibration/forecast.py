@@ -32,6 +32,7 @@ class Forecaster:
     noise: _core.MotionNoise
     belief: Callable[[int], Belief]
     starts_from_wheels: bool  # the drive's measured twist at the start is used
+    causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
 def learned_counts(learned: WindowSet, targets: WindowSet) -> tuple[Ints, Ints]:
@@ -94,6 +95,8 @@ def _learned_until(
     targets: WindowSet,
 ) -> Floats:
     """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
+    if not forecaster.causal:
+        return np.array([run.run.poses.t[-1] for run in targets.drive])[targets.position]
     begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])
     until = np.minimum(begin[targets.position], targets.start)
     for windows, counts in (learned, scored):

@@ -32,6 +32,11 @@ class Predictions:
         return len(self.t_start)
 
     @property
+    def causal(self) -> bool:
+        """Whether nothing measured after the start of a prediction was used."""
+        return bool((self.learned_until <= self.t_start).all())
+
+    @property
     def residual(self) -> Floats:
         """Measured minus predicted chart, the heading wrapped to half a turn, [N, 3]."""
         return residual(self.measured, self.pose)

@@ -31,17 +31,20 @@ class ErrorSummary:
 
 
 def held_out_half(count: int) -> slice:
-    """The windows that are scored: the second half in time (method.md, section 10)."""
+    """The windows that are scored: the second half in time (derivations.md, section 8)."""
     return slice(count // 2, count)
 
 
 def resampled_indices(count: int) -> Ints:
-    """Indices of moving-block bootstrap samples (Kuensch 1989), [RESAMPLES, count]."""
+    """Indices of circular block bootstrap samples (Politis and Romano 1992), [RESAMPLES, count].
+
+    Few windows are resampled in shorter blocks, of one window at least: a block of all would show no spread.
+    """
     rng = np.random.default_rng(SEED)
-    block = min(BLOCK_WINDOWS, count)
+    block = max(1, min(BLOCK_WINDOWS, count // 4))
     blocks = -(-count // block)
-    starts = rng.integers(0, count - block + 1, size=(RESAMPLES, blocks))
-    return (starts[:, :, None] + np.arange(block)).reshape(RESAMPLES, -1)[:, :count]
+    starts = rng.integers(0, count, size=(RESAMPLES, blocks))
+    return (starts[:, :, None] + np.arange(block)).reshape(RESAMPLES, -1)[:, :count] % count
 
 
 def summarise(errors: Floats) -> ErrorSummary:

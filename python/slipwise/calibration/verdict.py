@@ -27,10 +27,11 @@ class Judgement:
 
     @property
     def beats_plain(self) -> bool:
-        """Better on the whole, and neither position nor heading clearly worse."""
+        """Better on the whole, one of position and heading beyond chance, and neither clearly worse."""
         position, heading = _or_one(self.position_ratio), _or_one(self.heading_ratio)
         clearly_worse = position[1] > 1.0 or heading[1] > 1.0
-        return position[0] * heading[0] < 1.0 and not clearly_worse
+        clearly_better = position[2] < 1.0 or heading[2] < 1.0
+        return position[0] * heading[0] < 1.0 and clearly_better and not clearly_worse
 
 
 def judge(learned: Predictions, plain: Predictions) -> Judgement:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -59,12 +59,14 @@ def evaluate(
         if progress is not None:
             progress(name, done / len(methods))
         forecaster = method_info(name).make(name, contest)
+        if name == "model" and _learned_from(log, options.model):
+            forecaster = replace(forecaster, causal=False)
         predictions += [forecast(forecaster, contest.windows, targets) for targets in contest.targets]
     return Evaluation(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
         methods=tuple(methods),
-        scores=_scores(predictions, _learned_from(log, options.model)),
+        scores=_scores(predictions),
         predictions=tuple(predictions),
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
@@ -116,15 +118,15 @@ def _learned_from(log: Log, model: Model | None) -> bool:
     return any(source.sha256 in hashes for source in log.sources)
 
 
-def _scores(predictions: Sequence[Predictions], model_saw_log: bool) -> tuple[Score, ...]:
+def _scores(predictions: Sequence[Predictions]) -> tuple[Score, ...]:
     scores = []
     for horizon in sorted({p.horizon for p in predictions}):
         group = [p for p in predictions if p.horizon == horizon]
-        scores += [_score(p, group, model_saw_log) for p in group]
+        scores += [_score(p, group) for p in group]
     return tuple(scores)
 
 
-def _score(predictions: Predictions, group: Sequence[Predictions], model_saw_log: bool) -> Score:
+def _score(predictions: Predictions, group: Sequence[Predictions]) -> Score:
     half = held_out_half(len(predictions))
     position, heading = predictions.position_error[half], predictions.heading_error[half]
     plain = next((p for p in group if p.method == "none"), None)
@@ -133,8 +135,7 @@ def _score(predictions: Predictions, group: Sequence[Predictions], model_saw_log
     distance = np.hypot(predictions.measured[half, 0], predictions.measured[half, 1]).mean()
     return Score(
         method=predictions.method,
-        causal=method_info(predictions.method).causal
-        and not (predictions.method == "model" and model_saw_log),
+        causal=predictions.causal,
         horizon=predictions.horizon,
         windows=len(position),
         position=summarise(position),
@@ -158,7 +159,7 @@ def _to_rival(predictions: Predictions, group: Sequence[Predictions], error: str
     rivals = [
         float(getattr(p, error)[half].mean())
         for p in group
-        if p.method not in (predictions.method, "none") and method_info(p.method).causal
+        if p.method not in (predictions.method, "none") and p.causal
     ]
     best = min(rivals, default=0.0)
     return float(getattr(predictions, error)[half].mean()) / best if best > 0.0 else float("nan")

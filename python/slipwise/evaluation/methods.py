@@ -35,10 +35,9 @@ class Contest:
 
 @dataclass(frozen=True)
 class MethodInfo:
-    """How a method is made, and whether it predicts from the past alone."""
+    """How a method is made."""
 
     make: Callable[[str, Contest], Forecaster]
-    causal: bool
     description: str
 
 
@@ -62,21 +61,19 @@ def method_info(name: str) -> MethodInfo:
         SettingsError: there is no such method.
     """
     special = {
-        "none": MethodInfo(
-            lambda _, c: plain_forecaster(c.settings), True, "the plain model: no slip, no lag"
-        ),
-        "vendor": MethodInfo(_vendor, True, "a vendor's wheel-separation multiplier"),
+        "none": MethodInfo(lambda _, c: plain_forecaster(c.settings), "the plain model: no slip, no lag"),
+        "vendor": MethodInfo(_vendor, "a vendor's wheel-separation multiplier"),
         "batch": MethodInfo(
-            _batch, False, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"
+            _batch, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"
         ),
-        "model": MethodInfo(_model, True, "the model file as it is"),
-        "auto": MethodInfo(_learned, True, "average of several bases by how well they predict"),
-        "custom": MethodInfo(_learned, True, "the terms of the settings file"),
+        "model": MethodInfo(_model, "the model file as it is"),
+        "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
+        "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in special:
         return special[name]
     if name in _core.basis_names():
-        return MethodInfo(_learned, True, f"the basis {name}, learned causally")
+        return MethodInfo(_learned, f"the basis {name}, learned causally")
     known = ", ".join([*special, *_core.basis_names()])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
 
@@ -123,4 +120,4 @@ def _batch(name: str, contest: Contest) -> Forecaster:
         (shape, np.array(last.noise_scale)),
         average.reference_speeds,
     )
-    return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics)
+    return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics, causal=False)

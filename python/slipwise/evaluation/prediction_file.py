@@ -3,10 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
+from slipwise.calibration.predictions import Predictions
+from slipwise.errors import OutputError
 from slipwise.evaluation.result import Evaluation
 from slipwise.files import write_whole
 
@@ -17,23 +20,29 @@ COLUMNS = (
 
 
 def write_predictions(path: Path, evaluation: Evaluation) -> None:
-    """Write all predictions of all methods as CSV: T_start_end predicted from the inputs in [t_start, t_end].
+    """Write the predictions of all causal methods as CSV: T_start_end predicted from the inputs in between.
 
-    Nothing measured after `learned_until` <= t_start was used.
+    Nothing measured after `learned_until` <= t_start was used. Methods that learned from the windows they
+    predict (`batch`, and a model of this very log) have no place in such a file and are left out.
 
     Raises:
-        OutputError: the file cannot be written.
+        OutputError: the file cannot be written, or no method is causal.
     """
     import pyarrow as pa
     import pyarrow.csv
 
-    table = pa.table({name: _column(evaluation, name) for name in COLUMNS})
+    causal = [p for p in evaluation.predictions if p.causal]
+    if not causal:
+        raise OutputError(
+            "no method asked for predicts from the past alone", where=str(path), advice="add one to --methods"
+        )
+    table = pa.table({name: _column(evaluation, causal, name) for name in COLUMNS})
     write_whole(path, lambda temporary: pyarrow.csv.write_csv(table, temporary))
 
 
-def _column(evaluation: Evaluation, name: str) -> np.ndarray:
+def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: str) -> np.ndarray:
     parts = []
-    for p in evaluation.predictions:
+    for p in predictions:
         size = len(p.t_start)
         columns = {
             "run": np.array(evaluation.runs, dtype=object)[p.run],
