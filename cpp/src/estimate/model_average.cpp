@@ -71,11 +71,12 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
 }
 
 void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
-  const Eigen::ArrayXd tempered = settings_.learning_rate * (log_scores.array() - log_scores.maxCoeff());
-  weights_ = weights_.array() * tempered.exp();
-  weights_ /= weights_.sum();
   const double equal = 1.0 / static_cast<double>(weights_.size());
-  weights_ = ((1.0 - settings_.share) * weights_.array() + settings_.share * equal).matrix();
+  // Shared before the segment speaks, not after: what is spread to models that it refutes never reaches a prediction.
+  const Eigen::ArrayXd shared = (1.0 - settings_.share) * weights_.array() + settings_.share * equal;
+  const Eigen::ArrayXd tempered = settings_.learning_rate * (log_scores.array() - log_scores.maxCoeff());
+  weights_ = shared * tempered.exp();
+  weights_ /= weights_.sum();
 }
 
 AverageState ModelAverage::state() const {
