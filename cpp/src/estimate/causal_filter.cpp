@@ -9,8 +9,8 @@
 namespace slipwise {
 namespace {
 
-constexpr double kTailDegrees = 5.0;      // degrees of freedom of the predictive Student-t: real residuals have heavy tails
-constexpr double kSpeedChange = 0.1;      // the prior follows the speeds when their logarithm moves by more than this
+constexpr double kTailDegrees = 5.0;  // degrees of freedom of the predictive Student-t: real residuals have heavy tails
+constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
 Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
   const Eigen::Vector3d root = scale.cwiseSqrt();
@@ -72,11 +72,13 @@ void CausalFilter::adapt_noise(const InputTrack& inputs, const Segment& segment,
   const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
   segments_ += 1.0;
   const double gain = std::max(1.0 / (segments_ + settings_.noise.prior_segments), 1.0 / settings_.noise.memory);
-  noise_scale_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_) - noise_scale_);
+  noise_scale_ +=
+      gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_) - noise_scale_);
 }
 
-Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                                      const MotionNoise& shape, const Eigen::Vector3d& scale) {
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                      const Eigen::Vector3d& scale) {
   const Eigen::Matrix3d noise = slip_covariance(at.path, shape) + pose_noise_covariance(at.predicted, shape);
   return at.by_parameter * parameters * at.by_parameter.transpose() + scaled(noise, scale);
 }

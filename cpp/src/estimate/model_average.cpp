@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causal model averaging with a fixed share (Herbster and Warmuth 1998) of a tempered predictive density (Gruenwald 2012).
+// Causal model averaging with a fixed share (Herbster and Warmuth 1998) of a tempered predictive density (Gruenwald
+// 2012).
 #include "slipwise/estimate/model_average.hpp"
 
 #include <algorithm>
@@ -9,14 +10,15 @@
 namespace slipwise {
 namespace {
 
-constexpr double kReferenceShare = 0.9;   // reference speeds are the 90th percentile of those driven so far
-constexpr double kLeastSpeed = 0.05;      // [m/s] and [rad/s]; slower references would make priors meaningless
+constexpr double kReferenceShare = 0.9;  // reference speeds are the 90th percentile of those driven so far
+constexpr double kLeastSpeed = 0.05;     // [m/s] and [rad/s]; slower references would make priors meaningless
 
-const std::vector<Basis>& some(const std::vector<Basis>& bases) {
+/// One basis as it is, several as their union.
+Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   if (bases.empty()) {
     throw std::invalid_argument("a model average needs at least one slip basis");
   }
-  return bases;
+  return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
 }
 
 std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& whole) {
@@ -34,8 +36,10 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
 
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
-    : model_(some(bases).size() == 1 ? bases.front() : union_basis(std::move(name), bases), learned), settings_(settings),
-      weights_(Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))) {
+    : model_(averaged_basis(std::move(name), bases), learned),
+      settings_(settings),
+      weights_(
+          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))) {
   for (const Basis& basis : bases) {
     filters_.emplace_back(MotionModel(basis, learned), filter);
     places_.push_back(places_of(filters_.back().model(), model_));
@@ -52,7 +56,8 @@ void ModelAverage::see_speeds(const InputTrack& inputs, const Segment& segment) 
 }
 
 ReferenceSpeeds ModelAverage::reference_speeds() const {
-  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed), .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
+  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed),
+          .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
 }
 
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
@@ -82,7 +87,10 @@ void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
 AverageState ModelAverage::state() const {
   const Eigen::Index size = model_.size();
   AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
-                     Eigen::VectorXd::Zero(size), Eigen::VectorXd::Zero(size), Eigen::Vector3d::Zero(), weights_};
+                     Eigen::VectorXd::Zero(size),
+                     Eigen::VectorXd::Zero(size),
+                     Eigen::Vector3d::Zero(),
+                     weights_};
   Eigen::VectorXd having = Eigen::VectorXd::Zero(size);
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const double weight = weights_[static_cast<Eigen::Index>(i)];

@@ -18,7 +18,9 @@ Observability observability(const Estimate& posterior, const Eigen::Ref<const Ei
   const Eigen::MatrixXd relative = inverse.asDiagonal() * posterior.covariance * inverse.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative);
   const Eigen::Index last = prior_std.size() - 1;
-  return {.ratio = relative.diagonal(), .weakest = solver.eigenvectors().col(last), .weakest_ratio = solver.eigenvalues()[last]};
+  return {.ratio = relative.diagonal(),
+          .weakest = solver.eigenvectors().col(last),
+          .weakest_ratio = solver.eigenvalues()[last]};
 }
 
 }  // namespace slipwise

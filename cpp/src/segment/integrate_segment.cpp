@@ -110,7 +110,8 @@ ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& ja
   return result;
 }
 
-/// Sums of derivations.md, section 3: the steps' derivatives carried back to the path's start, one column per parameter.
+/// Sums of derivations.md, section 3: the steps' derivatives carried back to the path's start, one column per
+/// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
   ChainColumns chain = ChainColumns::Zero();

@@ -18,10 +18,10 @@ struct NoiseSettings {
                     .fraction = {0.05, 0.05, 0.05},
                     .pose_std_xy = 0.02,
                     .pose_std_yaw = 0.01};
-  bool adapt = true;           ///< learn the factor from the residuals
-  double prior_segments = 5.0; ///< the shape counts as much as this many segments [-]
-  double memory = 40.0;        ///< the factor is a mean over about this many segments, so that it follows the ground [-]
-  double largest = 9.0;        ///< a squared residual counts at most this many times its expected value [-]
+  bool adapt = true;            ///< learn the factor from the residuals
+  double prior_segments = 5.0;  ///< the shape counts as much as this many segments [-]
+  double memory = 40.0;  ///< the factor is a mean over about this many segments, so that it follows the ground [-]
+  double largest = 9.0;  ///< a squared residual counts at most this many times its expected value [-]
 };
 
 struct CausalFilterSettings {
@@ -66,7 +66,8 @@ class CausalFilter {
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
-Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at, const Eigen::Ref<const Eigen::MatrixXd>& parameters,
-                                      const MotionNoise& shape, const Eigen::Vector3d& scale);
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                      const Eigen::Vector3d& scale);
 
 }  // namespace slipwise

@@ -11,8 +11,9 @@
 namespace slipwise {
 
 struct ModelAverageSettings {
-  double learning_rate = 0.5;  ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double share = 0.05;         ///< part of the weight that is spread anew each segment, so that a model can come back [-]
+  double learning_rate =
+      0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
+  double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a model can come back [-]
 };
 
 /// Parameters, covariance and noise of the average, over the union of all terms.

@@ -9,9 +9,9 @@
 namespace slipwise {
 
 struct Observability {
-  Eigen::VectorXd ratio;         ///< posterior variance / prior variance per parameter; 1: nothing learned
-  Eigen::VectorXd weakest;       ///< unit vector, in prior standard deviations: the combination known least
-  double weakest_ratio;          ///< its posterior / prior variance
+  Eigen::VectorXd ratio;    ///< posterior variance / prior variance per parameter; 1: nothing learned
+  Eigen::VectorXd weakest;  ///< unit vector, in prior standard deviations: the combination known least
+  double weakest_ratio;     ///< its posterior / prior variance
 };
 
 /// \throws std::invalid_argument when sizes differ or a prior standard deviation is not positive.

@@ -17,18 +17,19 @@ struct ReferenceSpeeds {
 };
 
 struct PriorSettings {
-  double slip_fraction = 0.3;        ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
-  double clock_offset_std = 0.2;     ///< [s]
-  double lag = 0.3;                  ///< median time constant [s]
-  double delay = 0.1;                ///< median transport delay [s]
-  double log_std = 0.8;              ///< standard deviation of the logarithms of lag and delay [-]
+  double slip_fraction = 0.3;     ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
+  double clock_offset_std = 0.2;  ///< [s]
+  double lag = 0.3;               ///< median time constant [s]
+  double delay = 0.1;             ///< median transport delay [s]
+  double log_std = 0.8;           ///< standard deviation of the logarithms of lag and delay [-]
 };
 
 /// Standard deviation of each slip parameter: fraction * reference of its channel / |term at the reference speeds|.
 Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, double fraction);
 /// The belief before any data.
 Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds, const PriorSettings& settings);
-/// The same data under a slip prior of other standard deviations (exact for the Gaussian belief; the prior mean is zero).
+/// The same data under a slip prior of other standard deviations (exact for the Gaussian belief; the prior mean is
+/// zero).
 Estimate change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
 
 }  // namespace slipwise

@@ -73,8 +73,8 @@ inline Eigen::Matrix3d adjoint(const Pose2& pose) {
   return ad;
 }
 
-/// E of derivations.md, section 3: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of its
-/// turn.
+/// E of derivations.md, section 3: derivative of the chart (x, y, theta) of exp(tangent) by the tangent; `arc` is of
+/// its turn.
 inline Eigen::Matrix3d chart_jacobian(const Eigen::Vector3d& tangent, const ArcFunctions<double>& arc) {
   Eigen::Matrix3d e = Eigen::Matrix3d::Identity();
   e.topLeftCorner<2, 2>() = arc_matrix(arc);

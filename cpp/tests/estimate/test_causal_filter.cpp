@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning segment by segment: the prior follows the speeds, the noise follows the residuals.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "sample_bases.hpp"
+#include "simulated_drive.hpp"
+#include "slipwise/estimate/causal_filter.hpp"
+
+namespace slipwise {
+namespace {
+
+const ReferenceSpeeds kSpeeds{.v = 1.5, .omega = 0.8};
+
+TEST_CASE("the noise factor finds noise that is not what the shape says") {
+  const MotionModel model(named_basis("edd-2"), {});
+  CausalFilterSettings settings;
+  settings.noise.shape = {.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.002};
+  MotionNoise real = settings.noise.shape;
+  for (double& psd : real.psd_time) {
+    psd *= 4.0;
+  }
+  real.pose_std_xy *= 2.0;
+  real.pose_std_yaw *= 2.0;
+  const Eigen::VectorXd truth = Eigen::Vector2d(-0.05, -0.3);
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 71, .windows = 400, .window = 1.0, .noise = real});
+  CausalFilter filter(model, settings);
+  Eigen::Vector3d mean_scale = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < drive.segments.size(); ++i) {
+    filter.learn(drive.inputs, drive.segments[i], kSpeeds);
+    if (i >= 100) {
+      mean_scale += filter.noise_scale() / 300.0;
+    }
+  }
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    CAPTURE(i);
+    CHECK(mean_scale[i] == doctest::Approx(4.0).epsilon(0.2));
+  }
+}
+
+TEST_CASE("the noise stays as given when it is not to be learned") {
+  CausalFilterSettings settings;
+  settings.noise.adapt = false;
+  const MotionModel model(named_basis("edd-2"), {});
+  const auto drive = tests::simulate_drive(model, Eigen::Vector2d(0.1, 0.1), {.seed = 72, .windows = 5});
+  CausalFilter filter(model, settings);
+  for (const Segment& segment : drive.segments) {
+    filter.learn(drive.inputs, segment, kSpeeds);
+  }
+  CHECK(filter.noise_scale() == Eigen::Vector3d::Ones());
+}
+
+TEST_CASE("a prior that grows with the speeds gives the answer of knowing the speeds from the start") {
+  const MotionModel model(named_basis("odd-even-10"), {});
+  const Eigen::VectorXd truth = tests::sample_slip(model.basis(), 73, 0.05);
+  const MotionNoise noise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
+  const auto drive = tests::simulate_drive(model, truth, {.seed = 74, .windows = 40, .noise = noise});
+  CausalFilterSettings settings;
+  settings.noise.shape = noise;
+  settings.noise.adapt = false;
+  CausalFilter growing(model, settings);
+  CausalFilter knowing(model, settings);
+  for (std::size_t i = 0; i < drive.segments.size(); ++i) {
+    growing.learn(drive.inputs, drive.segments[i], i < 3 ? ReferenceSpeeds{.v = 0.5, .omega = 0.3} : kSpeeds);
+    knowing.learn(drive.inputs, drive.segments[i], kSpeeds);
+  }
+  const Eigen::VectorXd sigma = knowing.estimate().covariance.diagonal().cwiseSqrt();
+  CHECK(growing.prior_std().isApprox(knowing.prior_std()));
+  CHECK(((growing.estimate().mean - knowing.estimate().mean).cwiseQuotient(sigma)).cwiseAbs().maxCoeff() < 0.3);
+  CHECK(growing.estimate().covariance.isApprox(knowing.estimate().covariance, 0.05));
+}
+
+TEST_CASE("a better predicted segment scores higher") {
+  const MotionModel model(named_basis("edd-2"), {});
+  CausalFilter near(model, {});
+  CausalFilter far(model, {});
+  const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
+  const InputTrack inputs(t, v, zero, zero);
+  const Segment as_told{.start = 0.0, .end = 2.0, .measured = {2.0, 0.0, 0.0}};
+  const Segment off{.start = 0.0, .end = 2.0, .measured = {2.0, 0.5, 0.2}};
+  CHECK(near.learn(inputs, as_told, kSpeeds).log_score > far.learn(inputs, off, kSpeeds).log_score);
+}
+
+TEST_CASE("a prediction's covariance has parameters, slip noise and pose noise") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
+  const InputTrack inputs(t, v, zero, zero);
+  const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 0.0, .end = 4.0});
+  const Eigen::Matrix2d parameters = Eigen::Vector2d(0.01, 0.04).asDiagonal();
+  const MotionNoise shape{.psd_time = {0.25, 0.0, 0.0}, .pose_std_xy = 0.1};
+  const Eigen::Matrix3d covariance = prediction_covariance(at, parameters, shape, Eigen::Vector3d(4.0, 1.0, 1.0));
+  CHECK(covariance(0, 0) == doctest::Approx(16.0 * 0.01 + 4.0 * (0.25 * 4.0 + 2.0 * 0.01)));
+  CHECK(covariance(1, 1) == doctest::Approx(2.0 * 0.01));
+}
+
+}  // namespace
+}  // namespace slipwise

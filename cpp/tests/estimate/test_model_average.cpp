@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Averaging models: weights that follow the predictions, and an average that is a model itself.
+#include <doctest/doctest.h>
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+
+#include "simulated_drive.hpp"
+#include "slipwise/estimate/model_average.hpp"
+
+namespace slipwise {
+namespace {
+
+const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.004};
+
+Basis plain() { return {"none", {}, {}, {}}; }
+
+ModelAverage learned(const std::vector<Basis>& bases, const MotionModel& real, const Eigen::VectorXd& truth) {
+  ModelAverage average("auto", bases, {}, {}, {});
+  const auto drive = tests::simulate_drive(real, truth, {.seed = 81, .windows = 80, .window = 2.0, .noise = kNoise});
+  for (const Segment& segment : drive.segments) {
+    average.learn(drive.inputs, segment);
+  }
+  return average;
+}
+
+TEST_CASE("the weights sum to one and favour the model that is true") {
+  const MotionModel real(named_basis("full-linear-6"), {});
+  Eigen::VectorXd truth(6);
+  truth << -0.05, 0.1, 0.02, 0.2, 0.05, -0.35;
+  const AverageState state =
+      learned({plain(), named_basis("edd-2"), named_basis("full-linear-6")}, real, truth).state();
+  CHECK(state.weights.sum() == doctest::Approx(1.0));
+  CHECK(state.weights[2] > 0.8);
+}
+
+TEST_CASE("a model that was wrong comes back when the ground changes") {
+  const MotionModel real(named_basis("edd-2"), {});
+  ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));
+  CHECK(average.state().weights[0] < 0.05);
+  const auto firm =
+      tests::simulate_drive(real, Eigen::Vector2d::Zero(), {.seed = 82, .windows = 30, .window = 2.0, .noise = kNoise});
+  for (const Segment& segment : firm.segments) {
+    average.learn(firm.inputs, segment);
+  }
+  CHECK(average.state().weights[0] > 0.5);
+}
+
+TEST_CASE("one basis is its own average") {
+  const Basis basis = named_basis("edd-2");
+  const MotionModel real(basis, {});
+  const ModelAverage average = learned({basis}, real, Eigen::Vector2d(-0.1, -0.4));
+  CHECK(average.model().basis().name() == "edd-2");
+  CHECK(average.state().weights[0] == doctest::Approx(1.0));
+  CHECK(average.state().estimate.mean[1] == doctest::Approx(-0.4).epsilon(0.05));
+}
+
+TEST_CASE("the average has every term once and a covariance that is one") {
+  const MotionModel real(named_basis("edd-2"), {});
+  const ModelAverage average =
+      learned({plain(), named_basis("edd-2"), named_basis("ipem-9")}, real, Eigen::Vector2d(-0.1, -0.4));
+  const AverageState state = average.state();
+  CHECK(average.model().size() == 9);  // ipem-9 has both terms of edd-2
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(state.estimate.covariance);
+  CHECK(solver.eigenvalues().minCoeff() >= -1e-12);
+  CHECK((state.variance_ratio.array() > 0.0).all());
+  CHECK((state.variance_ratio.array() <= 1.0 + 1e-9).all());
+}
+
+TEST_CASE("before any data nothing is determined and all weights are equal") {
+  const ModelAverage average("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
+  const AverageState state = average.state();
+  CHECK(state.weights.isApproxToConstant(0.5));
+  CHECK(state.variance_ratio.isApproxToConstant(1.0));
+  CHECK(state.estimate.mean.isZero());
+}
+
+TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
+  ModelAverage average("auto", {named_basis("edd-2")}, {}, {}, {});
+  const std::vector<double> t{0.0, 8.0}, v{1.0, 4.0}, zero{0.0, 0.0}, omega{0.2, 0.2};
+  const InputTrack inputs(t, v, zero, omega);
+  average.learn(inputs, {.start = 0.0, .end = 10.0, .measured = {5.0, 3.0, 2.0}});
+  CHECK(average.reference_speeds().v == doctest::Approx(4.0).epsilon(0.05));
+  CHECK(average.reference_speeds().omega == doctest::Approx(0.2).epsilon(0.05));
+}
+
+TEST_CASE("no basis at all is refused") {
+  CHECK_THROWS_AS(ModelAverage("auto", {}, {}, {}, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// What data told about parameters.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "slipwise/estimate/observability.hpp"
+
+namespace slipwise {
+namespace {
+
+TEST_CASE("without data every ratio is one") {
+  const Eigen::VectorXd std = Eigen::Vector2d(0.5, 3.0);
+  const Estimate prior{Eigen::VectorXd::Zero(2), std.cwiseAbs2().asDiagonal()};
+  const Observability seen = observability(prior, std);
+  CHECK(seen.ratio.isApprox(Eigen::VectorXd::Ones(2)));
+  CHECK(seen.weakest_ratio == doctest::Approx(1.0));
+}
+
+TEST_CASE("a sum that is known leaves the difference as the weakest direction") {
+  // Unit priors and one exact look at p0 + p1: only their difference keeps its prior variance.
+  const Eigen::MatrixXd covariance = (Eigen::Matrix2d() << 0.5, -0.5, -0.5, 0.5).finished();
+  const Observability seen = observability({Eigen::VectorXd::Zero(2), covariance}, Eigen::Vector2d::Ones());
+  CHECK(seen.weakest_ratio == doctest::Approx(1.0));
+  CHECK(std::abs(seen.weakest[0] + seen.weakest[1]) < 1e-12);
+  CHECK(seen.ratio[0] == doctest::Approx(0.5));
+}
+
+TEST_CASE("sizes that do not fit are refused") {
+  const Estimate posterior{Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Identity(2, 2)};
+  CHECK_THROWS_AS(observability(posterior, Eigen::Vector3d::Ones()), std::invalid_argument);
+  CHECK_THROWS_AS(observability(posterior, Eigen::Vector2d(1.0, 0.0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise
