@@ -10,6 +10,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.batch import fit_batch
+from slipwise.calibration.causal_pass import CausalPass, HistoryRecorder
 from slipwise.calibration.drive import (
     DriveRun,
     WindowSet,
@@ -17,17 +18,9 @@ from slipwise.calibration.drive import (
     collect_windows,
     prepare_drive,
 )
-from slipwise.calibration.forecast import Forecaster, final_growth, forecast
-from slipwise.calibration.learner import (
-    Belief,
-    Learner,
-    Progress,
-    belief_of,
-    learn_with_history,
-    make_learner,
-)
+from slipwise.calibration.forecast import Forecaster, final_growth, forecast, forecast_all
+from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
 from slipwise.calibration.plain import plain_forecaster
-from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
@@ -79,17 +72,12 @@ def calibrate(
     learner = make_learner(settings, input_name)
     average = learner.fresh()
     names = tuple(basis.name for basis in learner.bases)
-    before = belief_of(average)
-    history, beliefs = learn_with_history(average, windows, names, progress)
-    beliefs = [before, *beliefs]
-    forecaster = Forecaster(
-        "learned",
-        average.model,
-        settings.filter_settings().noise.shape,
-        beliefs.__getitem__,
-        learner.dynamics,
-    )
-    learned = _judged(forecaster, windows, settings, beliefs[-1])
+    recorder = HistoryRecorder(average.model, windows, names, progress)
+    causal_pass = CausalPass(average, windows, recorder)
+    shape = settings.filter_settings().noise.shape
+    forecaster = Forecaster("learned", average.model, shape, causal_pass.belief, learner.dynamics)
+    learned = _judged(forecaster, causal_pass, windows, settings)
+    history = recorder.history
     if batch:
         learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
     model = Model(_content(learned, (log, input_name, settings), windows, history))
@@ -118,22 +106,19 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings, belief: Belief) -> _Learned:
+def _judged(
+    forecaster: Forecaster, causal_pass: CausalPass, windows: WindowSet, settings: Settings
+) -> _Learned:
     """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
-    growth: dict[float, float] = {}
-    pair: tuple[Predictions, Predictions] | None = None
-    for horizon in JUDGING_HORIZONS:
-        targets = collect_windows(windows.drive, horizon, settings.rules())
-        if len(targets) == 0:
-            continue
-        learned = forecast(forecaster, windows, targets)
-        growth[horizon] = final_growth(learned)
-        if pair is None or len(targets) >= 2 * FEWEST_WINDOWS:
-            pair = (learned, forecast(plain_forecaster(settings), windows, targets))
-    if pair is None:
-        learned = forecast(forecaster, windows, windows)
-        pair = (learned, forecast(plain_forecaster(settings), windows, windows))
-    judgement = judge(*pair)
+    sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
+    judged = [targets for targets in sets if len(targets)]
+    predictions = forecast_all(forecaster, windows, judged or [windows])
+    growth = {p.horizon: final_growth(p) for p in predictions} if judged else {}
+    enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
+    chosen = enough[-1] if enough else 0
+    plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
+    judgement = judge(predictions[chosen], plain)
+    belief = causal_pass.finish()
     names = tuple(info.name for info in forecaster.model.parameters)
     return _Learned(forecaster.model, belief, growth, judgement, give_verdict(judgement, names, belief))
 

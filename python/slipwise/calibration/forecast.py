@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,7 +30,7 @@ class Forecaster:
     method: str
     model: _core.MotionModel
     noise: _core.MotionNoise
-    belief: Callable[[int], Belief]
+    belief: Callable[[int], Belief]  # asked for in the order learned: the number of windows never decreases
     starts_from_wheels: bool  # the drive's measured twist at the start is used
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
@@ -42,25 +42,71 @@ def learned_counts(learned: WindowSet, targets: WindowSet) -> tuple[Ints, Ints]:
     return embargoed, in_sample
 
 
+@dataclass(frozen=True, eq=False)
+class _Draft:
+    """The predictions of one set of targets while they are being made, [N] each."""
+
+    targets: WindowSet
+    counts: Ints  # windows learned before the prediction
+    in_sample_counts: Ints
+    pose: Floats
+    covariance: Floats
+    in_sample: Floats
+
+
 def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> Predictions:
     """Predict every target window causally, and once more after having learned it (the thesis's residual)."""
+    return forecast_all(forecaster, learned, [targets])[0]
+
+
+def forecast_all(
+    forecaster: Forecaster, learned: WindowSet, sets: Sequence[WindowSet]
+) -> tuple[Predictions, ...]:
+    """Predict the targets of several horizons in one pass over what is learned, so that no belief is kept."""
+    drafts = [_draft(learned, targets) for targets in sets]
+    moments = [c for draft in drafts for c in (draft.counts, draft.in_sample_counts)]
+    kind = np.repeat(np.arange(len(moments)), [len(counts) for counts in moments])
+    index = np.concatenate([np.arange(len(counts)) for counts in moments])
+    count = np.concatenate(moments)
+    for k in np.argsort(count, kind="stable").tolist():
+        belief, draft = forecaster.belief(int(count[k])), drafts[kind[k] // 2]
+        if kind[k] % 2 == 0:
+            _predict(forecaster, belief, draft, int(index[k]))
+        else:
+            _predict_in_sample(forecaster, belief, draft, int(index[k]))
+    return tuple(_finished(forecaster, learned, draft) for draft in drafts)
+
+
+def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
     counts, in_sample_counts = learned_counts(learned, targets)
     size = len(targets)
-    pose, covariance, in_sample = np.empty((size, 3)), np.empty((size, 3, 3)), np.empty((size, 3))
-    for i, segment in enumerate(targets.segments):
-        belief = forecaster.belief(int(counts[i]))
-        at = _core.linearize_segment(forecaster.model, belief.mean, targets.track(i), segment)
-        pose[i] = at.predicted.vector()
-        covariance[i] = _core.prediction_covariance(
-            at, belief.covariance, forecaster.noise, belief.noise_scale
-        )
-        later = forecaster.belief(int(in_sample_counts[i]))
-        in_sample[i] = _core.integrate_segment(
-            forecaster.model, later.mean, targets.track(i), segment, _core.Integrator.Exact
-        ).poses[-1]
+    return _Draft(
+        targets, counts, in_sample_counts, np.empty((size, 3)), np.empty((size, 3, 3)), np.empty((size, 3))
+    )
+
+
+def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
+    targets = draft.targets
+    at = _core.linearize_segment(forecaster.model, belief.mean, targets.track(i), targets.segments[i])
+    draft.pose[i] = at.predicted.vector()
+    draft.covariance[i] = _core.prediction_covariance(
+        at, belief.covariance, forecaster.noise, belief.noise_scale
+    )
+
+
+def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
+    targets = draft.targets
+    path = _core.integrate_segment(
+        forecaster.model, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
+    )
+    draft.in_sample[i] = path.poses[-1]
+
+
+def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:
+    targets, pose = draft.targets, draft.pose
     known = targets.count_until(targets.position, targets.start - targets.length)
-    growth = _causal_growth(known, normalised_squared(residual(targets.measured, pose), covariance))
-    left = residual(targets.measured, in_sample)
+    growth = _causal_growth(known, normalised_squared(residual(targets.measured, pose), draft.covariance))
+    left = residual(targets.measured, draft.in_sample)
     return Predictions(
         method=forecaster.method,
         horizon=targets.length,
@@ -68,10 +114,10 @@ def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> 
         t_start=targets.start,
         t_end=targets.end,
         pose=pose,
-        covariance=covariance * growth[:, None, None],
+        covariance=draft.covariance * growth[:, None, None],
         growth=growth,
         measured=targets.measured,
-        learned_until=_learned_until(forecaster, (learned, counts), (targets, known), targets),
+        learned_until=_learned_until(forecaster, (learned, draft.counts), (targets, known), targets),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 
 Floats = NDArray[np.float64]
@@ -74,7 +73,6 @@ def learn_causally(
     average: _core.ModelAverage,
     windows: WindowSet,
     moments: Collection[int],
-    progress: Progress | None = None,
 ) -> dict[int, Belief]:
     """Learn all windows in order; return the belief after each number of windows in `moments`."""
     wanted = set(moments)
@@ -83,34 +81,4 @@ def learn_causally(
         average.learn(windows.track(i), segment)
         if i + 1 in wanted:
             beliefs[i + 1] = belief_of(average)
-        if progress is not None and i % 50 == 0:
-            progress((i + 1) / len(windows))
     return beliefs
-
-
-def learn_with_history(
-    average: _core.ModelAverage, windows: WindowSet, bases: tuple[str, ...], progress: Progress | None = None
-) -> tuple[History, list[Belief]]:
-    """Learn all windows in order; return how every parameter went, and the belief after each window."""
-    beliefs, nis, weight = [], [], []
-    for i, segment in enumerate(windows.segments):
-        update = average.learn(windows.track(i), segment)
-        beliefs.append(belief_of(average))
-        nis.append(update.nis)
-        weight.append(update.weight)
-        if progress is not None and i % 50 == 0:
-            progress((i + 1) / len(windows))
-    history = History(
-        run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
-        t=windows.end,
-        names=tuple(info.name for info in average.model.parameters),
-        mean=np.array([belief.mean for belief in beliefs]).reshape(len(beliefs), average.model.size),
-        std=np.array([np.sqrt(np.diag(belief.covariance)) for belief in beliefs]).reshape(
-            len(beliefs), average.model.size
-        ),
-        nis=np.array(nis),
-        weight=np.array(weight),
-        bases=bases,
-        basis_weight=np.array([belief.weights for belief in beliefs]).reshape(len(beliefs), len(bases)),
-    )
-    return history, beliefs

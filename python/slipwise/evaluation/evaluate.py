@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.drive import choose_input, collect_windows, prepare_drive
-from slipwise.calibration.forecast import forecast
+from slipwise.calibration.forecast import forecast_all
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.statistics import coverage, held_out_half, nis_band, ratio_of_means, summarise
@@ -54,14 +54,14 @@ def evaluate(
     methods = options.methods or method_names(contest)
     for name in methods:
         method_info(name)
-    predictions = []
+    predictions: list[Predictions] = []
     for done, name in enumerate(methods):
         if progress is not None:
             progress(name, done / len(methods))
         forecaster = method_info(name).make(name, contest)
         if name == "model" and _learned_from(log, options.model):
             forecaster = replace(forecaster, causal=False)
-        predictions += [forecast(forecaster, contest.windows, targets) for targets in contest.targets]
+        predictions += forecast_all(forecaster, contest.windows, contest.targets)
     return Evaluation(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),

@@ -10,8 +10,9 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.batch import fit_batch
+from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.forecast import Forecaster, learned_counts
+from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import learn_causally, make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
@@ -80,14 +81,10 @@ def method_info(name: str) -> MethodInfo:
 
 def _learned(name: str, contest: Contest) -> Forecaster:
     learner = make_learner(contest.settings.model_copy(update={"basis": name}), contest.input_name)
-    moments: set[int] = set()
-    for targets in contest.targets:
-        for counts in learned_counts(contest.windows, targets):
-            moments.update(counts.tolist())
     average = learner.fresh()
-    beliefs = learn_causally(average, contest.windows, moments)
     shape = contest.settings.filter_settings().noise.shape
-    return Forecaster(name, average.model, shape, beliefs.__getitem__, learner.dynamics)
+    causal_pass = CausalPass(average, contest.windows)
+    return Forecaster(name, average.model, shape, causal_pass.belief, learner.dynamics)
 
 
 def _vendor(name: str, contest: Contest) -> Forecaster:
