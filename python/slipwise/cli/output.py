@@ -10,7 +10,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from slipwise.cli.errors import printable, silence_stdout
 from slipwise.errors import OutputError
@@ -28,6 +28,7 @@ class Column:
 
     head: str
     right: bool = False  # numbers are aligned to the right
+    whole: bool = False  # never wrapped
 
 
 @dataclass
@@ -70,7 +71,8 @@ class Output:
             caption_justify="left",
         )
         for column in columns:
-            table.add_column(printable(column.head), justify="right" if column.right else "left")
+            justify: Literal["left", "right"] = "right" if column.right else "left"
+            table.add_column(printable(column.head), justify=justify, no_wrap=column.whole)
         for row in rows:
             table.add_row(*(printable(cell) for cell in row))
         console = self._out()

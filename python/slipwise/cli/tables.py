@@ -98,7 +98,7 @@ def show_scores(output: Output, evaluation: Evaluation) -> None:
 
 
 _SCORE_COLUMNS = (
-    Column("method"),
+    Column("method", whole=True),
     Column("position [m]", True),
     Column("/none", True),
     Column("/rival", True),
