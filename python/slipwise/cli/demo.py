@@ -84,14 +84,14 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
     from slipwise.demo.run_demo import VENDOR_TRACK_MULTIPLIER
 
     names = {
-        "none": "none: as commanded",
-        "vendor": f"vendor: track x {VENDOR_TRACK_MULTIPLIER:g}",
-        "edd-2": "edd-2: two factors, lag and delay",
+        "none": "none",
+        "vendor": f"vendor, track x {VENDOR_TRACK_MULTIPLIER:g}",
+        "edd-2": "edd-2, with lag and delay",
         "auto": "slipwise",
     }
     evaluation = result.evaluation
     horizons = [horizon for horizon in SHOWN_HORIZONS if horizon in evaluation.horizons]
-    columns = [Column("predicted from commands alone")]
+    columns = [Column("method", whole=True)]
     columns += [
         Column(f"{what}, {h:g} s", True) for h in horizons for what in ("position [m]", "heading [deg]")
     ]
@@ -102,6 +102,6 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
         rows.append((names[method], *cells))
     windows = ", ".join(f"{evaluation.score('none', h).windows} of {h:g} s" for h in horizons)
     caption = f"Mean errors over held-out windows ({windows}), learned only from what came before each."
-    out.table("How far predictions miss", columns, rows, caption=caption)
+    out.table("How far predictions from commands alone miss", columns, rows, caption=caption)
     show_verdict(out, result.calibration.verdict)
     show_files(out, files)

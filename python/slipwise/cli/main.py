@@ -55,7 +55,8 @@ def _slipwise(
 ) -> None:
     """Learn a robot's motion model - slip, lag, delay, uncertainty - from what it was told and where it went.
 
-    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use.
+    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use. demo, calibrate and evaluate
+    keep each run with its settings in runs/<UTC time>-<command>; runs/latest is the last one.
 
     \b
     Examples:
