@@ -47,12 +47,17 @@ def predict(
             commands.
 
     Raises:
-        SettingsError: the horizon is not positive, or the commands are not such rows.
+        SettingsError: the horizon is not positive, the start lies before the first command, or the commands
+            are not such rows.
     """
-    inputs = commands if isinstance(commands, Inputs) else _inputs(np.asarray(commands, dtype=np.float64))
+    inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
     if not (np.isfinite(horizon) and horizon > 0.0):
         raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")
     begin = float(inputs.t[0]) if start is None else start
+    if not (np.isfinite(begin) and begin >= inputs.t[0]):
+        raise SettingsError("the start must not lie before the first command", advice="give earlier commands")
+    if initial is not None and not np.isfinite(initial).all():
+        raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
     track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
     twist = None if initial is None else _core.BodyTwist(initial[0], 0.0, initial[1])
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
@@ -81,11 +86,23 @@ def growth_at(model: Model, horizon: float) -> float:
     return float(np.exp(np.interp(horizon, seconds, [np.log(growth[s]) for s in seconds])))
 
 
-def _inputs(rows: Floats) -> Inputs:
-    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0 or not np.isfinite(rows).all():
-        raise SettingsError(
-            f"commands have shape {rows.shape} where rows of (t, v, omega) are needed, all finite",
-            advice="stack them with numpy.column_stack((t, v, omega))",
-        )
+def _inputs(commands: ArrayLike) -> Inputs:
+    try:
+        rows = np.asarray(commands, dtype=np.float64)
+    except (TypeError, ValueError) as problem:
+        raise _not_rows("are no numbers") from problem
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) == 0:
+        raise _not_rows(f"have shape {rows.shape}")
+    if not np.isfinite(rows).all():
+        raise _not_rows("are not finite")
+    if not (np.diff(rows[:, 0]) > 0.0).all():
+        raise _not_rows("do not go forward in time")
     t, v, omega = (np.ascontiguousarray(column) for column in rows.T)
     return Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega)
+
+
+def _not_rows(fault: str) -> SettingsError:
+    return SettingsError(
+        f"commands {fault} where rows of (t, v, omega) are needed, finite and in order of t",
+        advice="stack them with numpy.column_stack((t, v, omega))",
+    )

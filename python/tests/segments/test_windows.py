@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Windows are disjoint, lie between good poses under known inputs, and depend on nothing that comes after them."""
+"""Windows are disjoint, lie between good poses under known inputs, and depend on nothing after them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from sample_logs import Drive, held, inputs_until, kept, poses_of, simulated_run, steady_run, with_poses
+
 from slipwise import _core
 from slipwise.logs import Inputs, Poses, Run
 from slipwise.segments import WindowRules, Windows, cut_windows
@@ -179,7 +180,7 @@ def test_no_window_changes_when_the_log_is_cut_off_after_its_end() -> None:
             poses=kept(run.poses, run.poses.t <= until),
         )
         here = pairs(cut(part, 1.0))
-        # The last pose before the cut may stand in for a nearer one behind it; all windows before are the same.
+        # The last pose before the cut may stand in for a nearer one behind it.
         assert here[:-1] == whole[: max(0, len(here) - 1)]
 
 

@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Nothing measured after a prediction's start reaches it: logs are cut off or spoilt, and nothing changes."""
+
+from __future__ import annotations
+
+import gzip
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_logs import Drive, inputs_until, kept, simulated_log, simulated_run
+
+from slipwise import _core
+from slipwise.calibration import make_settings
+from slipwise.calibration.predictions import Predictions
+from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
+from slipwise.logs import Inputs, Log, Poses, Run, open_log
+
+OPTIONS = EvaluationOptions(methods=("none", "edd-2", "auto"))
+REAL = "warthog/grass_7_29_14h46s15.csv.gz"
+SLIP = _core.named_basis("full-linear-6")
+
+
+@cache
+def simulated() -> Log:
+    drive = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, 0.02, 0.03, 0.05, 0.02, -0.3), lag=0.2, delay=0.15)
+    first = simulated_run(replace(drive, late=0.1, name="first"))
+    second = simulated_run(replace(drive, seed=2, late=0.1, seconds=40.0, name="second"))
+    return Log(runs=(first, shifted(second, 62.0)))
+
+
+@cache
+def real(folder: Path) -> Log:
+    return open_log(folder / REAL)
+
+
+@pytest.fixture(params=["simulated", "real"])
+def log(request: pytest.FixtureRequest) -> Log:
+    """A simulated log of two runs on one clock, and a real one."""
+    if request.param == "simulated":
+        return simulated()
+    return real(request.getfixturevalue("real_log_dir"))
+
+
+def shifted(run: Run, seconds: float) -> Run:
+    assert run.commands is not None
+    assert run.wheels is not None
+    return replace(
+        run,
+        commands=replace(run.commands, t=run.commands.t + seconds),
+        wheels=replace(run.wheels, t=run.wheels.t + seconds),
+        poses=replace(run.poses, t=run.poses.t + seconds),
+    )
+
+
+def cut_off(log: Log, t: float) -> Log:
+    """Return the log as it would have been recorded until `t` [s]."""
+    runs = []
+    for run in log.runs:
+        poses = kept(run.poses, run.poses.t <= t)
+        commands, wheels = (None if x is None else inputs_until(x, t) for x in (run.commands, run.wheels))
+        if len(poses) > 1:
+            runs.append(replace(run, commands=commands, wheels=wheels, poses=poses))
+    return replace(log, runs=tuple(runs))
+
+
+def spoilt_poses(poses: Poses, after: float) -> Poses:
+    """Move the poses after `after` [s] by 100 m and more, and turn them round; the stamps stay."""
+    late = poses.t > after
+    return replace(
+        poses,
+        x=poses.x + late * (100.0 + np.arange(len(poses))),
+        y=poses.y - late * 100.0,
+        yaw=np.where(late, -poses.yaw, poses.yaw),
+    )
+
+
+def spoilt_inputs(inputs: Inputs, after: float) -> Inputs:
+    late = inputs.t > after
+    return replace(inputs, v=inputs.v + 3.0 * late, omega=inputs.omega - 2.0 * late)
+
+
+def chosen(predictions: Predictions) -> list[int]:
+    """Five predictions, from the first to the last."""
+    return sorted({round(share * (len(predictions) - 1)) for share in (0.0, 0.25, 0.5, 0.75, 1.0)})
+
+
+def same(one: Predictions, i: int, other: Predictions, j: int) -> None:
+    """Both hold the same prediction, to the last bit."""
+    for name in ("t_start", "t_end", "pose", "covariance", "growth", "learned_until"):
+        a, b = np.asarray(getattr(one, name)[i]), np.asarray(getattr(other, name)[j])
+        assert a.tobytes() == b.tobytes(), (one.method, name, float(one.t_start[i]))
+
+
+def by_name(evaluation: Evaluation) -> dict[tuple[str, float], Predictions]:
+    return {(p.method, p.horizon): p for p in evaluation.predictions}
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: str) -> None:
+    whole = evaluate(log, input_name=input_name, options=OPTIONS)
+    first, last = whole.predictions[0].t_start[0], whole.predictions[0].t_end[-1]
+    for share in (0.3, 0.55, 0.8):
+        until = float(first + share * (last - first))
+        part = evaluate(cut_off(log, until), input_name=input_name, options=OPTIONS)
+        for key, here in by_name(part).items():
+            there = by_name(whole)[key]
+            places = {(t, e): i for i, (t, e) in enumerate(zip(there.t_start, there.t_end, strict=True))}
+            found = [
+                (places.get((t, e)), j) for j, (t, e) in enumerate(zip(here.t_start, here.t_end, strict=True))
+            ]
+            pairs = [(i, j) for i, j in found if i is not None]
+            # The last pose before the cut may stand in for a nearer one behind it.
+            assert len(pairs) >= max(1, len(here) - 1)
+            for i, j in pairs:
+                same(there, i, here, j)
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_predictions_use_no_pose_within_the_embargo_before_their_start(log: Log, input_name: str) -> None:
+    options = replace(OPTIONS, horizons=(2.0,))
+    whole = by_name(evaluate(log, input_name=input_name, options=options))
+    for i in chosen(whole["auto", 2.0]):
+        embargo = float(whole["auto", 2.0].t_start[i]) - 2.0
+        runs = tuple(replace(run, poses=spoilt_poses(run.poses, embargo + 1e-6)) for run in log.runs)
+        spoilt = by_name(evaluate(replace(log, runs=runs), input_name=input_name, options=options))
+        for key, predictions in whole.items():
+            same(predictions, i, spoilt[key], i)
+        assert not np.array_equal(whole["auto", 2.0].measured[i], spoilt["auto", 2.0].measured[i])
+
+
+def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log) -> None:
+    options = replace(OPTIONS, horizons=(2.0,))
+    whole = by_name(evaluate(log, input_name="command", options=options))
+    for i in chosen(whole["auto", 2.0]):
+        start = float(whole["auto", 2.0].t_start[i])
+        runs = tuple(
+            replace(run, wheels=None if run.wheels is None else spoilt_inputs(run.wheels, start))
+            for run in log.runs
+        )
+        spoilt = by_name(evaluate(replace(log, runs=runs), input_name="command", options=options))
+        for key, predictions in whole.items():
+            same(predictions, i, spoilt[key], i)
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> None:
+    options = replace(OPTIONS, horizons=(2.0,))
+    whole = by_name(evaluate(log, input_name=input_name, options=options))
+    for i in chosen(whole["auto", 2.0]):
+        end = float(whole["auto", 2.0].t_end[i])
+        runs = tuple(
+            replace(
+                run,
+                commands=None if run.commands is None else spoilt_inputs(run.commands, end),
+                wheels=None if run.wheels is None else spoilt_inputs(run.wheels, end),
+            )
+            for run in log.runs
+        )
+        spoilt = by_name(evaluate(replace(log, runs=runs), input_name=input_name, options=options))
+        for key, predictions in whole.items():
+            same(predictions, i, spoilt[key], i)
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_stated_times_lie_before_the_start_and_parameters_before_the_embargo(
+    log: Log, input_name: str
+) -> None:
+    for p in evaluate(log, input_name=input_name, options=OPTIONS).predictions:
+        assert (p.learned_until <= p.t_start).all()
+        if input_name == "wheel" or p.method == "none":
+            begin = np.array([log.runs[r].poses.t[0] for r in p.run])
+            assert (p.learned_until <= np.maximum(begin, p.t_start - p.horizon) + 1e-6).all()
+        else:
+            assert (p.learned_until == p.t_start).all()  # the wheel speed at the start is used
+
+
+def test_file_cut_off_gives_the_same_predictions_as_the_whole_file(
+    real_log_dir: Path, tmp_path: Path
+) -> None:
+    with gzip.open(real_log_dir / REAL, "rt", encoding="utf-8") as file:
+        lines = file.read().splitlines(keepends=True)
+    part = tmp_path / "part.csv"
+    part.write_text("".join(lines[: len(lines) * 3 // 5]), encoding="utf-8")
+    whole, cut = (evaluate(open_log(path), options=OPTIONS) for path in (real_log_dir / REAL, part))
+    for key, here in by_name(cut).items():
+        for i in range(len(here) - 1):
+            same(by_name(whole)[key], i, here, i)
+
+
+def test_embargo_holds_across_runs_that_follow_each_other_on_one_clock() -> None:
+    log = simulated()
+    options = EvaluationOptions(methods=("auto",), horizons=(5.0,))
+    (whole,) = evaluate(log, input_name="wheel", options=options).predictions
+    first = int(np.flatnonzero(whole.run == 1)[0])
+    embargo = float(whole.t_start[first]) - 5.0
+    assert embargo < log.runs[0].poses.t[-1] - 2.0
+    poses = spoilt_poses(log.runs[0].poses, embargo + 1e-6)
+    runs = (replace(log.runs[0], poses=poses), log.runs[1])
+    (spoilt,) = evaluate(replace(log, runs=runs), input_name="wheel", options=options).predictions
+    same(whole, first, spoilt, first)
+
+
+def test_runs_with_clocks_of_their_own_learn_from_all_earlier_runs() -> None:
+    log = simulated()
+    own_clock = Log(runs=(log.runs[0], shifted(log.runs[1], -62.0)))
+    settings = make_settings({"basis": "edd-2"})
+    options = EvaluationOptions(methods=("none", "edd-2"), horizons=(2.0,))
+    result = evaluate(own_clock, input_name="wheel", settings=settings, options=options)
+    plain, learned = result.predictions
+    second = plain.run == 1
+    at_once = second & (plain.t_start < 1.0)
+    assert at_once.any()
+    assert learned.heading_error[second].mean() < 0.5 * plain.heading_error[second].mean()
+    assert not np.array_equal(learned.pose[at_once], plain.pose[at_once])
+
+
+def test_method_that_saw_its_windows_is_not_called_causal() -> None:
+    result = evaluate(simulated_log(Drive(seconds=40.0)), options=replace(OPTIONS, methods=("none", "batch")))
+    assert [score.causal for score in result.scores] == [score.method == "none" for score in result.scores]
+    batch = next(p for p in result.predictions if p.method == "batch")
+    assert (batch.learned_until >= batch.t_end).all()
+
+
+def test_windows_never_overlap(log: Log) -> None:
+    for p in evaluate(log, input_name="wheel", options=replace(OPTIONS, methods=("none",))).predictions:
+        for run in np.unique(p.run):
+            start, end = p.t_start[p.run == run], p.t_end[p.run == run]
+            assert all(e <= s for (_, e), (s, _) in pairwise(zip(start, end, strict=True)))

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scores say what they are called, and wrong options are refused with advice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log, simulated_run, steady_run
+
+from slipwise import _core
+from slipwise.calibration import calibrate, make_settings
+from slipwise.calibration.statistics import held_out_half
+from slipwise.errors import LogError, SettingsError
+from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
+from slipwise.evaluation.result import Score
+from slipwise.logs import Log, Source, empty_poses
+
+SLIP = _core.named_basis("edd-2")
+DRIVE = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, -0.4))
+
+
+@pytest.fixture(scope="module")
+def log() -> Log:
+    return replace(simulated_log(DRIVE), sources=(Source("drive.csv", "ab" * 32, "csv", 1200),))
+
+
+@pytest.fixture(scope="module")
+def evaluation(log: Log) -> Evaluation:
+    options = EvaluationOptions(
+        methods=("none", "vendor", "edd-2", "auto"), vendor_track_multiplier=1.0 / 0.6
+    )
+    return evaluate(log, input_name="wheel", options=options)
+
+
+def test_scores_are_those_of_the_predictions_in_the_second_half(evaluation: Evaluation) -> None:
+    for p in evaluation.predictions:
+        score = evaluation.score(p.method, p.horizon)
+        half = slice(len(p) // 2, None)
+        dx, dy, dyaw = (p.measured - p.pose)[half].T
+        position, heading = np.sqrt(dx**2 + dy**2), np.abs(np.arctan2(np.sin(dyaw), np.cos(dyaw)))
+        assert score.windows == len(p) - len(p) // 2
+        assert score.position.mean == pytest.approx(position.mean())
+        assert score.position.rmse == pytest.approx(np.sqrt((position**2).mean()))
+        assert score.position.median == pytest.approx(np.median(position))
+        assert score.heading.mean == pytest.approx(heading.mean())
+        assert score.heading.p95 == pytest.approx(np.quantile(heading, 0.95))
+        assert score.position.low <= score.position.mean <= score.position.high
+        errors = (p.measured - p.pose)[half]
+        errors[:, 2] = np.arctan2(np.sin(dyaw), np.cos(dyaw))
+        nis = [e @ np.linalg.inv(c) @ e for e, c in zip(errors, p.covariance[half], strict=True)]
+        assert score.nis == pytest.approx(np.mean(nis))
+
+
+def test_ratios_are_relative_to_the_plain_model_and_to_the_best_rival(evaluation: Evaluation) -> None:
+    scores = {m: evaluation.score(m, 2.0) for m in evaluation.methods}
+    plain = scores["none"].position.mean
+    assert scores["none"].position_ratio[0] == pytest.approx(1.0)
+    assert scores["auto"].position_ratio[0] == pytest.approx(scores["auto"].position.mean / plain)
+    best = min(scores[m].heading.mean for m in ("vendor", "edd-2"))
+    assert scores["auto"].heading_to_rival == pytest.approx(scores["auto"].heading.mean / best)
+
+
+def test_vendor_multiplier_that_is_true_leaves_no_heading_error(evaluation: Evaluation) -> None:
+    assert evaluation.score("vendor", 5.0).heading.mean < 0.03
+    assert evaluation.score("none", 5.0).heading.mean > 0.2
+
+
+def test_learned_methods_beat_the_plain_model_far(evaluation: Evaluation) -> None:
+    for method in ("edd-2", "auto"):
+        assert evaluation.score(method, 5.0).position_ratio[2] < 0.3
+        assert evaluation.score(method, 5.0).heading_ratio[2] < 0.3
+
+
+def test_in_sample_residual_is_the_smaller_one(evaluation: Evaluation) -> None:
+    score = evaluation.score("edd-2", 1.0)
+    assert 0.0 < score.in_sample_position < score.position.mean
+
+
+def test_covariances_are_positive_definite(evaluation: Evaluation) -> None:
+    for p in evaluation.predictions:
+        assert p.covariance == pytest.approx(np.transpose(p.covariance, (0, 2, 1)), abs=1e-12)
+        assert (np.linalg.eigvalsh(p.covariance) > 0.0).all()
+
+
+def test_all_methods_that_apply_are_compared_by_default(log: Log) -> None:
+    methods = evaluate(log, input_name="wheel", options=EvaluationOptions(horizons=(2.0,))).methods
+    assert methods == ("none", *_core.basis_names(), "batch", "auto")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (EvaluationOptions(methods=("none", "magic")), "unknown method 'magic' .*known are none, vendor"),
+        (EvaluationOptions(methods=("vendor",)), "needs a multiplier .*--vendor-track-multiplier"),
+        (EvaluationOptions(methods=("vendor",), vendor_track_multiplier=0.0), "must be positive"),
+        (EvaluationOptions(methods=("vendor",), vendor_track_multiplier=float("nan")), "must be positive"),
+        (EvaluationOptions(methods=("model",)), "needs a model file .*--model FILE"),
+        (EvaluationOptions(horizons=()), "horizons must be positive seconds"),
+        (EvaluationOptions(horizons=(1.0, -2.0)), "horizons must be positive seconds"),
+        (EvaluationOptions(horizons=(float("nan"),)), "horizons must be positive seconds"),
+        (EvaluationOptions(horizons=(float("inf"),)), "horizons must be positive seconds"),
+    ],
+)
+def test_wrong_options_are_refused_with_advice(log: Log, options: EvaluationOptions, message: str) -> None:
+    with pytest.raises(SettingsError, match=message):
+        evaluate(log, options=options)
+
+
+def test_horizon_without_windows_gives_a_note(log: Log) -> None:
+    result = evaluate(log, options=EvaluationOptions(methods=("none",), horizons=(2.0, 100.0, 2.0)))
+    assert result.horizons == (2.0,)
+    assert "no prediction over 100 s: the log has 0 such windows" in result.notes
+    with pytest.raises(KeyError):
+        result.score("none", 100.0)
+
+
+def test_no_horizon_with_windows_is_an_error_with_advice(log: Log) -> None:
+    with pytest.raises(LogError, match=r"no two windows of any horizon .*shorter --horizons"):
+        evaluate(log, options=EvaluationOptions(horizons=(100.0,)))
+
+
+def test_model_of_another_drive_is_causal_and_of_the_same_log_is_not(log: Log) -> None:
+    settings = make_settings({"basis": "edd-2"})
+    model = calibrate(log, input_name="wheel", settings=settings).model
+    options = EvaluationOptions(methods=("none", "model"), horizons=(2.0,), model=model)
+    other = replace(simulated_log(replace(DRIVE, seed=9)), sources=(Source("b.csv", "cd" * 32, "csv", 1200),))
+    fresh, seen = (evaluate(x, options=options).score("model", 2.0) for x in (other, log))
+    assert (fresh.causal, seen.causal) == (True, False)
+    assert fresh.position_ratio[0] < 0.2
+
+
+def test_model_decides_the_input_and_another_one_is_refused(log: Log) -> None:
+    model = calibrate(log, input_name="wheel", settings=make_settings({"basis": "edd-2"})).model
+    options = EvaluationOptions(methods=("model",), model=model)
+    assert evaluate(log, options=options).input == "wheel"
+    with pytest.raises(SettingsError, match=r"learned from wheel input, not command .*use --input wheel"):
+        evaluate(log, input_name="command", options=options)
+
+
+def test_runs_without_poses_or_inputs_are_passed_over() -> None:
+    good = simulated_run(replace(DRIVE, name="good"))
+    no_poses = replace(good, name="none", poses=empty_poses())
+    no_wheels = replace(good, name="none", wheels=None)
+    result = evaluate(
+        Log(runs=(no_poses, no_wheels, good)),
+        input_name="wheel",
+        options=EvaluationOptions(methods=("none",)),
+    )
+    alone = evaluate(Log(runs=(good,)), input_name="wheel", options=EvaluationOptions(methods=("none",)))
+    assert {int(r) for p in result.predictions for r in p.run} == {2}
+    for one, other in zip(result.scores, alone.scores, strict=True):
+        assert (one.windows, one.position, one.heading) == (other.windows, other.position, other.heading)
+
+
+def test_wheels_that_start_late_are_used_where_they_are() -> None:
+    run = simulated_run(Drive(seconds=40.0, lag=0.3))
+    assert run.wheels is not None
+    keep = run.wheels.t > 20.0
+    late = replace(
+        run.wheels,
+        t=run.wheels.t[keep],
+        v=run.wheels.v[keep],
+        vy=run.wheels.vy[keep],
+        omega=run.wheels.omega[keep],
+    )
+    log = Log(runs=(replace(run, wheels=late),))
+    options = EvaluationOptions(methods=("auto",), horizons=(2.0,))
+    (wheel,) = evaluate(log, input_name="wheel", options=options).predictions
+    (command,) = evaluate(log, input_name="command", options=options).predictions
+    assert wheel.t_start.min() > 20.0
+    assert command.t_start.min() < 1.0
+
+
+def test_perfect_drive_without_any_error_has_no_ratio() -> None:
+    log = Log(runs=(steady_run(seconds=30.0, v=0.5, omega=0.0),))
+    score = evaluate(log, options=EvaluationOptions(methods=("none",), horizons=(2.0,))).score("none", 2.0)
+    assert score.position.mean == pytest.approx(0.0, abs=1e-12)
+    assert isinstance(score, Score)
+
+
+def test_second_half_is_scored_and_the_odd_window_belongs_to_it() -> None:
+    assert [held_out_half(n) for n in (0, 1, 2, 7)] == [slice(0, 0), slice(0, 1), slice(1, 2), slice(3, 7)]

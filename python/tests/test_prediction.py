@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model predicts poses and covariances from commands, by the core's own integrator."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import ArrayLike
+from sample_logs import Drive, held, simulated_log
+
+from slipwise import _core
+from slipwise.calibration import calibrate, make_settings
+from slipwise.calibration.plain import plain_forecaster, vendor_forecaster
+from slipwise.calibration.settings import Settings
+from slipwise.errors import SettingsError
+from slipwise.models import Model
+from slipwise.prediction import growth_at, predict
+
+BASES = ["edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
+
+
+def learned(basis: str, input_name: str) -> Model:
+    log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
+    return calibrate(log, input_name=input_name, settings=make_settings({"basis": basis})).model
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return learned("full-linear-6", "command")
+
+
+@pytest.mark.parametrize("input_name", ["command", "wheel"])
+@pytest.mark.parametrize("basis", BASES)
+def test_zero_command_gives_zero_motion(basis: str, input_name: str) -> None:
+    path = predict(learned(basis, input_name), np.zeros((1, 3)), horizon=3.0)
+    assert np.array_equal(path.poses, np.zeros((31, 3)))
+
+
+def test_path_has_a_pose_every_tenth_and_at_the_horizon(model: Model) -> None:
+    path = predict(model, [[5.0, 1.0, 0.0]], horizon=0.35)
+    assert path.t == pytest.approx([5.0, 5.1, 5.2, 5.3, 5.35])
+    assert path.poses.shape == (5, 3)
+    assert path.covariance.shape == (5, 3, 3)
+    assert not path.poses[0].any()
+    assert not path.covariance[0].any()
+
+
+def test_prediction_is_the_cores_linearised_segment(model: Model) -> None:
+    inputs = held(np.arange(0.0, 4.0, 0.5), 1.2, -0.4)
+    path = predict(model, inputs, horizon=2.0, start=1.0, initial=(0.7, 0.1))
+    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    twist = _core.BodyTwist(0.7, 0.0, 0.1)
+    segment = _core.Segment(1.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
+    at = _core.linearize_segment(model.motion, model.mean, track, segment)
+    assert path.poses[-1].tobytes() == at.predicted.vector().tobytes()
+    scale = np.array(model.content.noise.scale)
+    covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
+    assert path.covariance[-1] == pytest.approx(covariance * growth_at(model, 2.0))
+
+
+def test_uncertainty_grows_along_the_path(model: Model) -> None:
+    path = predict(model, [[0.0, 1.0, 0.3]], horizon=5.0)
+    trace = path.covariance[:, 0, 0] + path.covariance[:, 1, 1]
+    assert (np.diff(trace) > 0.0).all()
+    assert (np.diff(path.covariance[:, 2, 2]) > 0.0).all()
+    assert (np.linalg.eigvalsh(path.covariance[1:]) > 0.0).all()
+
+
+def test_growth_is_interpolated_and_held_beyond_the_judged_horizons(model: Model) -> None:
+    growth = model.content.noise.growth
+    assert growth_at(model, 1.0) == pytest.approx(growth[1.0])
+    assert growth_at(model, 0.1) == pytest.approx(growth[1.0])
+    assert growth_at(model, 60.0) == pytest.approx(growth[5.0])
+    assert min(growth[2.0], growth[5.0]) <= growth_at(model, 3.0) <= max(growth[2.0], growth[5.0])
+
+
+def test_rows_and_inputs_are_the_same_commands(model: Model) -> None:
+    inputs = held([0.0, 0.4, 0.8], 0.9, 0.2)
+    rows = np.column_stack((inputs.t, inputs.v, inputs.omega))
+    one, other = (predict(model, c, horizon=1.0).poses for c in (inputs, rows))
+    assert one.tobytes() == other.tobytes()
+
+
+@pytest.mark.parametrize(
+    "commands",
+    [
+        np.zeros(3),
+        np.zeros((0, 3)),
+        np.zeros((4, 2)),
+        np.zeros((2, 3, 1)),
+        [[0.0, float("nan"), 0.0]],
+        [[0.0, 1.0, float("inf")]],
+        [[1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
+        [[0.0, 1.0, 0.0], [0.0, 2.0, 0.0]],
+        [["a", "b", "c"]],
+        [[0.0, 1.0], [2.0]],
+    ],
+)
+def test_commands_of_a_wrong_kind_are_refused_with_advice(model: Model, commands: ArrayLike) -> None:
+    with pytest.raises(SettingsError, match=r"commands .* numpy.column_stack"):
+        predict(model, commands, horizon=1.0)
+
+
+@pytest.mark.parametrize("horizon", [0.0, -1.0, float("nan"), float("inf")])
+def test_horizon_must_be_positive_seconds(model: Model, horizon: float) -> None:
+    with pytest.raises(SettingsError, match=r"the horizon must be positive seconds: such as horizon=5\.0"):
+        predict(model, [[0.0, 1.0, 0.0]], horizon=horizon)
+
+
+@pytest.mark.parametrize("start", [float("nan"), float("inf"), -1.0])
+def test_start_must_lie_where_commands_are(model: Model, start: float) -> None:
+    with pytest.raises(SettingsError, match="the start"):
+        predict(model, [[0.0, 1.0, 0.0]], horizon=1.0, start=start)
+
+
+def test_initial_speed_must_be_finite(model: Model) -> None:
+    with pytest.raises(SettingsError, match="the initial speeds"):
+        predict(model, [[0.0, 1.0, 0.0]], horizon=1.0, initial=(float("nan"), 0.0))
+
+
+@pytest.mark.parametrize(("v", "omega"), [(1.0, 0.0), (0.8, 0.5), (-0.5, 1.5), (0.0, -0.7)])
+def test_plain_model_and_vendor_multiplier_are_their_formulas(v: float, omega: float) -> None:
+    track = _core.InputTrack(np.zeros(1), np.array([v]), np.zeros(1), np.array([omega]))
+    segment = _core.Segment(0.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    for forecaster, rate in (
+        (plain_forecaster(Settings()), omega),
+        (vendor_forecaster(1.875, Settings()), omega / 1.875),
+    ):
+        at = _core.linearize_segment(forecaster.model, forecaster.belief(0).mean, track, segment)
+        expected = _core.exp(np.array([v, 0.0, rate]) * 3.0).vector()
+        assert at.predicted.vector() == pytest.approx(expected, abs=1e-12)
