@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 RESAMPLES = 1000
+LARGEST_CHUNK = 1_000_000  # starts of blocks drawn at a time, so that memory does not grow with the log
 BLOCK_WINDOWS = 3  # windows do not overlap, so a block of three is at least three horizons long
 SEED = 20100830  # fixed, so that the same log gives the same intervals
 # Quantiles of the chi-square distribution with 3 degrees of freedom.
@@ -35,21 +35,33 @@ def held_out_half(count: int) -> slice:
     return slice(count // 2, count)
 
 
-def resampled_indices(count: int) -> Ints:
-    """Indices of circular block bootstrap samples (Politis and Romano 1992), [RESAMPLES, count].
+def resampled_sums(values: Floats) -> Floats:
+    """Sums over circular block bootstrap samples (Politis and Romano 1992), [RESAMPLES].
 
-    Few windows are resampled in shorter blocks, of one window at least: a block of all would show no spread.
+    Values of the same length are resampled alike. Few of them are resampled in shorter blocks, of one value
+    at least: a block of all would show no spread.
     """
-    rng = np.random.default_rng(SEED)
+    rng, count = np.random.default_rng(SEED), len(values)
     block = max(1, min(BLOCK_WINDOWS, count // 4))
     blocks = -(-count // block)
-    starts = rng.integers(0, count, size=(RESAMPLES, blocks))
-    return (starts[:, :, None] + np.arange(block)).reshape(RESAMPLES, -1)[:, :count] % count
+    whole = _block_sums(values, block)
+    last = _block_sums(values, count - (blocks - 1) * block)  # cut off, so that a sample has `count` values
+    rows = max(1, LARGEST_CHUNK // blocks)
+    sums = []
+    for first in range(0, RESAMPLES, rows):
+        starts = rng.integers(0, count, size=(min(rows, RESAMPLES - first), blocks))
+        sums.append(whole[starts[:, :-1]].sum(axis=1) + last[starts[:, -1]])
+    return np.concatenate(sums)
+
+
+def _block_sums(values: Floats, length: int) -> Floats:
+    """Sum of the `length` values from each on, past the end from the beginning again, [N]."""
+    return np.asarray(np.sum([np.roll(values, -k) for k in range(length)], axis=0), dtype=np.float64)
 
 
 def summarise(errors: Floats) -> ErrorSummary:
     """Summarise the errors of at least one window."""
-    means = errors[resampled_indices(len(errors))].mean(axis=1)
+    means = resampled_sums(errors) / len(errors)
     low, high = np.quantile(means, (0.025, 0.975))
     return ErrorSummary(
         mean=float(errors.mean()),
@@ -65,10 +77,9 @@ def ratio_of_means(errors: Floats, reference: Floats) -> tuple[float, float, flo
     """Ratio of two mean errors with its 95 % interval; NaN where the reference is never wrong."""
     if reference.sum() == 0.0:
         return (float("nan"), float("nan"), float("nan"))
-    samples = resampled_indices(len(errors))
-    denominators = reference[samples].sum(axis=1)
+    denominators = resampled_sums(reference)
     usable = denominators > 0.0
-    ratios = errors[samples].sum(axis=1)[usable] / denominators[usable]
+    ratios = resampled_sums(errors)[usable] / denominators[usable]
     low, high = np.quantile(ratios, (0.025, 0.975))
     return (float(errors.sum() / reference.sum()), float(low), float(high))
 
