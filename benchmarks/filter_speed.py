@@ -143,7 +143,9 @@ def time_passes(log: Log, length: float, repeats: int) -> list[Figure]:
         raise SystemExit(f"the filters differ by more than {SAME}: their times cannot be compared")
     core = best(lambda: core_filter(job), repeats)
     return [
-        Figure(f"calibration in the core, as shipped, {words}", best(core_average(log, length), repeats), 50.0),
+        Figure(
+            f"calibration in the core, as shipped, {words}", best(core_average(log, length), repeats), 50.0
+        ),
         Figure(f"IEKF pass in the core, {words}", core),
         Figure(f"IEKF pass in numpy, {words}", *beside(best(lambda: plain_filter(job), 3), core)),
         Figure(f"IEKF pass in filterpy + numpy, {words}", *beside(best(lambda: filterpy_pass(job), 3), core)),
@@ -188,7 +190,11 @@ def time_command(log: Log, repeats: int) -> list[Figure]:
         calibrate += ["-o", str(folder / "model.yaml")]
         rows: tuple[tuple[str, list[str], float | None], ...] = (
             ("slipwise --version", ["--version"], None),
-            ("slipwise calibrate, 10 parameters, no report", [*calibrate, "--settings", str(settings)], 2000.0),
+            (
+                "slipwise calibrate, 10 parameters, no report",
+                [*calibrate, "--settings", str(settings)],
+                2000.0,
+            ),
             ("slipwise calibrate, as by default (auto), no report", calibrate, None),
         )
         return [

@@ -24,7 +24,7 @@ class MethodScore:
     nis: float  # 3 where the covariance is true
     nis_band: tuple[float, float]
     coverage: tuple[float, float, float]  # of the 50, 90, 95 % ellipsoids
-    windows: int
+    windows: int  # held out
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,8 @@ class LogScore:
     log: str
     input: str
     horizon: float  # s
-    windows: int  # held out
+    windows: int  # held out: the second half
+    all_windows: int
     seconds: float  # wall time of the evaluation
     methods: dict[str, MethodScore]
 
@@ -69,8 +70,8 @@ class MeanScore:
 def log_score(name: str, evaluation: Evaluation, seconds: float) -> LogScore:
     """Take from an evaluation over one horizon what the benchmark keeps."""
     methods = {score.method: _method_score(score) for score in evaluation.scores}
-    windows = methods["none"].windows
-    return LogScore(name, evaluation.input, evaluation.horizons[0], windows, seconds, methods)
+    held_out, total = methods["none"].windows, len(evaluation.predictions[0])
+    return LogScore(name, evaluation.input, evaluation.horizons[0], held_out, total, seconds, methods)
 
 
 def mean_score(scores: Sequence[LogScore], method: str) -> MeanScore | None:

@@ -9,26 +9,24 @@ import sys
 import time
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
 from data_sets import DataSet, data_folder, data_sets
-from log_score import LogScore, best_basis_mean, log_score, mean_score
+from log_score import LogScore, log_score, mean_score
+from real_log_tables import (
+    Target,
+    method_names,
+    print_comparison,
+    print_few,
+    print_logs,
+    print_means,
+    print_ratios,
+    print_window_differences,
+)
 from reference import Comparison, compare, read_reference
 
 import slipwise
-
-INPUTS = ("wheel", "command")
-
-
-@dataclass(frozen=True)
-class Target:
-    """What is to be reached over all logs, relative to the plain model."""
-
-    position: float
-    heading: float
-    worst: float  # position, on every log
-
 
 TARGETS = {"wheel": Target(0.35, 0.15, 1.02), "command": Target(0.32, 0.38, 1.05)}
 
@@ -44,7 +42,7 @@ def score_log(data: DataSet) -> list[LogScore]:
         "command": any(run.commands is not None for run in log.runs),
     }
     scores = []
-    for name in (name for name in INPUTS if has[name]):
+    for name in (name for name in TARGETS if has[name]):
         start = time.perf_counter()
         evaluation = slipwise.evaluate(log, input_name=name, options=options)
         scores.append(log_score(data.name, evaluation, time.perf_counter() - start))
@@ -58,128 +56,43 @@ def score_all(folder: Path, only: str) -> list[LogScore]:
         return [score for scores in pool.map(score_log, chosen) for score in scores]
 
 
-def print_logs(scores: Sequence[LogScore]) -> None:
-    """Print one line per log and method of interest."""
-    print(f"{'':34}held  mean error of none     auto / none, 95 % interval                    best basis afterwards")
-    print(
-        f"{'log':34}out       m      rad   position           heading             position          heading"
-        f"            NIS   in 50 90 95 %"
-    )
-    for s in scores:
-        none, auto = s.methods["none"], s.methods["auto"]
-        print(
-            f"{s.log:34}{s.windows:4}{'' if s.counts else '!':1}{none.position:8.3f} {none.heading:8.3f}   "
-            f"{interval(auto.position_ratio)}   {interval(auto.heading_ratio)}   "
-            f"{best(s, 'position')} {best(s, 'heading')} {auto.nis:6.2f}  "
-            + " ".join(f"{100 * share:3.0f}" for share in auto.coverage)
-        )
-
-
-def print_ratios(scores: Sequence[LogScore]) -> None:
-    """Print every method's ratios on every log, position / heading."""
-    methods = method_names(scores)
-    print(f"{'log':34}" + "".join(f"{m[:13]:>14}" for m in methods))
-    for s in scores:
-        cells = [
-            f"{s.methods[m].position_ratio[0]:6.2f} /{s.methods[m].heading_ratio[0]:5.2f}" if m in s.methods else "-"
-            for m in methods
-        ]
-        print(f"{s.log:34}" + "".join(f"{cell:>14}" for cell in cells))
-
-
-def print_means(scores: Sequence[LogScore], target: Target) -> None:
-    """Print the score of every method and whether `auto` reaches the target."""
-    print(f"{'method':16}logs  position  heading   worst position                          worst heading")
-    for method in method_names(scores):
-        mean = mean_score(scores, method)
-        if mean is None:
-            continue
-        note = "" if scores[0].methods.get(method) is None or scores[0].methods[method].causal else "  (not causal)"
-        print(
-            f"{method:16}{mean.logs:4}  {mean.position:8.3f} {mean.heading:8.3f}   "
-            f"{mean.worst_position:6.2f} {mean.worst_position_log:32} "
-            f"{mean.worst_heading:6.2f} {mean.worst_heading_log}{note}"
-        )
-    position, heading = best_basis_mean(scores)
-    print(f"{'best afterwards':16}      {position:8.3f} {heading:8.3f}   (the best fixed basis of each log)")
-    auto = mean_score(scores, "auto")
-    if auto is not None:
-        print(
-            f"target of auto: position {verdict(auto.position, target.position)}, "
-            f"heading {verdict(auto.heading, target.heading)}, "
-            f"worst log's position {verdict(auto.worst_position, target.worst)}"
-        )
-
-
-def print_comparison(comparisons: Sequence[Comparison], missing: Sequence[str]) -> None:
-    """Print absolute errors beside the reference's best basis of each log, chosen afterwards."""
-    print(f"{'':34}        windows    position [m]: auto, its best     heading [rad]: auto, its best")
-    for c in comparisons:
-        words = [word for word, bad in zip(("position", "heading"), c.worse, strict=True) if bad]
-        verdict_words = f"worse: {', '.join(words)}" if words else ""
-        print(
-            f"{c.log:34}{c.input:8}{c.windows:4}{c.reference_windows:4}   "
-            f"{c.auto[0]:8.3f} {c.reference_best[0]:8.3f} {c.best[0]:14}"
-            f"{c.auto[1]:8.3f} {c.reference_best[1]:8.3f} {c.best[1]:14} {verdict_words}"
-        )
-    print("\nWindows differ (the plain model's error is not the same, ours / the reference's):")
-    for c in (c for c in comparisons if not c.same_windows):
-        print(
-            f"  {c.log:32} {c.input:8} {c.windows:4} / {c.reference_windows:<4} windows, "
-            f"{c.none[0]:.3f} / {c.reference_none[0]:.3f} m, {c.none[1]:.3f} / {c.reference_none[1]:.3f} rad; "
-            f"relative to its own none, auto {ratio(c.auto[0], c.none[0])} against "
-            f"{ratio(c.reference_best[0], c.reference_none[0])} in position"
-        )
-    if missing:
-        print("The reference has no figures for: " + ", ".join(missing))
-
-
-def method_names(scores: Sequence[LogScore]) -> list[str]:
-    """Return all methods, in the order of the evaluation that has most of them."""
-    return list(max((s.methods for s in scores), key=len, default={}))
-
-
-def interval(value: tuple[float, float, float]) -> str:
-    """Write a ratio with its interval."""
-    return f"{value[0]:5.2f} [{value[1]:.2f}, {value[2]:.2f}]"
-
-
-def best(score: LogScore, error: str) -> str:
-    """Write the best fixed basis and its ratio."""
-    name = score.best_basis(error)
-    method = score.methods[name]
-    value = method.position_ratio[0] if error == "position" else method.heading_ratio[0]
-    return f"{value:5.2f} {name:13}"
-
-
-def ratio(error: float, plain: float) -> str:
-    """Write a ratio of errors."""
-    return f"{error / plain:.2f}" if plain > 0.0 else "-"
-
-
-def verdict(value: float, limit: float) -> str:
-    """Write a figure beside its limit."""
-    return f"{value:.3f} (limit {limit}: {'reached' if value <= limit else 'MISSED'})"
-
-
 def print_all(scores: Sequence[LogScore], comparisons: tuple[list[Comparison], list[str]] | None) -> None:
     """Print all tables."""
-    for name in INPUTS:
+    for name, target in TARGETS.items():
         group = [s for s in scores if s.input == name]
         if not group:
             continue
-        print(f"\n{name} input\n{'-' * (len(name) + 6)}")
+        print(f"\n== {name} input ==\n")
         print_logs(group)
-        print("\nMean error relative to the plain model, position / heading:")
+        print("\nMean error relative to the plain model, position / heading:\n")
         print_ratios(group)
-        print("\nGeometric means over logs:")
-        print_means(group, TARGETS[name])
-        few = [f"{s.log} ({s.windows})" for s in group if not s.counts]
-        if few:
-            print("Left out of the means for too few held-out windows (marked !): " + ", ".join(few))
+        print("\nGeometric means over logs of the errors relative to the plain model:\n")
+        print_means(group, target)
+        print_few(group)
     if comparisons is not None:
-        print("\nbeside the reference\n--------------------")
+        print(
+            "\n== beside the reference: mean errors, and its best basis of each log, chosen afterwards ==\n"
+        )
         print_comparison(*comparisons)
+        print("\nWhere the windows are not the same, absolute errors cannot be compared:\n")
+        print_window_differences(comparisons[0])
+
+
+def as_json(scores: Sequence[LogScore], comparisons: Sequence[Comparison]) -> str:
+    """Return all figures as JSON."""
+    groups = {name: [s for s in scores if s.input == name] for name in TARGETS}
+    means = {
+        name: {method: mean_score(group, method) for method in method_names(group)}
+        for name, group in groups.items()
+    }
+    content = {
+        "scores": [asdict(score) for score in scores],
+        "means": {
+            name: {m: asdict(mean) for m, mean in table.items() if mean} for name, table in means.items()
+        },
+        "reference": [asdict(c) for c in comparisons],
+    }
+    return json.dumps(content, indent=1) + "\n"
 
 
 def main() -> int:
@@ -199,18 +112,8 @@ def main() -> int:
     print_all(scores, comparisons)
     print(f"\n{len(scores)} evaluations in {time.perf_counter() - start:.1f} s")
     if arguments.json:
-        content = {
-            "scores": [asdict(s) for s in scores],
-            "means": {
-                f"{name}/{method}": asdict(mean)
-                for name in INPUTS
-                for group in [[s for s in scores if s.input == name]]
-                for method in method_names(group)
-                if (mean := mean_score(group, method)) is not None
-            },
-            "reference": [asdict(c) for c in comparisons[0]] if comparisons else [],
-        }
-        arguments.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        text = as_json(scores, comparisons[0] if comparisons else [])
+        arguments.json.write_text(text, encoding="utf-8")
     return 0
 
 

@@ -17,7 +17,7 @@ SAME_WINDOWS = 0.02  # the sets of windows count as equal where the plain model'
 class Reference:
     """The reference's mean errors on one log with one input and horizon, by basis."""
 
-    windows: int  # scored
+    windows: int
     position: dict[str, float]  # m
     heading: dict[str, float]  # rad
 
@@ -82,7 +82,7 @@ def compare(
             Comparison(
                 log=score.log,
                 input=score.input,
-                windows=score.windows,
+                windows=score.all_windows,
                 reference_windows=reference.windows,
                 none=(none.position, none.heading),
                 reference_none=(reference.position["none"], reference.heading["none"]),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import resource
 import subprocess
@@ -33,6 +34,9 @@ class Cost:
     open_s: float
     calibrate_s: float
     evaluate_s: float
+    open_cpu_s: float  # processor time of all threads, which other work on the machine disturbs less
+    calibrate_cpu_s: float
+    evaluate_cpu_s: float
     import_megabytes: float  # resident after importing slipwise, before anything is opened
     open_megabytes: float  # peak resident memory so far, each
     calibrate_megabytes: float
@@ -41,17 +45,20 @@ class Cost:
 
 def measure(path: Path, minutes: float) -> Cost:
     """Open, calibrate and evaluate one log in this process."""
-    marks, peaks = [time.perf_counter()], [peak_megabytes()]
+    walls, processors, peaks = [time.perf_counter()], [time.process_time()], [peak_megabytes()]
+
+    def mark() -> None:
+        walls.append(time.perf_counter())
+        processors.append(time.process_time())
+        peaks.append(peak_megabytes())
+
     log = slipwise.open_log(path)
-    marks.append(time.perf_counter())
-    peaks.append(peak_megabytes())
+    mark()
     slipwise.calibrate(log, input_name=INPUT)
-    marks.append(time.perf_counter())
-    peaks.append(peak_megabytes())
+    mark()
     slipwise.evaluate(log, input_name=INPUT, options=slipwise.EvaluationOptions(methods=METHODS))
-    marks.append(time.perf_counter())
-    peaks.append(peak_megabytes())
-    times = [after - before for before, after in zip(marks, marks[1:], strict=False)]
+    mark()
+    times = [after - before for marks in (walls, processors) for before, after in itertools.pairwise(marks)]
     return Cost(minutes, path.stat().st_size / 1e6, log_megabytes(log), *times, *peaks)
 
 
@@ -95,7 +102,7 @@ def measure_apart(path: Path, minutes: float) -> Cost:
 
 def print_costs(costs: list[Cost]) -> None:
     """Print times, memory, and how both grow from one length to the next."""
-    print("20 Hz, tidy CSV, wheel input; evaluate: " + ", ".join(METHODS) + " at 1, 2 and 5 s\n")
+    print("20 Hz, tidy CSV, wheel input; evaluate: " + ", ".join(METHODS) + " at 1, 2 and 5 s; wall time\n")
     print(f"{'minutes':>8}{'rows':>10}{'open [s]':>10}{'calibrate':>11}{'evaluate':>10}{'us per row':>12}"
           f"{'log [MB]':>10}{'peak [MB]: import':>19}{'open':>7}{'calibrate':>11}{'evaluate':>10}")  # fmt: skip
     for c in costs:
@@ -106,19 +113,19 @@ def print_costs(costs: list[Cost]) -> None:
             f"{1e6 * total / rows:12.1f}{c.log_megabytes:10.2f}{c.import_megabytes:19.0f}"
             f"{c.open_megabytes:7.0f}{c.calibrate_megabytes:11.0f}{c.evaluate_megabytes:10.0f}"
         )
-    print("\nGrowth from one length to the next (linear: the ratio of the lengths, or less where start-up counts):")
-    for short, long in zip(costs, costs[1:], strict=False):
+    print(
+        "\nGrowth of processor time from one length to the next (linear: as the length, less where start-up "
+        "counts),\nand of peak memory beside the growth of the log in memory:"
+    )
+    for short, long in itertools.pairwise(costs):
         print(
             f"  {short.minutes:g} -> {long.minutes:g} min, {long.minutes / short.minutes:g} x: open "
-            f"{long.open_s / short.open_s:.1f} x, calibrate {long.calibrate_s / short.calibrate_s:.1f} x, "
-            f"evaluate {long.evaluate_s / short.evaluate_s:.1f} x; memory beyond the import "
-            f"{beyond(long):.0f} MB = {beyond(long) / long.log_megabytes:.1f} x the log"
+            f"{long.open_cpu_s / short.open_cpu_s:.1f} x, "
+            f"calibrate {long.calibrate_cpu_s / short.calibrate_cpu_s:.1f} x, "
+            f"evaluate {long.evaluate_cpu_s / short.evaluate_cpu_s:.1f} x; memory "
+            f"{long.evaluate_megabytes - short.evaluate_megabytes:.0f} MB more for "
+            f"{long.log_megabytes - short.log_megabytes:.1f} MB more of log"
         )
-
-
-def beyond(cost: Cost) -> float:
-    """Return the peak memory less what importing takes [MB]."""
-    return cost.evaluate_megabytes - cost.import_megabytes
 
 
 def main() -> int:
