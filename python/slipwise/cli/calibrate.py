@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -59,7 +59,6 @@ def calibrate(
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.calibration import calibrate as learn
-    from slipwise.cli.document import calibration_part, head, log_part, verdict_part
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -84,22 +83,13 @@ def calibrate(
                 "model": calibration.model.save(folder / "model.yaml"),
                 "settings": write_settings(folder, chosen),
             }
-            if output is not None:
-                files["model"] = calibration.model.save(output)
             if not no_report:
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
                 _write_report(files["report"], log, calibration, chosen)
-            document = (
-                head("calibrate")
-                | {
-                    "exit_code": _exit_code(calibration),
-                    "verdict": verdict_part(calibration.verdict),
-                    "files": files,
-                }
-                | calibration_part(calibration)
-                | log_part(log, calibration.left_out)
-            )
+            if output is not None:
+                files["model"] = calibration.model.save(output)
+            document = _document(log, calibration, files)
             write_text_whole(folder / "result.json", to_json(document))
             out.document(document)
     _show(out, calibration, files | {"run folder": folder})
@@ -108,6 +98,19 @@ def calibrate(
 
 def _exit_code(calibration: Calibration) -> int:
     return 0 if calibration.verdict.good else 1
+
+
+def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dict[str, Any]:
+    from slipwise.cli.document import calibration_part, head, log_part, verdict_part
+
+    verdict = {"exit_code": _exit_code(calibration), "verdict": verdict_part(calibration.verdict)}
+    return (
+        head("calibrate")
+        | verdict
+        | {"files": files}
+        | calibration_part(calibration)
+        | log_part(log, calibration.left_out)
+    )
 
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
