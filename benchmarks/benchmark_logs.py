@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+
 from slipwise.logs import Inputs, Log, Poses, Run, open_log, save_log
 
 ROWS = 1_000_000

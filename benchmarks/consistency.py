@@ -16,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
 from slipwise import _core
 
 Floats = NDArray[np.float64]

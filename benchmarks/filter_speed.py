@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How long causal calibration of 10 parameters takes on a 10-minute, 20 Hz log: core, whole command, numpy, filterpy."""
+"""How long learning 10 parameters from a 10-minute, 20 Hz log takes: core, whole command, numpy, filterpy."""
 
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import subprocess
 import sys
@@ -57,7 +58,7 @@ class Job:
 
 
 def make_job(log: Log, length: float) -> Job:
-    """Cut the log into windows of `length` [s]; the noise is Gaussian, so nothing is gated or down-weighted."""
+    """Cut the log into windows of `length` [s]; the noise is Gaussian, so nothing is left out."""
     windows = collect_windows(prepare_drive(log, "wheel"), length, Settings().rules())
     model = _core.MotionModel(_core.named_basis(BASIS), False, False)
     settings = _core.IekfSettings()
@@ -99,8 +100,10 @@ def core_filter(job: Job) -> tuple[Floats, Floats]:
     estimate, track = job.prior, job.windows.drive[0].track
     for segment in job.windows.segments:
         path = _core.integrate_segment(job.model, estimate.mean, track, segment, _core.Integrator.Exact)
-        R = _core.slip_covariance(path, job.shape) + _core.pose_noise_covariance(segment.measured, job.shape)
-        estimate = _core.iekf_update(job.model, estimate, track, segment, R, job.settings).estimate
+        cov_z = _core.slip_covariance(path, job.shape) + _core.pose_noise_covariance(
+            segment.measured, job.shape
+        )
+        estimate = _core.iekf_update(job.model, estimate, track, segment, cov_z, job.settings).estimate
     return np.array(estimate.mean), np.array(estimate.covariance)
 
 
@@ -108,8 +111,8 @@ def plain_filter(job: Job) -> tuple[Floats, Floats]:
     """Learn all windows with the same filter in numpy."""
     mean, covariance = np.array(job.prior.mean), np.array(job.prior.covariance)
     for window in job.plain:
-        R = numpy_filter.window_noise(window, mean, NOISE)
-        mean, covariance = numpy_filter.iekf_update(mean, covariance, window, R, ITERATIONS)
+        cov_z = numpy_filter.window_noise(window, mean, NOISE)
+        mean, covariance = numpy_filter.iekf_update(mean, covariance, window, cov_z, ITERATIONS)
     return mean, covariance
 
 
@@ -117,8 +120,8 @@ def filterpy_pass(job: Job) -> tuple[Floats, Floats]:
     """Learn all windows with filterpy's filter and the measurement model in numpy."""
     ekf = filterpy_filter.make_filter(np.array(job.prior.mean), np.array(job.prior.covariance))
     for window in job.plain:
-        R = numpy_filter.window_noise(window, ekf.x, NOISE)
-        filterpy_filter.iekf_update(ekf, window, R, ITERATIONS)
+        cov_z = numpy_filter.window_noise(window, ekf.x, NOISE)
+        filterpy_filter.iekf_update(ekf, window, cov_z, ITERATIONS)
     return np.asarray(ekf.x), np.asarray(ekf.P)
 
 
@@ -158,17 +161,17 @@ def time_update(log: Log, repeats: int) -> list[Figure]:
     middle = len(job.plain) // 2
     segment, window, track = job.windows.segments[middle], job.plain[middle], job.windows.drive[0].track
     mean, covariance = np.array(job.prior.mean), np.array(job.prior.covariance)
-    R = numpy_filter.window_noise(window, mean, NOISE)
+    cov_z = numpy_filter.window_noise(window, mean, NOISE)
 
     def with_filterpy() -> None:
         ekf = filterpy_filter.make_filter(mean, covariance)
-        filterpy_filter.iekf_update(ekf, window, R, ITERATIONS)
+        filterpy_filter.iekf_update(ekf, window, cov_z, ITERATIONS)
 
     def with_numpy() -> None:
-        numpy_filter.iekf_update(mean, covariance, window, R, ITERATIONS)
+        numpy_filter.iekf_update(mean, covariance, window, cov_z, ITERATIONS)
 
     def with_core() -> None:
-        _core.iekf_update(job.model, job.prior, track, segment, R, job.settings)
+        _core.iekf_update(job.model, job.prior, track, segment, cov_z, job.settings)
 
     words = f"one update, {len(window.v)} steps, {ITERATIONS} iterations"
     core = best(with_core, 100 * repeats)
@@ -198,7 +201,7 @@ def time_command(log: Log, repeats: int) -> list[Figure]:
             ("slipwise calibrate, as by default (auto), no report", calibrate, None),
         )
         return [
-            Figure(f"whole command: {words}", best(lambda given=given: run_command(given), repeats), limit)
+            Figure(f"whole command: {words}", best(functools.partial(run_command, given), repeats), limit)
             for words, given, limit in rows
         ]
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
-from filterpy.kalman import ExtendedKalmanFilter
+from filterpy.kalman import ExtendedKalmanFilter  # type: ignore[import-untyped]
 from numpy_filter import Floats, Window, drive, jacobian_of
 
 
@@ -15,11 +15,12 @@ def make_filter(mean: Floats, covariance: Floats) -> ExtendedKalmanFilter:
     return ekf
 
 
-def iekf_update(ekf: ExtendedKalmanFilter, window: Window, R: Floats, iterations: int) -> None:
+def iekf_update(ekf: ExtendedKalmanFilter, window: Window, cov_z: Floats, iterations: int) -> None:
     """Update the filter with a window.
 
-    Filterpy's update has one linearisation; iterating means updating the same prior again with the measurement
-    model linearised at the last estimate. The covariance is that of the last estimate, as in the core.
+    Filterpy's update has one linearisation; iterating means updating the same prior again with the
+    measurement model linearised at the last estimate. The covariance is that of the last estimate, as in
+    the core.
     """
     prior, covariance, now = ekf.x.copy(), ekf.P.copy(), ekf.x.copy()
     for iteration in range(iterations + 1):
@@ -27,7 +28,9 @@ def iekf_update(ekf: ExtendedKalmanFilter, window: Window, R: Floats, iterations
         J = jacobian_of(path, window)
         tangent = path.end - J @ now
         ekf.x, ekf.P = prior.copy(), covariance.copy()
-        ekf.update(window.measured, lambda _, J=J: J, lambda x, J=J, tangent=tangent: tangent + J @ x, R=R)
+        ekf.update(
+            window.measured, lambda _, J=J: J, lambda x, J=J, tangent=tangent: tangent + J @ x, R=cov_z
+        )
         if iteration < iterations:
             now = np.asarray(ekf.x).copy()
     ekf.x = now

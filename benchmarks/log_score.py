@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What an evaluation said of one log with one input, and the mean over logs (geometric, relative to `none`)."""
+"""What an evaluation said of one log with one input, and geometric means over logs, relative to `none`."""
 
 from __future__ import annotations
 

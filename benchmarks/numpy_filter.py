@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The causal filter in plain numpy, to compare speed with: exact steps, exact Jacobian, IEKF in Joseph form.
 
-Vectorised over the steps of a window: headings are a cumulative sum, and the derivative of the last pose is a sum
-over steps. It computes what `_core.iekf_update` computes, for the basis odd-even-10 without lag, delay and offset.
+Vectorised over the steps of a window: headings are a cumulative sum, and the derivative of the last pose is
+a sum over steps. It computes what `_core.iekf_update` computes, for the basis odd-even-10 without lag, delay
+and offset. `cov_z` is the covariance of a window's measured pose, [3, 3].
 """
 
 from __future__ import annotations
@@ -16,7 +17,10 @@ Floats = NDArray[np.float64]
 
 LON, LAT, ANG = slice(0, 3), slice(3, 6), slice(6, 10)
 SMALL_TURN = 0.1  # rad; below it the arc functions are Taylor series
-TURN_RADIUS, STRAIGHT_RADIUS = 0.3, 5.0  # m: how turning counts as motion, and driving as turning (the core's)
+TURN_RADIUS, STRAIGHT_RADIUS = (
+    0.3,
+    5.0,
+)  # m: how turning counts as motion, and driving as turning (the core's)
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,28 +126,30 @@ def window_noise(window: Window, mean: Floats, noise: Noise) -> Floats:
     return slip_covariance(drive(window, mean), window, noise) + pose_covariance(window.measured, noise)
 
 
-def iekf_update(mean: Floats, P: Floats, window: Window, R: Floats, iterations: int) -> tuple[Floats, Floats]:
+def iekf_update(
+    mean: Floats, P: Floats, window: Window, cov_z: Floats, iterations: int
+) -> tuple[Floats, Floats]:
     """Return mean and covariance after a window: Gauss-Newton iterations, step-halving, Joseph form."""
-    information = np.linalg.inv(R)
+    information = np.linalg.inv(cov_z)
     dual, now = np.zeros(len(mean)), mean
     J, r = _linearised(window, now)
     cost = r @ information @ r
     for _ in range(iterations):
-        S = J @ P @ J.T + R
-        step = J.T @ np.linalg.solve(S, r - J @ (mean - now)) - dual
+        cov_r = J @ P @ J.T + cov_z
+        step = J.T @ np.linalg.solve(cov_r, r - J @ (mean - now)) - dual
         for halving in range(5):
             trial = dual + step / 2.0**halving
             away = P @ trial
-            J_trial, r_trial = _linearised(window, mean + away)
+            at_trial, r_trial = _linearised(window, mean + away)
             cost_trial = trial @ away + r_trial @ information @ r_trial
             if cost_trial <= cost * (1.0 + 1e-12) + 1e-9:
                 break
         else:
             break
-        dual, now, J, r, cost = trial, mean + away, J_trial, r_trial, cost_trial
-    K = np.linalg.solve(J @ P @ J.T + R, J @ P).T
+        dual, now, J, r, cost = trial, mean + away, at_trial, r_trial, cost_trial
+    K = np.linalg.solve(J @ P @ J.T + cov_z, J @ P).T
     keep = np.eye(len(mean)) - K @ J
-    posterior = keep @ P @ keep.T + K @ R @ K.T
+    posterior = keep @ P @ keep.T + K @ cov_z @ K.T
     return now, (posterior + posterior.T) / 2.0
 
 

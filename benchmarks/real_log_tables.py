@@ -32,7 +32,8 @@ def print_logs(scores: Sequence[LogScore]) -> None:
     for s in scores:
         none, auto = s.methods["none"], s.methods["auto"]
         print(
-            f"{s.log:{WIDTH}}{s.windows:5}{' ' if s.counts else '!'}{none.position:7.3f} {none.heading:8.3f}   "
+            f"{s.log:{WIDTH}}{s.windows:5}{' ' if s.counts else '!'}"
+            f"{none.position:7.3f} {none.heading:8.3f}   "
             f"{_interval(auto.position_ratio)}   {_interval(auto.heading_ratio)}   "
             f"{_best(s, 'position')} {_best(s, 'heading')}{auto.nis:6.2f} "
             + "".join(f"{100 * share:4.0f}" for share in auto.coverage)
@@ -62,7 +63,8 @@ def print_means(scores: Sequence[LogScore], target: Target) -> None:
         )
     position, heading = best_basis_mean(scores)
     print(
-        f"{'best of each log':16}      {position:8.3f} {heading:8.3f}   (the best fixed basis, chosen afterwards)"
+        f"{'best of each log':16}      {position:8.3f} {heading:8.3f}"
+        "   (the best fixed basis, chosen afterwards)"
     )
     auto = mean_score(scores, "auto")
     if auto is not None:
@@ -103,7 +105,8 @@ def print_comparison(comparisons: Sequence[Comparison], missing: Sequence[str]) 
 def print_window_differences(comparisons: Sequence[Comparison]) -> None:
     """Say where the reference scored other windows: there the plain model itself is not equally wrong."""
     print(
-        f"{'':{WIDTH}}         error of none, ours / its{'':10}relative to its own none, auto / its best basis"
+        f"{'':{WIDTH}}         error of none, ours / its{'':10}"
+        "relative to its own none, auto / its best basis"
     )
     for c in (c for c in comparisons if not c.same_windows):
         relative = [
@@ -118,7 +121,7 @@ def print_window_differences(comparisons: Sequence[Comparison]) -> None:
 
 def method_names(scores: Sequence[LogScore]) -> list[str]:
     """Return all methods, in the order of the evaluation that has most of them."""
-    return list(max((s.methods for s in scores), key=len, default={}))
+    return max((list(s.methods) for s in scores), key=len, default=[])
 
 
 def _interval(value: tuple[float, float, float]) -> str:

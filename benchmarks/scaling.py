@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cost against log length: time and peak memory of opening, calibrating and evaluating logs of 1 to 1000 minutes."""
+"""Cost against log length: time and peak memory of opening, learning and judging 1 to 1000 minutes."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ import tempfile
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
+from numpy.typing import NDArray
 from simulated_log import simulated_log
 
 import slipwise
@@ -65,7 +67,7 @@ def measure(path: Path, minutes: float) -> Cost:
 def peak_megabytes() -> float:
     """Return the largest resident memory of this process so far.
 
-    Linux's VmHWM starts anew with the program; ru_maxrss, the fallback, also counts the process that started it.
+    Linux's VmHWM starts anew with the program; ru_maxrss, the fallback, also counts its parent process.
     """
     status = Path("/proc/self/status")
     if status.exists():
@@ -84,7 +86,7 @@ def log_megabytes(log: Log) -> float:
     return size / 1e6
 
 
-def _arrays(series: Inputs | Poses) -> list[slipwise.logs.log.Floats]:
+def _arrays(series: Inputs | Poses) -> list[NDArray[Any]]:
     if isinstance(series, Inputs):
         return [series.t, series.v, series.vy, series.omega]
     optional = [array for array in series.optional().values() if array is not None]
@@ -103,8 +105,10 @@ def measure_apart(path: Path, minutes: float) -> Cost:
 def print_costs(costs: list[Cost]) -> None:
     """Print times, memory, and how both grow from one length to the next."""
     print("20 Hz, tidy CSV, wheel input; evaluate: " + ", ".join(METHODS) + " at 1, 2 and 5 s; wall time\n")
-    print(f"{'minutes':>8}{'rows':>10}{'open [s]':>10}{'calibrate':>11}{'evaluate':>10}{'us per row':>12}"
-          f"{'log [MB]':>10}{'peak [MB]: import':>19}{'open':>7}{'calibrate':>11}{'evaluate':>10}")  # fmt: skip
+    print(
+        " minutes      rows  open [s]  calibrate  evaluate  us per row"
+        "  log [MB]  peak [MB]: import   open  calibrate  evaluate"
+    )
     for c in costs:
         rows = c.minutes * 1200
         total = c.open_s + c.calibrate_s + c.evaluate_s
