@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
 
@@ -45,7 +46,7 @@ def simulated_run(drive: Drive) -> Run:
     """Simulate the drive step by step with the core's exact step."""
     rng = np.random.default_rng(drive.seed)
     t, v, omega = commands(drive, rng)
-    actual_v, actual_omega = _through_chain(v, drive), _through_chain(omega, drive)
+    (wheel_v, actual_v), (wheel_omega, actual_omega) = _through_chain(v, drive), _through_chain(omega, drive)
     spread = np.sqrt(np.array(drive.slip_psd) * STEP)
     alpha = np.array(drive.alpha, dtype=np.float64)
     pose, path = _core.Pose2(0.3, -0.2, 0.4), np.empty((len(t), 3))
@@ -61,7 +62,7 @@ def simulated_run(drive: Drive) -> Run:
     return Run(
         name=drive.name,
         commands=Inputs(t=t, v=v, vy=still, omega=omega),
-        wheels=Inputs(t=t, v=actual_v, vy=still, omega=actual_omega),
+        wheels=Inputs(t=t, v=wheel_v, vy=still, omega=wheel_omega),
         poses=poses_of(t + drive.late, path),
     )
 
@@ -136,16 +137,17 @@ def inputs_until(inputs: Inputs, t: float) -> Inputs:
     return Inputs(t=inputs.t[keep], v=inputs.v[keep], vy=inputs.vy[keep], omega=inputs.omega[keep])
 
 
-def _through_chain(u: Floats, drive: Drive) -> Floats:
-    """The command after a delay of whole steps and an exactly discretised first-order lag."""
+def _through_chain(u: Floats, drive: Drive) -> tuple[Floats, Floats]:
+    """The command after a delay of whole steps and a lag: at each stamp, and its mean until the next."""
     steps = round(drive.delay / STEP)
     delayed = np.concatenate([np.zeros(steps), u[: len(u) - steps]]) if steps else u
     if drive.lag == 0.0:
-        return delayed
-    decay, mean = np.exp(-STEP / drive.lag), np.empty_like(delayed)
+        return delayed, delayed
+    decay, output, mean = np.exp(-STEP / drive.lag), np.empty_like(delayed), np.empty_like(delayed)
     share = drive.lag * (1.0 - decay) / STEP  # of the start's value in the mean over a step
     now = 0.0
     for i, target in enumerate(delayed.tolist()):
+        output[i] = now
         mean[i] = target + (now - target) * share
         now = target + (now - target) * decay
-    return mean
+    return output, mean

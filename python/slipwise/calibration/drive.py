@@ -17,6 +17,8 @@ from slipwise.segments import RECENT, WindowRules, cut_windows, pose_intervals
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
+
 
 @dataclass(frozen=True, eq=False)
 class DriveRun:
@@ -81,11 +83,25 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
         inputs = run.commands if input_name == "command" else run.wheels
         if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
             continue
-        track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        track = _track(inputs, rolling=input_name == "wheel")
         drive.append(DriveRun(index, run, inputs, track, run.wheels if input_name == "command" else None))
     if not drive:
         raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
     return tuple(drive)
+
+
+def _track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
+    """Inputs for the core, which takes them for zero before the first one.
+
+    A robot has no commands before its first one, yet wheel speeds may begin while it drives: a clock offset
+    lets the first window look a little before them, where the first wheel speed is the best guess.
+    """
+    if not rolling:
+        return _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    columns = (inputs.t, inputs.v, inputs.vy, inputs.omega)
+    t, v, vy, omega = (np.concatenate((column[:1], column)) for column in columns)
+    t[0] -= LEAD_IN
+    return _core.InputTrack(t, v, vy, omega)
 
 
 def choose_input(log: Log) -> str:
