@@ -53,7 +53,7 @@ class RunResult:
 def commands(rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
     """Held random speeds and curvatures (the thesis's ranges) for the whole drive."""
     count = int(MINUTES * 60 / STEP)
-    t = np.arange(count) * STEP
+    t = np.arange(count, dtype=np.float64) * STEP
     held = rng.integers(20, 80, size=count)
     edges = np.minimum(np.cumsum(held), count)
     v, omega, begin = np.zeros(count), np.zeros(count), 0
