@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.errors import LogError
+from slipwise.errors import LogError, SettingsError
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
 from slipwise.segments import RECENT, WindowRules, cut_windows, pose_intervals
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+INPUT_NAMES = ("command", "wheel")
 LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
 
 
@@ -77,7 +78,12 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
 
     Raises:
         LogError: no run has such inputs, or no run has poses.
+        SettingsError: there is no such input.
     """
+    if input_name not in INPUT_NAMES:
+        raise SettingsError(
+            f"unknown input '{input_name}'", where="--input", advice=f"use {' or '.join(INPUT_NAMES)}"
+        )
     drive = []
     for index, run in enumerate(log.runs):
         inputs = run.commands if input_name == "command" else run.wheels

@@ -14,6 +14,7 @@ from slipwise.errors import SettingsError
 from slipwise.segments import WindowRules
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
 WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
@@ -56,9 +57,9 @@ class FilterTable(_Section):
 class NoiseTable(_Section):
     """Shape of the noise of slip rates and poses; its size is learned where `adapt` is true."""
 
-    psd_time: list[float] = Field(list(_NOISE.shape.psd_time), min_length=3, max_length=3)
-    psd_motion: list[float] = Field(list(_NOISE.shape.psd_motion), min_length=3, max_length=3)
-    fraction: list[float] = Field(list(_NOISE.shape.fraction), min_length=3, max_length=3)
+    psd_time: list[NotNegative] = Field(list(_NOISE.shape.psd_time), min_length=3, max_length=3)
+    psd_motion: list[NotNegative] = Field(list(_NOISE.shape.psd_motion), min_length=3, max_length=3)
+    fraction: list[NotNegative] = Field(list(_NOISE.shape.fraction), min_length=3, max_length=3)
     pose_std_xy: Positive = _NOISE.shape.pose_std_xy
     pose_std_yaw: Positive = _NOISE.shape.pose_std_yaw
     adapt: bool = _NOISE.adapt
@@ -137,6 +138,10 @@ class Settings(_Section):
 
     def _basis(self, name: str) -> _core.Basis:
         if name == "custom":
+            if not (self.terms.lon or self.terms.lat or self.terms.ang):
+                raise ValueError(
+                    'the custom basis has no terms; write some under [terms], such as lon = ["V"]'
+                )
             return _core.Basis("custom", self.terms.lon, self.terms.lat, self.terms.ang)
         return _core.Basis("none", [], [], []) if name == "none" else _core.named_basis(name)
 

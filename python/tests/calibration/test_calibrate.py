@@ -1,0 +1,204 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Known slip, lag, delay and clock offset are recovered; logs that teach nothing are refused with advice."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from sample_logs import (
+    Drive,
+    inputs_until,
+    kept,
+    poses_of,
+    simulated_log,
+    simulated_run,
+    steady_run,
+    with_poses,
+)
+
+from slipwise import _core
+from slipwise.calibration import Calibration, calibrate, make_settings
+from slipwise.errors import LogError, SettingsError
+from slipwise.logs import Log, Run, empty_poses
+
+TRUTHS = {
+    "edd-2": (-0.1, -0.4),
+    "full-linear-6": (-0.1, 0.02, 0.03, 0.05, 0.02, -0.3),
+    "drive-5": (-0.08, -0.1, -0.05, -0.3, 0.03),
+    "odd-even-10": (-0.08, -0.05, 0.02, 0.05, -0.04, 0.03, -0.3, 0.02, 0.05, 0.01),
+}
+
+
+@cache
+def recovered(basis: str, input_name: str, seed: int, *, batch: bool = False) -> Calibration:
+    drive = Drive(seconds=150.0, seed=seed, basis=_core.named_basis(basis), alpha=TRUTHS[basis])
+    drive = replace(drive, lag=0.4, delay=0.2) if input_name == "command" else replace(drive, late=0.15)
+    settings = make_settings({"basis": basis})
+    return calibrate(simulated_log(drive), input_name=input_name, settings=settings, batch=batch)
+
+
+def truth_of(basis: str, input_name: str) -> np.ndarray:
+    chain = tuple(np.log((0.4, 0.4, 0.2, 0.2))) if input_name == "command" else (0.15,)
+    return np.array(TRUTHS[basis] + chain)
+
+
+@pytest.mark.parametrize("batch", [False, True])
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+@pytest.mark.parametrize("basis", TRUTHS)
+def test_true_parameters_lie_within_three_sigma(basis: str, input_name: str, batch: bool) -> None:
+    for seed in (1, 2):
+        model = recovered(basis, input_name, seed, batch=batch).model
+        sigma = np.sqrt(np.diag(model.covariance))
+        assert (np.abs(model.mean - truth_of(basis, input_name)) < 3.0 * sigma).all()
+
+
+@pytest.mark.parametrize("basis", TRUTHS)
+def test_recovered_slip_is_also_close(basis: str) -> None:
+    model = recovered(basis, "wheel", 1).model
+    state = _core.SlipState(1.0, 0.4, 0.0, 0.0)
+    size = len(TRUTHS[basis])
+    learned, true = (
+        _core.slip_rate(model.motion.basis, p, state) for p in (model.mean[:size], np.array(TRUTHS[basis]))
+    )
+    assert learned == pytest.approx(true, abs=0.01)
+
+
+@pytest.mark.parametrize("late", [-0.1, 0.0, 0.05, 0.3])
+def test_clock_offset_is_recovered(late: float) -> None:
+    drive = Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"], late=late)
+    settings = make_settings({"basis": "edd-2"})
+    model = calibrate(simulated_log(drive), input_name="wheel", settings=settings).model
+    assert model.content.parameters[-1].name == "clock_offset"
+    assert model.mean[-1] == pytest.approx(late, abs=0.02)
+
+
+def test_clock_offset_is_recovered_from_short_runs_that_begin_in_motion() -> None:
+    drive = Drive(seconds=60.0, late=0.15, speeds=(0.8, 1.5))
+    whole = simulated_run(drive)
+    runs = tuple(part_of(whole, 5.0 * k, 5.0 * k + 4.5) for k in range(12))
+    model = calibrate(Log(runs=runs), input_name="wheel", settings=make_settings({"basis": "edd-2"})).model
+    assert model.mean[-1] == pytest.approx(0.15, abs=0.02)
+
+
+def part_of(run: Run, start: float, end: float) -> Run:
+    assert run.wheels is not None
+    until = inputs_until(run.wheels, end)
+    keep = until.t >= start
+    wheels = replace(until, t=until.t[keep], v=until.v[keep], vy=until.vy[keep], omega=until.omega[keep])
+    inside = (run.poses.t >= start) & (run.poses.t <= end)
+    return replace(run, commands=None, wheels=wheels, poses=kept(run.poses, inside))
+
+
+@pytest.mark.parametrize(("lag", "delay"), [(0.2, 0.1), (0.6, 0.3)])
+def test_lag_and_delay_are_recovered_from_commands(lag: float, delay: float) -> None:
+    log = simulated_log(Drive(seconds=120.0, lag=lag, delay=delay))
+    model = calibrate(log, input_name="command", settings=make_settings({"basis": "edd-2"})).model
+    lag_v, lag_omega, delay_v, delay_omega = np.exp(model.mean[-4:])
+    assert [lag_v, lag_omega] == pytest.approx([lag, lag], rel=0.15)
+    assert [delay_v, delay_omega] == pytest.approx([delay, delay], abs=0.03)
+
+
+def test_history_ends_where_the_model_is() -> None:
+    result = recovered("full-linear-6", "wheel", 1)
+    history, model = result.history, result.model
+    assert history is not None
+    assert history.names == tuple(p.name for p in model.content.parameters)
+    assert history.mean.shape == history.std.shape == (len(history.t), len(history.names))
+    assert history.mean[-1].tobytes() == model.mean.tobytes()
+    assert history.std[-1] == pytest.approx([p.std for p in model.content.parameters])
+    assert (np.diff(history.t) > 0.0).all()
+    assert model.content.provenance.learned_windows == len(history.t)
+
+
+def test_uncertainty_shrinks_with_more_driving() -> None:
+    history = recovered("full-linear-6", "wheel", 1).history
+    assert history is not None
+    assert (history.std[-1] < 0.5 * history.std[5]).all()
+
+
+def test_one_wild_pose_does_not_spoil_the_model() -> None:
+    drive = Drive(seconds=120.0, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"])
+    run = simulated_run(drive)
+    x = run.poses.x.copy()
+    x[::400] += 30.0
+    settings = make_settings({"basis": "edd-2"})
+    model = calibrate(
+        Log(runs=(with_poses(run, replace(run.poses, x=x)),)), input_name="wheel", settings=settings
+    ).model
+    assert model.mean[:2] == pytest.approx(TRUTHS["edd-2"], abs=0.03)
+
+
+def test_batch_fit_keeps_the_verdict_of_the_causal_pass() -> None:
+    causal, batch = (recovered("edd-2", "wheel", 1, batch=b) for b in (False, True))
+    assert batch.verdict == causal.verdict
+    assert batch.history is None
+    assert not np.array_equal(batch.model.mean, causal.model.mean)
+
+
+def test_never_moving_robot_is_said_with_advice() -> None:
+    with pytest.raises(LogError, match=r"the robot never moves in this log: .* stand still"):
+        calibrate(Log(runs=(steady_run(seconds=20.0, v=0.0),)))
+
+
+def test_never_moving_robot_is_said_though_a_pose_was_late() -> None:
+    run = steady_run(seconds=20.0, v=0.0)
+    gap = (run.poses.t < 5.0) | (run.poses.t > 7.0)
+    with pytest.raises(LogError, match="the robot never moves in this log"):
+        calibrate(Log(runs=(with_poses(run, kept(run.poses, gap)),)))
+
+
+def test_ten_rows_are_too_few_and_said_so() -> None:
+    run = steady_run(seconds=0.9)
+    short = with_poses(run, kept(run.poses, run.poses.t < 0.45))
+    with pytest.raises(LogError, match=r"no window to learn from: poses and inputs must overlap"):
+        calibrate(Log(runs=(short,)))
+
+
+def test_two_poses_only_are_too_few_and_said_so() -> None:
+    poses = poses_of(np.array([0.0, 0.1]), np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]]))
+    with pytest.raises(LogError, match="no window to learn from"):
+        calibrate(Log(runs=(with_poses(steady_run(), poses),)))
+
+
+def test_poses_only_before_the_first_command_are_said_so() -> None:
+    run = steady_run(seconds=10.0)
+    assert run.commands is not None
+    later = replace(run, commands=replace(run.commands, t=run.commands.t + 30.0), wheels=None)
+    with pytest.raises(LogError, match="the input is unknown"):
+        calibrate(Log(runs=(later,)))
+
+
+def test_log_without_poses_is_said_with_advice() -> None:
+    with pytest.raises(LogError, match=r"no two measured poses.*--pose-topic"):
+        calibrate(Log(runs=(with_poses(steady_run(), empty_poses()),)))
+
+
+def test_log_without_the_input_asked_for_is_said_with_advice() -> None:
+    log = Log(runs=(replace(steady_run(), wheels=None),))
+    with pytest.raises(LogError, match=r"the log has no wheel input.*use --input command"):
+        calibrate(log, input_name="wheel")
+    no_commands = Log(runs=(replace(steady_run(), commands=None),))
+    with pytest.raises(LogError, match=r"the log has no commands.*use --input wheel"):
+        calibrate(no_commands, input_name="command")
+
+
+def test_input_of_an_unknown_name_is_refused() -> None:
+    with pytest.raises(SettingsError, match=r"unknown input 'joystick'.*command or wheel"):
+        calibrate(Log(runs=(steady_run(),)), input_name="joystick")
+
+
+def test_runs_of_equal_names_stay_apart() -> None:
+    one, other = simulated_run(Drive(seconds=30.0)), simulated_run(Drive(seconds=30.0, seed=2))
+    history = calibrate(Log(runs=(one, other)), input_name="wheel").history
+    assert history is not None
+    assert sorted(set(history.run.tolist())) == [0, 1]
+
+
+def test_progress_goes_from_the_start_to_the_end() -> None:
+    shares: list[float] = []
+    calibrate(simulated_log(Drive(seconds=120.0)), input_name="wheel", progress=shares.append)
+    assert shares == sorted(shares)
+    assert 0.0 < shares[0] <= shares[-1] <= 1.0

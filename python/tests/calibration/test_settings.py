@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Settings are read from TOML, every key is known, and anything else is refused with the key named."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core
+from slipwise.calibration import Settings, calibrate, load_settings, make_settings
+from slipwise.errors import SettingsError
+from slipwise.segments import WindowRules
+
+EVERY_KEY = """
+basis = "custom"
+learn_clock_offset = false
+
+[terms]
+lon = ["V", "V*abs(w)"]
+lat = ["w"]
+ang = ["w", "V*w"]
+
+[window]
+length = 1.5
+unknown_after = 0.4
+late_factor = 3.0
+length_tolerance = 0.1
+still_speed = 0.05
+
+[prior]
+slip_fraction = 0.2
+clock_offset_std = 0.1
+lag = 0.5
+delay = 0.2
+log_std = 0.5
+
+[filter]
+iterations = 3
+tolerance = 1e-4
+halvings = 5
+huber = 2.5
+gate = 50.0
+
+[noise]
+psd_time = [1e-5, 1e-5, 1e-5]
+psd_motion = [2e-3, 2e-3, 2e-3]
+fraction = [0.04, 0.04, 0.04]
+pose_std_xy = 0.01
+pose_std_yaw = 0.005
+adapt = false
+
+[auto]
+bases = ["custom", "edd-2"]
+learning_rate = 0.7
+share = 0.01
+"""
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    path = tmp_path / "settings.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def key_paths(table: object, at: str = "") -> set[str]:
+    if not isinstance(table, dict):
+        return {at}
+    return {key for name, value in table.items() for key in key_paths(value, f"{at}.{name}".strip("."))}
+
+
+def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
+    settings = load_settings(written(tmp_path, EVERY_KEY))
+    assert key_paths(settings.model_dump(exclude_unset=True)) == key_paths(Settings().model_dump())
+    assert settings.rules() == WindowRules(0.4, 3.0, 0.1, 0.05)
+    assert settings.window_length("wheel") == settings.window_length("command") == 1.5
+    core = settings.filter_settings()
+    assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
+    assert (core.prior.clock_offset_std, core.prior.log_std) == (0.1, 0.5)
+    assert (core.iekf.iterations, core.iekf.halvings, core.iekf.huber, core.iekf.gate) == (3, 5, 2.5, 50.0)
+    assert core.iekf.tolerance == 1e-4
+    assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]
+    assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
+    assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
+    assert core.noise.adapt is False
+    average = settings.average_settings()
+    assert (average.learning_rate, average.share) == (0.7, 0.01)
+    (basis,) = settings.bases()
+    assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
+
+
+def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
+    settings = load_settings(written(tmp_path, EVERY_KEY))
+    model = calibrate(simulated_log(Drive(seconds=40.0)), input_name="wheel", settings=settings).model
+    names = [parameter.name for parameter in model.content.parameters]
+    assert names == ["lon.V", "lon.V*abs(w)", "lat.w", "ang.w", "ang.V*w"]
+
+
+def test_defaults_are_those_of_the_core() -> None:
+    settings, core = Settings(), _core.CausalFilterSettings()
+    ours = settings.filter_settings()
+    for table in ("prior", "iekf"):
+        one, other = getattr(ours, table), getattr(core, table)
+        names = [name for name in dir(one) if not name.startswith("_")]
+        assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
+    assert settings.average_settings().share == _core.ModelAverageSettings().share
+    assert settings.rules() == WindowRules()
+    assert load_settings_of_nothing() == settings
+
+
+def load_settings_of_nothing() -> Settings:
+    return make_settings({})
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("colour = 1", "colour: Extra inputs are not permitted"),
+        ("[filter]\nhubber = 2.0", r"filter\.hubber: Extra inputs"),
+        ("[filter]\niterations = 0", r"filter\.iterations: .*greater than or equal to 1"),
+        ("[filter]\nhuber = nan", r"filter\.huber"),
+        ("[prior]\nlag = -1.0", r"prior\.lag: .*greater than 0"),
+        ("[prior]\nlag = inf", r"prior\.lag"),
+        ("[noise]\npsd_time = [1.0]", r"noise\.psd_time"),
+        ("[noise]\npsd_motion = [-1.0, 0.0, 0.0]", r"noise\.psd_motion"),
+        ("[noise]\nfraction = [nan, 0.0, 0.0]", r"noise\.fraction"),
+        ("[auto]\nshare = 1.0", r"auto\.share"),
+        ("[auto]\nbases = []", r"auto\.bases"),
+        ("[window]\nlength = 0.0", r"window\.length"),
+        ("basis = 3", "basis: Input should be a valid string"),
+        ("basis", r"not a TOML file: .*write lines like basis = \"auto\""),
+        ("basis = 'a'\nbasis = 'b'", "not a TOML file"),
+    ],
+)
+def test_wrong_settings_are_refused_with_the_key_and_the_file(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(SettingsError, match=message) as caught:
+        load_settings(path)
+    assert caught.value.where == str(path)
+    assert caught.value.advice
+
+
+def test_file_that_is_no_text_or_missing_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SettingsError, match="not a TOML file"):
+        load_settings(tmp_path / "b.toml")
+    with pytest.raises(SettingsError, match=r"cannot read: No such file .*: check the path"):
+        load_settings(tmp_path / "none.toml")
+
+
+def test_unknown_basis_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(SettingsError, match=r"magic-7.*edd-2"):
+        make_settings({"basis": "magic-7"}).bases()
+    with pytest.raises(SettingsError, match="magic-7"):
+        make_settings({"auto": {"bases": ["edd-2", "magic-7"]}}).bases()
+
+
+@pytest.mark.parametrize("term", ["quux", "V*", "V^-1*", "__import__('os')", "V**2", "1", "", "V+w", "V^999"])
+def test_wrong_term_is_refused_with_its_text(term: str) -> None:
+    settings = make_settings({"basis": "custom", "terms": {"lon": [term]}})
+    with pytest.raises(SettingsError, match="term"):
+        settings.bases()
+
+
+def test_custom_basis_without_terms_is_refused() -> None:
+    with pytest.raises(SettingsError, match=r"custom.*\[terms\]"):
+        make_settings({"basis": "custom"}).bases()
+
+
+def test_third_partys_basis_is_learned_by_its_terms_alone() -> None:
+    """A robot that slips sideways as no shipped basis knows: the terms in the settings are enough."""
+    terms = {"lon": ["V"], "lat": ["V^2*w"], "ang": ["w", "V^2*w"]}
+    truth = _core.Basis("toy", terms["lon"], terms["lat"], terms["ang"])
+    alpha = (-0.1, 0.08, -0.3, 0.05)
+    log = simulated_log(Drive(seconds=120.0, basis=truth, alpha=alpha))
+    settings = make_settings({"basis": "custom", "terms": terms, "learn_clock_offset": False})
+    model = calibrate(log, input_name="wheel", settings=settings).model
+    sigma = np.sqrt(np.diag(model.covariance))
+    assert (np.abs(model.mean - alpha) < 3.0 * sigma).all()
+    assert (sigma < 0.1 * np.array([p.prior_std for p in model.content.parameters])).all()
+    averaged = make_settings({"terms": terms, "auto": {"bases": ["none", "edd-2", "custom"]}})
+    weights = calibrate(log, input_name="wheel", settings=averaged).model.content.weights
+    assert weights["custom"] > 0.9
