@@ -7,7 +7,7 @@ import contextlib
 import errno
 import hashlib
 import os
-import tempfile
+import secrets
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -17,6 +17,7 @@ _ADVICE = {
     errno.EACCES: "choose a folder you may write to",
     errno.EPERM: "choose a folder you may write to",
     errno.EROFS: "the file system is read-only, choose another folder",
+    errno.EFBIG: "the file would be larger than the system allows",
     errno.ENOSPC: "the disk is full, free some space or choose another folder",
     errno.EDQUOT: "your quota is used up, free some space or choose another folder",
     errno.EISDIR: "this is a folder, name a file",
@@ -48,14 +49,15 @@ def write_whole(path: Path, write: Callable[[Path], None]) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-        os.close(handle)
-        temporary = Path(name)
+        if path.exists() and not path.is_file():
+            raise OutputError("cannot write: this is a device or a pipe", where=str(path), advice="name a file")
+        # The name is ours before the file is there: whenever a signal comes, there is something to remove.
+        temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
         try:
+            temporary.touch(exist_ok=False)
             write(temporary)
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())
-            temporary.chmod(0o666 & ~_umask())
             temporary.replace(path)
         except BaseException:
             temporary.unlink(missing_ok=True)
@@ -80,8 +82,3 @@ def sha256_of(path: Path) -> str:
 def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -88,10 +88,9 @@ AverageState ModelAverage::state() const {
   const Eigen::Index size = model_.size();
   AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
                      Eigen::VectorXd::Zero(size),
-                     Eigen::VectorXd::Zero(size),
+                     variance_ratio(),
                      Eigen::Vector3d::Zero(),
                      weights_};
-  Eigen::VectorXd having = Eigen::VectorXd::Zero(size);
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const double weight = weights_[static_cast<Eigen::Index>(i)];
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
@@ -99,16 +98,30 @@ AverageState ModelAverage::state() const {
     state.estimate.mean += weight * mean;
     state.estimate.covariance(places_[i], places_[i]) += weight * filters_[i].estimate().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
-    const Eigen::VectorXd prior_std = filters_[i].prior_std();
-    const Eigen::VectorXd ratio = filters_[i].estimate().covariance.diagonal().cwiseQuotient(prior_std.cwiseAbs2());
-    state.prior_std(places_[i]) = prior_std;
-    state.variance_ratio(places_[i]) += weight * ratio;
-    having(places_[i]).array() += weight;
+    state.prior_std(places_[i]) = filters_[i].prior_std();
     state.noise_scale += weight * filters_[i].noise_scale();
   }
-  state.variance_ratio = state.variance_ratio.cwiseQuotient(having);
   state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
   return state;
+}
+
+/// Over the models that have the parameter: their variances and the spread of their means, against the prior's
+/// variance.
+Eigen::VectorXd ModelAverage::variance_ratio() const {
+  Eigen::VectorXd having = Eigen::VectorXd::Zero(model_.size());
+  Eigen::VectorXd mean = having;
+  Eigen::VectorXd square = having;
+  Eigen::VectorXd prior = having;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const double weight = weights_[static_cast<Eigen::Index>(i)];
+    const Estimate& estimate = filters_[i].estimate();
+    having(places_[i]).array() += weight;
+    mean(places_[i]) += weight * estimate.mean;
+    square(places_[i]) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());
+    prior(places_[i]) = filters_[i].prior_std().cwiseAbs2();
+  }
+  const Eigen::VectorXd variance = square.cwiseQuotient(having) - mean.cwiseQuotient(having).cwiseAbs2();
+  return variance.cwiseQuotient(prior);
 }
 
 }  // namespace slipwise

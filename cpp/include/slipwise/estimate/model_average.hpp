@@ -20,7 +20,7 @@ struct ModelAverageSettings {
 struct AverageState {
   Estimate estimate;
   Eigen::VectorXd prior_std;
-  /// Posterior / prior variance per parameter, averaged over the models that have it; 1: nothing learned.
+  /// Posterior / prior variance per parameter over the models that have it; 1: nothing learned, more: they disagree.
   Eigen::VectorXd variance_ratio;
   Eigen::Vector3d noise_scale;
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
@@ -42,6 +42,7 @@ class ModelAverage {
   ReferenceSpeeds reference_speeds() const;
 
  private:
+  Eigen::VectorXd variance_ratio() const;
   void see_speeds(const InputTrack& inputs, const Segment& segment);
   void weigh(const Eigen::VectorXd& log_scores);
 
