@@ -4,82 +4,96 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 CLEARLY = 1.1  # a rival counts as better where its mean error is this many times smaller
+LEAST_COVERAGE = 0.8  # of the 90 % ellipsoid, on logs with at least this many held-out windows:
+FEWEST_WINDOWS = 20
 
 
-def losses(folder: Path) -> list[str]:
-    """Return one sentence per kind of loss found in the raw figures of a report's folder."""
-    sentences = []
+@dataclass(frozen=True)
+class Loss:
+    """One kind of loss, and where it occurs."""
+
+    what: str
+    places: tuple[str, ...]
+
+
+def losses(folder: Path) -> list[Loss]:
+    """Return the losses found in the raw figures of a report's folder."""
+    found = []
     for name, find in (("real_logs", _on_real_logs), ("filter_speed", _missed_limits)):
         path = folder / f"{name}.json"
         if path.exists():
-            sentences += find(json.loads(path.read_text(encoding="utf-8")))
-    return sentences
+            found += find(json.loads(path.read_text(encoding="utf-8")))
+    return [loss for loss in found if loss.places]
 
 
-def _on_real_logs(content: dict[str, Any]) -> list[str]:
-    sentences = []
-    for error in ("position", "heading"):
-        worse_than_plain, beaten = [], []
-        for score in content["scores"]:
-            where = f"{score['log']} ({score['input']})"
-            auto = score["methods"]["auto"]
-            value = auto[f"{error}_ratio"][0]
-            if value > 1.0:
-                worse_than_plain.append(f"{where}: {value:.2f}")
-            rivals = {n: m for n, m in score["methods"].items() if m["causal"] and n not in ("auto", "none")}
-            best = min(rivals, key=lambda n: rivals[n][error])
-            if auto[error] > CLEARLY * rivals[best][error]:
-                beaten.append(f"{where}: {best}, {auto[error] / rivals[best][error]:.2f} times smaller")
-        if worse_than_plain:
-            sentences.append(
-                f"`auto` is worse than the plain model in {error} on {_listed(worse_than_plain)}."
-            )
-        if beaten:
-            sentences.append(
-                f"A fixed method, known only afterwards, has a clearly smaller {error} error than `auto` on "
-                f"{_listed(beaten)}."
-            )
-    return [*sentences, *_beside_reference(content["reference"]), *_overconfident(content["scores"])]
-
-
-def _beside_reference(comparisons: list[dict[str, Any]]) -> list[str]:
-    sentences = []
+def _on_real_logs(content: dict[str, Any]) -> list[Loss]:
+    found = []
     for k, error in enumerate(("position", "heading")):
-        worse = []
-        for c in comparisons:
-            ours, theirs = c["auto"][k], c["reference_best"][k]
-            if ours > CLEARLY * theirs:
-                plain = f"of the plain model's {c['none'][k]:.3f} against {c['reference_none'][k]:.3f}"
-                worse.append(f"{c['log']} ({c['input']}): {ours:.3f} against {theirs:.3f}, {plain}")
-        if worse:
-            sentences.append(
-                f"The reference's best basis of each log, chosen afterwards, has a clearly smaller {error} "
-                f"error than `auto` on {_listed(worse)}."
-            )
-    return sentences
+        found += [
+            _worse_than_plain(content["scores"], error),
+            _beaten(content["scores"], error),
+            _beside_reference(content["reference"], k, error),
+        ]
+    return [*found, _overconfident(content["scores"])]
 
 
-def _overconfident(scores: list[dict[str, Any]]) -> list[str]:
-    wrong = [
-        f"{s['log']} ({s['input']}): {100 * s['methods']['auto']['coverage'][1]:.0f} %"
-        for s in scores
-        if s["windows"] >= 20 and s["methods"]["auto"]["coverage"][1] < 0.8
+def _worse_than_plain(scores: list[dict[str, Any]], error: str) -> Loss:
+    ratios = {_where(s): s["methods"]["auto"][f"{error}_ratio"] for s in scores}
+    places = [
+        f"{where}: {value:.3f} times its error [{low:.2f}, {high:.2f}]"
+        for where, (value, low, high) in ratios.items()
+        if value > 1.0
     ]
-    return [f"The 90 % ellipsoid holds less than 80 % of the poses on {_listed(wrong)}."] if wrong else []
+    return Loss(f"`auto` is worse than the plain model in {error}", tuple(places))
 
 
-def _missed_limits(figures: list[dict[str, Any]]) -> list[str]:
-    missed = [
+def _beaten(scores: list[dict[str, Any]], error: str) -> Loss:
+    places = []
+    for score in scores:
+        auto = score["methods"]["auto"][error]
+        rivals = {
+            n: m[error] for n, m in score["methods"].items() if m["causal"] and n not in ("auto", "none")
+        }
+        best = min(rivals, key=rivals.__getitem__)
+        if auto > CLEARLY * rivals[best]:
+            places.append(
+                f"{_where(score)}: {best}, {auto / rivals[best]:.2f} times smaller ({score['windows']} windows)"
+            )
+    return Loss(f"A fixed method, known only afterwards, has a clearly smaller {error} error", tuple(places))
+
+
+def _beside_reference(comparisons: list[dict[str, Any]], k: int, error: str) -> Loss:
+    places = [
+        f"{_where(c)}: {c['auto'][k]:.3f} against {c['reference_best'][k]:.3f}, where the plain model misses by "
+        f"{c['none'][k]:.3f} in our windows and {c['reference_none'][k]:.3f} in the reference's"
+        for c in comparisons
+        if c["auto"][k] > CLEARLY * c["reference_best"][k]
+    ]
+    what = f"The reference's best basis of each log, chosen afterwards, has a clearly smaller {error} error"
+    return Loss(what, tuple(places))
+
+
+def _overconfident(scores: list[dict[str, Any]]) -> Loss:
+    shares = {
+        _where(s): s["methods"]["auto"]["coverage"][1] for s in scores if s["windows"] >= FEWEST_WINDOWS
+    }
+    places = [f"{where}: {100 * share:.0f} %" for where, share in shares.items() if share < LEAST_COVERAGE]
+    return Loss("The 90 % ellipsoid of `auto` holds far fewer of the poses", tuple(places))
+
+
+def _missed_limits(figures: list[dict[str, Any]]) -> list[Loss]:
+    places = [
         f"{f['name']}: {f['milliseconds']:.3g} ms, limit {f['limit']:.3g} ms"
         for f in figures
         if f["limit"] is not None and f["milliseconds"] > f["limit"]
     ]
-    return [f"A limit of time is missed: {'; '.join(missed)}."] if missed else []
+    return [Loss("A limit of time is missed", tuple(places))]
 
 
-def _listed(items: list[str]) -> str:
-    return f"{len(items)} log{'s' if len(items) > 1 else ''}: " + "; ".join(items)
+def _where(figures: dict[str, Any]) -> str:
+    return f"{figures['log']} ({figures['input']})"

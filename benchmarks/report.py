@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from losses import losses
+from losses import Loss, losses
 from provenance import Provenance
 
 from slipwise.files import write_text_whole
@@ -18,9 +18,9 @@ NOT_MEASURED = (
     "Energy, and the behaviour under real-time scheduling. Times are the best or the median of several runs.",
     "Memory of the C++ core apart from Python's; peak memory includes the log's file while it is mapped.",
     "Reading bags at full length: the longest logs are tidy CSV.",
-    "Robots on slopes: no real log has a slope large enough to learn the gravity terms.",
+    "Slopes: no log is judged apart for the gravity terms.",
     "Rivals other than the named bases, the vendor's multiplier, the static fit, numpy and filterpy.",
-    "Terrain that changes often within a log; the real logs were each recorded on one kind of ground.",
+    "Ground that changes within a log, but for robotino/table_gray.",
 )
 
 
@@ -49,7 +49,7 @@ def write_report(
     lines = [f"# Benchmark report, {folder.name}", "", *_machine_table(machine, loads), ""]
     for section in sections:
         lines += _section(section)
-    lines += ["## Where slipwise loses", "", *_bullets(losses(folder) or ["Nowhere in these figures."]), ""]
+    lines += ["## Where slipwise loses", "", *_losses(losses(folder)), ""]
     lines += ["## What was not measured", "", *_bullets(NOT_MEASURED)]
     path = folder / "REPORT.md"
     write_text_whole(path, "\n".join(lines) + "\n")
@@ -85,6 +85,14 @@ def _section(section: Section) -> list[str]:
         section.output.strip("\n"),
         "```",
         "",
+    ]
+
+
+def _losses(found: Sequence[Loss]) -> list[str]:
+    if not found:
+        return ["Nowhere in these figures."]
+    return [
+        line for loss in found for line in (f"- {loss.what}:", *(f"  - {place}" for place in loss.places))
     ]
 
 
