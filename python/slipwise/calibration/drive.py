@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
 from slipwise.segments import RECENT, WindowRules, cut_windows, pose_intervals
 
@@ -52,6 +53,15 @@ class WindowSet:
         """Return the inputs of window i."""
         run: DriveRun = self.drive[int(self.position[i])]
         return run.track
+
+    def distances(self) -> Floats:
+        """Return how far the robot was driven in each window, by its inputs, [N] m."""
+        distances = np.empty(len(self))
+        for k, run in enumerate(self.drive):
+            at = self.position == k
+            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy))
+            distances[at] = driven.between(self.start[at], self.end[at])
+        return distances
 
     def count_until(self, position: Ints, time: Floats) -> Ints:
         """Return how many windows had ended by `time` of run `position`, [M] each.

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
-from slipwise.calibration.drive import choose_input, collect_windows, prepare_drive
+from slipwise.calibration.drive import WindowSet, choose_input, collect_windows, prepare_drive
 from slipwise.calibration.forecast import forecast_all
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
@@ -66,7 +66,7 @@ def evaluate(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
         methods=tuple(methods),
-        scores=_scores(predictions),
+        scores=_scores(predictions, contest.targets),
         predictions=tuple(predictions),
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
@@ -118,21 +118,21 @@ def _learned_from(log: Log, model: Model | None) -> bool:
     return any(source.sha256 in hashes for source in log.sources)
 
 
-def _scores(predictions: Sequence[Predictions]) -> tuple[Score, ...]:
+def _scores(predictions: Sequence[Predictions], sets: Sequence[WindowSet]) -> tuple[Score, ...]:
     scores = []
-    for horizon in sorted({p.horizon for p in predictions}):
-        group = [p for p in predictions if p.horizon == horizon]
-        scores += [_score(p, group) for p in group]
+    for targets in sets:
+        group = [p for p in predictions if p.horizon == targets.length]
+        distance = float(targets.distances()[held_out_half(len(targets))].mean())
+        scores += [_score(p, group, distance) for p in group]
     return tuple(scores)
 
 
-def _score(predictions: Predictions, group: Sequence[Predictions]) -> Score:
+def _score(predictions: Predictions, group: Sequence[Predictions], distance: float) -> Score:
     half = held_out_half(len(predictions))
     position, heading = predictions.position_error[half], predictions.heading_error[half]
     plain = next((p for p in group if p.method == "none"), None)
     undefined = (float("nan"),) * 3
     nis = predictions.nis[half]
-    distance = np.hypot(predictions.measured[half, 0], predictions.measured[half, 1]).mean()
     return Score(
         method=predictions.method,
         causal=predictions.causal,

@@ -180,5 +180,15 @@ def test_perfect_drive_without_any_error_has_no_ratio() -> None:
     assert isinstance(score, Score)
 
 
+def test_percent_of_distance_is_that_of_the_path_driven_and_not_of_the_chord() -> None:
+    """A robot on a circle that it closes every 5 s: the chord is nothing, the path 5 m."""
+    run = steady_run(seconds=40.0, v=1.0, omega=2.0 * np.pi / 5.0)
+    rng = np.random.default_rng(0)
+    poses = replace(run.poses, x=run.poses.x + 0.05 * rng.standard_normal(len(run.poses)))
+    options = EvaluationOptions(methods=("none",), horizons=(5.0,))
+    score = evaluate(Log(runs=(replace(run, poses=poses),)), options=options).score("none", 5.0)
+    assert score.percent_of_distance == pytest.approx(100.0 * score.position.mean / 5.0)
+
+
 def test_second_half_is_scored_and_the_odd_window_belongs_to_it() -> None:
     assert [held_out_half(n) for n in (0, 1, 2, 7)] == [slice(0, 0), slice(0, 1), slice(1, 2), slice(3, 7)]
