@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+
 import slipwise as sw
 from slipwise.simulation import Scenario, simulate
 

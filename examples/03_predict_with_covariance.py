@@ -12,6 +12,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+
 import slipwise as sw
 from slipwise.simulation import Scenario, simulate
 

@@ -9,11 +9,12 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
-import slipwise as sw
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
+
+import slipwise as sw
 from slipwise.logs import Inputs, Log, Poses
 from slipwise.simulation import Scenario, simulate
 

@@ -92,9 +92,9 @@ void bind_results(nb::module_& m) {
       .def_ro("weakest_ratio", &Observability::weakest_ratio);
 }
 
-BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior, const std::vector<const InputTrack*>& inputs,
-                            const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise,
-                            const BatchSettings& settings) {
+BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
+                            const std::vector<const InputTrack*>& inputs, const std::vector<Segment>& segments,
+                            const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
   if (inputs.size() != segments.size() || noise.size() != segments.size()) {
     throw std::invalid_argument("a batch fit needs inputs and noise for every segment");
   }
@@ -117,7 +117,8 @@ void bind_estimate(nb::module_& m) {
       [](const MotionModel& model, double v, double omega, const PriorSettings& settings) {
         return prior_estimate(model, {v, omega}, settings);
       },
-      "model"_a, "v"_a, "omega"_a, "settings"_a, "The belief before any data, at reference speeds v [m/s], omega [rad/s].");
+      "model"_a, "v"_a, "omega"_a, "settings"_a,
+      "The belief before any data, at reference speeds v [m/s], omega [rad/s].");
   m.def(
       "prediction_covariance",
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,

@@ -29,8 +29,8 @@ void bind_segment(nb::module_& m) {
   nb::class_<Segment>(m, "Segment", "Two measured poses of one drive.")
       .def(
           "__init__",
-          [](Segment* self, double start, double end, const Pose2& measured, std::optional<BodyTwist> initial, double gx,
-             double gy) { new (self) Segment{start, end, measured, initial, gx, gy}; },
+          [](Segment* self, double start, double end, const Pose2& measured, std::optional<BodyTwist> initial,
+             double gx, double gy) { new (self) Segment{start, end, measured, initial, gx, gy}; },
           "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
@@ -39,7 +39,8 @@ void bind_segment(nb::module_& m) {
   nb::class_<SegmentPath>(m, "SegmentPath", "The robot's path seen from its start.")
       .def_prop_ro("times",
                    [](const SegmentPath& p) -> Eigen::VectorXd {
-                     return Eigen::Map<const Eigen::VectorXd>(p.times.data(), static_cast<Eigen::Index>(p.times.size()));
+                     return Eigen::Map<const Eigen::VectorXd>(p.times.data(),
+                                                              static_cast<Eigen::Index>(p.times.size()));
                    })
       .def_prop_ro("poses", [](const SegmentPath& p) { return pose_matrix(p.poses); });
   nb::class_<SegmentLinearization>(m, "SegmentLinearization", "A path and the derivative of its last pose.")
@@ -66,9 +67,8 @@ void bind_segment(nb::module_& m) {
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a, "integrator"_a);
   m.def(
       "linearize_segment",
-      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs, const Segment& segment) {
-        return linearize_segment(model, parameters, inputs, segment);
-      },
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs,
+         const Segment& segment) { return linearize_segment(model, parameters, inputs, segment); },
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
   m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);
   m.def("pose_noise_covariance", &pose_noise_covariance, "measured"_a, "noise"_a);

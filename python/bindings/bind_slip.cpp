@@ -42,9 +42,8 @@ void bind_slip(nb::module_& m) {
       .def_prop_ro("lat", [](const Basis& b) { return texts(b, Channel::Lat); })
       .def_prop_ro("ang", [](const Basis& b) { return texts(b, Channel::Ang); })
       .def(
-          "features",
-          [](const Basis& b, const SlipState& state) { return b.linearize_features(state).value; }, "state"_a,
-          "Feature of every parameter at one state, [parameters].");
+          "features", [](const Basis& b, const SlipState& state) { return b.linearize_features(state).value; },
+          "state"_a, "Feature of every parameter at one state, [parameters].");
   m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
   m.def("basis_names", &basis_names, "Names of all bases that ship.");
   m.def(

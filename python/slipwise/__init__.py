@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
 """slipwise learns a ground robot's motion model while the robot drives."""
 
-from importlib.metadata import version
+from __future__ import annotations
 
-from slipwise.calibration import Calibration, Settings, load_settings, make_settings
-from slipwise.calibration import calibrate as _calibrate
-from slipwise.errors import SlipwiseError
-from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
-from slipwise.logs import Log, LogOptions, open_log, save_log
-from slipwise.models import Model, load_model
-from slipwise.prediction import Path, predict
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-__version__ = version("slipwise")
+if TYPE_CHECKING:
+    from slipwise.calibration import Calibration, Settings, load_settings, make_settings
+    from slipwise.errors import SlipwiseError
+    from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
+    from slipwise.evaluation.result import Evaluation
+    from slipwise.logs import Log, LogOptions, open_log, save_log
+    from slipwise.models import Model, load_model
+    from slipwise.prediction import Path, predict
 
 __all__ = [
     "Calibration",
@@ -33,9 +35,24 @@ __all__ = [
     "save_log",
 ]
 
+#: Where each public name lives. It is imported at its first use, so that the command line starts at once.
+_HOMES = {
+    "slipwise.calibration": ("Calibration", "Settings", "load_settings", "make_settings"),
+    "slipwise.errors": ("SlipwiseError",),
+    "slipwise.evaluation": ("Evaluation", "EvaluationOptions", "evaluate"),
+    "slipwise.logs": ("Log", "LogOptions", "open_log", "save_log"),
+    "slipwise.models": ("Model", "load_model"),
+    "slipwise.prediction": ("Path", "predict"),
+}
+
 
 def calibrate(
-    log: Log, *, basis: str | None = None, input_name: str | None = None, settings: Settings | None = None, batch: bool = False
+    log: Log,
+    *,
+    basis: str | None = None,
+    input_name: str | None = None,
+    settings: Settings | None = None,
+    batch: bool = False,
 ) -> Calibration:
     """Learn the motion model of the robot in `log`; see `slipwise.calibration.calibrate`.
 
@@ -50,7 +67,23 @@ def calibrate(
         LogError: the log has no such input, no poses, or no window to learn from.
         SettingsError: the basis is unknown.
     """
-    chosen = settings or Settings()
+    from slipwise import calibration
+
+    chosen = settings or calibration.Settings()
     if basis is not None:
         chosen = chosen.model_copy(update={"basis": basis})
-    return _calibrate(log, input_name=input_name, settings=chosen, batch=batch)
+    return calibration.calibrate(log, input_name=input_name, settings=chosen, batch=batch)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name, or the version, at its first use (PEP 562)."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("slipwise")
+    for home, names in _HOMES.items():
+        if name in names:
+            return getattr(import_module(home), name)
+    raise AttributeError(f"module 'slipwise' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__, "__version__"]

@@ -50,7 +50,9 @@ def write_whole(path: Path, write: Callable[[Path], None]) -> None:
         if path.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
         if path.exists() and not path.is_file():
-            raise OutputError("cannot write: this is a device or a pipe", where=str(path), advice="name a file")
+            raise OutputError(
+                "cannot write: this is a device or a pipe", where=str(path), advice="name a file"
+            )
         # The name is ours before the file is there: whenever a signal comes, there is something to remove.
         temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
         try:
@@ -81,4 +83,3 @@ def sha256_of(path: Path) -> str:
 
 def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
-

@@ -2,6 +2,7 @@
 """An error says on one line what is wrong, where, and what to do."""
 
 import pytest
+
 from slipwise.errors import LogError, ModelError, OutputError, SettingsError, SlipwiseError
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
 from slipwise.errors import OutputError
 from slipwise.files import sha256_of, write_text_whole, write_whole
 

@@ -37,7 +37,13 @@ def write_predictions(path: Path, evaluation: Evaluation) -> None:
             "no method asked for predicts from the past alone", where=str(path), advice="add one to --methods"
         )
     table = pa.table({name: _column(evaluation, causal, name) for name in COLUMNS})
-    write_whole(path, lambda temporary: pyarrow.csv.write_csv(table, temporary))
+
+    def write(temporary: Path) -> None:
+        with temporary.open("wb") as file:
+            file.write((",".join(COLUMNS) + "\n").encode())  # pyarrow would put the names in quotes
+            pyarrow.csv.write_csv(table, file, pyarrow.csv.WriteOptions(include_header=False))
+
+    write_whole(path, write)
 
 
 def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: str) -> np.ndarray:

@@ -6,9 +6,9 @@ import shlex
 from pathlib import Path
 
 import pytest
-import slipwise as sw
-
 from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
+
+import slipwise as sw
 
 WITH_PYTHON = [page for page in PAGES if blocks(page, "python")]
 COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
@@ -62,6 +62,7 @@ def command_lines() -> list[tuple[str, str]]:
 @pytest.mark.parametrize(("page", "line"), command_lines())
 def test_a_command_line_is_understood(page: str, line: str) -> None:
     import typer
+
     from slipwise.cli.main import app
 
     name, *arguments = shlex.split(line, comments=True)[1:]

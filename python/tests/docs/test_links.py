@@ -6,7 +6,6 @@ import unicodedata
 from pathlib import Path
 
 import pytest
-
 from python.tests.docs.pages import PAGES, ROOT, name_of, prose
 
 LINK = re.compile(r"\]\(([^)\s]+)\)")

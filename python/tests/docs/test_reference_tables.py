@@ -5,6 +5,8 @@ import re
 import tomllib
 from typing import Any
 
+from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
+
 from slipwise import _core
 from slipwise.calibration import forecast, statistics, verdict
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
@@ -12,8 +14,6 @@ from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
 from slipwise.logs.tidy_columns import NUMERIC, TEXT
 from slipwise.models.schema import ModelFile
-
-from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 DOCS = ROOT / "docs"
 

@@ -15,6 +15,7 @@ from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
 from slipwise.errors import LogError
 from slipwise.logs import Log, LogOptions, open_log
 from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from slipwise.errors import LogError
 from slipwise.logs import Inputs, Poses, empty_poses
 

@@ -3,6 +3,7 @@
 
 import numpy as np
 import pytest
+
 from slipwise.logs import Inputs
 from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_track
 

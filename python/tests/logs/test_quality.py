@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from slipwise.errors import LogError
 from slipwise.logs import Inputs, Log, Poses, Run
 from slipwise.logs.quality import checked

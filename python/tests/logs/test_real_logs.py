@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from slipwise.logs import open_log
 
 SOUND = ("warthog", "create", "race_car", "robotino", "f1tenth", "tricycle", "drive_test")

@@ -4,6 +4,7 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+
 from slipwise.logs.rotation import angles_of, product, quaternions_of, rotate, unit_quaternions
 
 ANGLE = st.floats(-3.1, 3.1)

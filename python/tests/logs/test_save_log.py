@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from slipwise.errors import LogError, OutputError
 from slipwise.logs import Inputs, Log, Poses, Run, empty_poses, open_log, save_log
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs import Log, LogOptions, open_log
 

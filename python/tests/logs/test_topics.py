@@ -2,6 +2,7 @@
 """Tests of which topic is guessed for which role."""
 
 import pytest
+
 from slipwise.errors import LogError
 from slipwise.logs import LogOptions
 from slipwise.logs.messages import (

@@ -14,6 +14,7 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sample_logs import Drive, simulated_log
+
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+
 from slipwise.errors import ModelError, SettingsError
 from slipwise.models.yaml_file import MAX_BYTES, read_yaml
 

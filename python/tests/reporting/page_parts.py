@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from reporting.synthetic_results import Results
+
 from slipwise.reporting import SECTIONS, Contents, Section
 from slipwise.reporting.page import page
 

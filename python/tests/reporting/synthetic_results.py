@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+
 from slipwise import _core
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.evaluation.result import ErrorSummary, Evaluation, Predictions, Score

@@ -11,6 +11,7 @@ import pytest
 from reporting.browser import Browser, find_browser
 from reporting.page_parts import figures_of
 from reporting.synthetic_results import make_results
+
 from slipwise.reporting import write_report
 
 STATE = "document.documentElement.dataset"

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from reporting.page_parts import contents_of
 from reporting.synthetic_results import make_results
+
 from slipwise.reporting.chosen_windows import MOST_WINDOWS, choose_windows
 
 

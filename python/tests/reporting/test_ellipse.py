@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from slipwise.reporting.ellipse import RADIUS_95, ellipse
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 
 import numpy as np
+
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import pytest
+
 from slipwise.reporting.markup import escape, legend, number, table
 
 

@@ -11,6 +11,7 @@ import plotly.graph_objects as go
 import pytest
 from reporting.page_parts import figures_of, headings_of, html_of
 from reporting.synthetic_results import Results, make_results
+
 from slipwise.errors import OutputError
 from slipwise.logs.log import LeftOut, Log
 from slipwise.reporting import SECTIONS, Contents, Figure, write_report

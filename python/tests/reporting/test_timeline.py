@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 from reporting.synthetic_results import make_results
+
 from slipwise.logs.log import Log, Run, empty_poses
 from slipwise.reporting.timeline import Timeline, with_breaks
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from reporting.page_parts import contents_of
 from reporting.synthetic_results import make_results, without_history
+
 from slipwise.logs.log import Log
 from slipwise.reporting.chosen_windows import choose_windows
 from slipwise.reporting.window_paths import window_paths

@@ -5,7 +5,6 @@ import subprocess
 from pathlib import Path
 
 import pytest
-
 from tools.check_files import MAX_LINES, check, faults_of
 
 PYTHON = "# SPDX-License-Identifier: Apache-2.0\n"

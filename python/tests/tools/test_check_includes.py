@@ -4,7 +4,6 @@
 from pathlib import Path
 
 import pytest
-
 from tools.check_includes import LAYERS, ROOT, check, cycles
 
 

@@ -5,7 +5,6 @@ import re
 import tomllib
 
 import pytest
-
 from tools.requirements import ROOT, requirements
 
 PROJECT = {

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import Results, make_results, with_model, without_history
+
 from slipwise.models.schema import Parameter, Slip
 from slipwise.reporting.sections.convergence import ConvergenceSection
 

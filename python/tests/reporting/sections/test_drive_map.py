@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from reporting.page_parts import contents_of, figures_of
 from reporting.synthetic_results import make_results
+
 from slipwise.logs.log import Log, empty_poses
 from slipwise.reporting.sections.drive_map import DriveMapSection
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from reporting.page_parts import contents_of, text_of
 from reporting.synthetic_results import make_results
+
 from slipwise.reporting.sections.left_out import LeftOutSection
 
 

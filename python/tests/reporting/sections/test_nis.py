@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import make_results, without_history
+
 from slipwise.calibration.statistics import nis_band
 from slipwise.reporting.sections.nis import NisSection
 

@@ -8,6 +8,7 @@ from html import unescape
 
 from reporting.page_parts import contents_of, text_of
 from reporting.synthetic_results import make_results
+
 from slipwise.logs.log import Log
 from slipwise.reporting.sections.provenance import ProvenanceSection
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from reporting.page_parts import contents_of, figures_of
 from reporting.synthetic_results import make_results, with_model
+
 from slipwise.models.schema import Range, Slip
 from slipwise.reporting.sections.surfaces import SurfacesSection
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from reporting.page_parts import contents_of, text_of
 from reporting.synthetic_results import make_results, with_verdict
+
 from slipwise.calibration.result import Verdict
 from slipwise.reporting.sections.verdict import VerdictSection
 
