@@ -62,15 +62,16 @@ def _beaten(scores: list[dict[str, Any]], error: str) -> Loss:
         best = min(rivals, key=rivals.__getitem__)
         if auto > CLEARLY * rivals[best]:
             places.append(
-                f"{_where(score)}: {best}, {auto / rivals[best]:.2f} times smaller ({score['windows']} windows)"
+                f"{_where(score)}: {best}, {auto / rivals[best]:.2f} times smaller "
+                f"({score['windows']} windows)"
             )
     return Loss(f"A fixed method, known only afterwards, has a clearly smaller {error} error", tuple(places))
 
 
 def _beside_reference(comparisons: list[dict[str, Any]], k: int, error: str) -> Loss:
     places = [
-        f"{_where(c)}: {c['auto'][k]:.3f} against {c['reference_best'][k]:.3f}, where the plain model misses by "
-        f"{c['none'][k]:.3f} in our windows and {c['reference_none'][k]:.3f} in the reference's"
+        f"{_where(c)}: {c['auto'][k]:.3f} against {c['reference_best'][k]:.3f}, where the plain model misses "
+        f"by {c['none'][k]:.3f} in our windows and {c['reference_none'][k]:.3f} in the reference's"
         for c in comparisons
         if c["auto"][k] > CLEARLY * c["reference_best"][k]
     ]
