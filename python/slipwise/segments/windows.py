@@ -35,7 +35,7 @@ class WindowRules:
 
 
 _REASONS = {
-    "unknown-input": "the input is unknown (older than allowed) somewhere in the window",
+    "unknown-input": "the input is unknown (older than allowed) for a stretch",
     "standing-still": "the robot was told to stand still for the whole window",
     "late-pose": "the pose comes after a gap and is late by an unknown time",
     "heading-ambiguous": "between two poses the robot may have turned by more than half a turn",
@@ -134,7 +134,10 @@ class _Cutter:
                 self._pairs.append((int(usable[at]), int(usable[end])))
             else:
                 self._leave_out(problem, float(times[at]))
-            at = end if problem is None or problem == "standing-still" else at + 1
+            if problem == "unknown-input":
+                at = max(at + 1, int(np.searchsorted(times, self._known_again(float(times[at])))))
+            else:
+                at = at + 1 if problem == "heading-ambiguous" else end
 
     @staticmethod
     def _nearest(times: Floats, wanted: float, tolerance: float) -> int:
@@ -143,6 +146,12 @@ class _Cutter:
         candidates = [i for i in (right - 1, right) if 0 <= i < len(times)]
         best = min(candidates, key=lambda i: abs(float(times[i]) - wanted))
         return best if abs(float(times[best]) - wanted) <= tolerance + 1e-9 else -1
+
+    def _known_again(self, start: float) -> float:
+        """Return when the input is known again after the gap that a window from `start` runs into."""
+        if start < self._inputs.t[0]:
+            return float(self._inputs.t[0])
+        return float(self._gap_to[np.searchsorted(self._gap_to, start, side="right")])
 
     def _problem(self, i: int, j: int) -> str | None:
         """Return why poses i and j make no window, None where they do."""
