@@ -35,9 +35,7 @@ BENCHMARKS = (
     Benchmark("benchmark_logs", "Opening logs", quick=("--repeats", "1")),
     Benchmark("kernel", "The kernel, timed in C++", has_figures=False),
     Benchmark("filter_speed", "The filter beside numpy and filterpy", quick=("--quick",)),
-    Benchmark(
-        "consistency", "Consistency of the stated uncertainty", ("--runs", "100"), quick=("--runs", "10")
-    ),
+    Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
     Benchmark("real_logs", "The score on real logs", needs_data=True),
     Benchmark("scaling", "Cost against log length", quick=("--quick",)),
 )
