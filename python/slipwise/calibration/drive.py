@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 INPUT_NAMES = ("command", "wheel")
+EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
 LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
 
 
@@ -103,7 +104,14 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
         drive.append(DriveRun(index, run, inputs, track, run.wheels if input_name == "command" else None))
     if not drive:
         raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
-    return tuple(drive)
+    return tuple(_in_time(drive))
+
+
+def _in_time(drive: list[DriveRun]) -> list[DriveRun]:
+    """Order runs by their start where all stamps are times of day, so that files may be given in any order."""
+    if all(float(run.run.poses.t[0]) > EPOCH_STAMPS for run in drive):
+        return sorted(drive, key=lambda run: float(run.run.poses.t[0]))
+    return drive
 
 
 def _track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
@@ -158,7 +166,12 @@ def _merged(items: list[LeftOut]) -> tuple[LeftOut, ...]:
 
 def _nothing_to_use(log: Log, input_name: str) -> str:
     if all(len(run.poses) < 2 for run in log.runs):
-        return "the log has no two measured poses"
+        still = any(len(run.poses) == 1 for run in log.runs)
+        return (
+            "the robot never moves in this log: all its poses are the same"
+            if still
+            else "the log has no poses"
+        )
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 

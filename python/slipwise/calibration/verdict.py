@@ -14,6 +14,7 @@ from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.models.schema import HeldOut
 
 FEWEST_WINDOWS = 4  # held-out windows; fewer cannot be judged
+WORSE = 1.02  # ratio to the plain model beyond which an error counts as worse
 UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 
 
@@ -29,7 +30,7 @@ class Judgement:
     def beats_plain(self) -> bool:
         """Better on the whole, one of position and heading beyond chance, and neither clearly worse."""
         position, heading = _or_one(self.position_ratio), _or_one(self.heading_ratio)
-        clearly_worse = position[1] > 1.0 or heading[1] > 1.0
+        clearly_worse = position[1] > WORSE or heading[1] > WORSE
         clearly_better = position[2] < 1.0 or heading[2] < 1.0
         return position[0] * heading[0] < 1.0 and clearly_better and not clearly_worse
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -75,12 +75,18 @@ def read_bag(path: Path, options: LogOptions) -> Log:
             notes = list(roles.guessed)
             runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False), notes)
         except LogError as error:
-            raise (
-                error if error.where else LogError(error.what, where=str(path), advice=error.advice)
-            ) from error
+            raise _told_of_bag(error, path, bag.topics, tally) from error
         count = sum(topic.count for topic in bag.topics)
         source = Source(str(path), files_sha256(files), bag.format, count)
     return Log(runs, (source,), tally.result(), tuple(notes))
+
+
+def _told_of_bag(error: LogError, path: Path, topics: Sequence[Topic], tally: Tally) -> LogError:
+    """Name the bag in the error; where nothing of a damaged bag is left, the damage is the error."""
+    damaged = any(item.kind == "damaged-bag" for item in tally.result())
+    if damaged and not any(topic.count for topic in topics):
+        return LogError("the bag is cut off: no message is left", where=str(path), advice="copy it again")
+    return error if error.where else LogError(error.what, where=str(path), advice=error.advice)
 
 
 def _collect(bag: BagFile, roles: Roles, options: LogOptions) -> _Collected:

@@ -171,8 +171,14 @@ def test_poses_only_before_the_first_command_are_said_so() -> None:
         calibrate(Log(runs=(later,)))
 
 
+def test_poses_that_are_all_the_same_mean_that_the_robot_never_moves() -> None:
+    still = poses_of(np.array([0.0]), np.zeros((1, 3)))  # repeats of a pose count as held, not measured
+    with pytest.raises(LogError, match="never moves"):
+        calibrate(Log(runs=(with_poses(steady_run(), still),)))
+
+
 def test_log_without_poses_is_said_with_advice() -> None:
-    with pytest.raises(LogError, match=r"no two measured poses.*--pose-topic"):
+    with pytest.raises(LogError, match=r"no poses.*--pose-topic"):
         calibrate(Log(runs=(with_poses(steady_run(), empty_poses()),)))
 
 

@@ -45,8 +45,8 @@ def test_a_log_without_poses_says_what_is_missing() -> None:
     log = Log(runs=(replace(steady_run(20.0), poses=empty_poses()),))
     inspection = inspect_log(log)
     assert [item.missing.split(":")[0] for item in inspection.learned] == [
-        "the log has no two measured poses",
-        "the log has no two measured poses",
+        "the log has no poses",
+        "the log has no poses",
     ]
     assert inspection.timing == ()
     assert set(inspection.maps) == {"command", "wheel"}
