@@ -108,7 +108,7 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
 
 
 def _in_time(drive: list[DriveRun]) -> list[DriveRun]:
-    """Order runs by their start where all stamps are times of day, so that files may be given in any order."""
+    """Order runs by their start where all stamps are times of day: files may come in any order."""
     if all(float(run.run.poses.t[0]) > EPOCH_STAMPS for run in drive):
         return sorted(drive, key=lambda run: float(run.run.poses.t[0]))
     return drive
