@@ -29,7 +29,7 @@ SPEEDS = (1.5, 0.6)  # reference speed [m/s] and yaw rate [rad/s] of the prior
 SLIP_FRACTION = (
     0.1  # per term; with 15 terms drawn at once the default of 0.3 would slip more than the robot moves
 )
-NOISE = _core.MotionNoise([4e-4, 4e-4, 2e-4], [0.0] * 3, [0.0] * 3, 0.01, 0.003)
+NOISE = _core.MotionNoise([4e-4, 4e-4, 1e-4], [0.0] * 3, [0.0] * 3, 0.01, 0.003)
 SIGMAS_90 = 1.6448536269514722
 # Label, steps between the starts of windows, most runs. One step more than the window makes windows
 # independent: neighbours share no pose and so no pose noise.

@@ -36,7 +36,11 @@ void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   if (!started_) {
     estimate_ = prior_estimate(model_, speeds, settings_.prior);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
-    estimate_ = change_slip_prior(estimate_, slip_std_, std);
+    std::optional<Estimate> changed = change_slip_prior(estimate_, slip_std_, std);
+    if (!changed) {
+      return;  // the old prior stays in force
+    }
+    estimate_ = std::move(*changed);
   } else {
     return;
   }

@@ -44,15 +44,23 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
   return prior;
 }
 
-Estimate change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
-  const Eigen::Index size = estimate.mean.size();
+std::optional<Estimate> change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std,
+                                          const Eigen::VectorXd& new_std) {
+  // In units of the present standard deviations, so that terms of very different size do not spoil the inverse.
+  const Eigen::VectorXd unit = estimate.covariance.diagonal().cwiseSqrt();
+  const Eigen::VectorXd per_unit = unit.cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> correlation(per_unit.asDiagonal() * estimate.covariance * per_unit.asDiagonal());
+  Eigen::MatrixXd information = correlation.solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+  const Eigen::VectorXd evidence = information * per_unit.cwiseProduct(estimate.mean);
   const Eigen::Index slip = old_std.size();
-  const Eigen::MatrixXd information = estimate.covariance.llt().solve(Eigen::MatrixXd::Identity(size, size));
-  const Eigen::VectorXd evidence = information * estimate.mean;
-  Eigen::MatrixXd changed = information;
-  changed.diagonal().head(slip) += (new_std.cwiseAbs2().cwiseInverse() - old_std.cwiseAbs2().cwiseInverse());
-  const Eigen::LLT<Eigen::MatrixXd> factor(changed);
-  return {factor.solve(evidence), factor.solve(Eigen::MatrixXd::Identity(size, size))};
+  information.diagonal().head(slip) +=
+      unit.head(slip).cwiseAbs2().cwiseProduct(new_std.cwiseAbs2().cwiseInverse() - old_std.cwiseAbs2().cwiseInverse());
+  const Eigen::LLT<Eigen::MatrixXd> changed(information);
+  if (!information.allFinite() || correlation.info() != Eigen::Success || changed.info() != Eigen::Success) {
+    return std::nullopt;
+  }
+  const Eigen::MatrixXd covariance = changed.solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+  return Estimate{unit.cwiseProduct(changed.solve(evidence)), unit.asDiagonal() * covariance * unit.asDiagonal()};
 }
 
 }  // namespace slipwise

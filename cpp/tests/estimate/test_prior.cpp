@@ -52,10 +52,16 @@ TEST_CASE("changing the prior after learning equals learning under the new prior
     information.diagonal() += std.cwiseAbs2().cwiseInverse();
     return Estimate{information.inverse() * evidence, information.inverse()};
   };
-  const Estimate changed = change_slip_prior(posterior(old_std), old_std, new_std);
+  const Estimate changed = change_slip_prior(posterior(old_std), old_std, new_std).value();
   const Estimate direct = posterior(new_std);
   CHECK(changed.mean.isApprox(direct.mean, 1e-12));
   CHECK(changed.covariance.isApprox(direct.covariance, 1e-12));
+}
+
+TEST_CASE("a belief that is no Gaussian keeps its prior") {
+  const Eigen::MatrixXd singular = Eigen::MatrixXd::Ones(2, 2);
+  const Eigen::VectorXd std = Eigen::Vector2d::Ones();
+  CHECK_FALSE(change_slip_prior({Eigen::VectorXd::Zero(2), -singular}, std, 2.0 * std).has_value());
 }
 
 }  // namespace

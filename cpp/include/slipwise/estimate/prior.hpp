@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <optional>
 
 #include "slipwise/estimate/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
@@ -29,7 +30,8 @@ Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds
 /// The belief before any data.
 Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds, const PriorSettings& settings);
 /// The same data under a slip prior of other standard deviations (exact for the Gaussian belief; the prior mean is
-/// zero).
-Estimate change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
+/// zero). Nothing when the belief is too ill-conditioned for it.
+std::optional<Estimate> change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std,
+                                          const Eigen::VectorXd& new_std);
 
 }  // namespace slipwise
