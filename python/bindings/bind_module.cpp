@@ -4,7 +4,8 @@
 
 NB_MODULE(_core, m) {
   using namespace slipwise::bindings;
-  // Objects in tracebacks and caches outlive the module at exit; nanobind would call that a leak on the user's terminal.
+  // Objects in tracebacks and caches outlive the module at exit; nanobind would call that a leak on the user's
+  // terminal.
   nanobind::set_leak_warnings(false);
   m.doc() = "The mathematics of slipwise: lie, vehicle, slip, actuator, motion, segment, estimate.";
   bind_lie(m);
