@@ -11,7 +11,10 @@ if TYPE_CHECKING:
     from slipwise.errors import SlipwiseError
     from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
     from slipwise.evaluation.result import Evaluation
-    from slipwise.logs import Log, LogOptions, open_log, save_log
+    from slipwise.logs.log import Log
+    from slipwise.logs.open_log import open_log
+    from slipwise.logs.options import LogOptions
+    from slipwise.logs.save_log import save_log
     from slipwise.models import Model, load_model
     from slipwise.prediction import Path, predict
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from slipwise.cli.options import Json, Runs
+from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
     from slipwise.cli.output import Output
@@ -80,7 +81,7 @@ def demo(
 
 def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
     from slipwise.cli.output import Column
-    from slipwise.cli.tables import number, show_files, show_verdict
+    from slipwise.cli.tables import show_files, show_verdict
     from slipwise.demo.run_demo import VENDOR_TRACK_MULTIPLIER
 
     names = {
@@ -98,7 +99,8 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
     rows = []
     for method in evaluation.methods:
         scores = [evaluation.score(method, horizon) for horizon in horizons]
-        cells = [n for s in scores for n in (number(s.position.mean), number(math.degrees(s.heading.mean)))]
+        errors = [e for s in scores for e in (s.position.mean, math.degrees(s.heading.mean))]
+        cells = [number_text(error) for error in errors]
         rows.append((names[method], *cells))
     windows = ", ".join(f"{evaluation.score('none', h).windows} of {h:g} s" for h in horizons)
     caption = f"Mean errors over held-out windows ({windows}), learned only from what came before each."

@@ -14,6 +14,7 @@ from slipwise.cli.options import (
     chosen_settings,
     takes_log_options,
 )
+from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
     from slipwise.cli.output import Output
@@ -99,7 +100,6 @@ def _show(out: Output, inspection: Inspection) -> None:
 
 def _show_streams(out: Output, streams: Sequence[Stream]) -> None:
     from slipwise.cli.output import Column
-    from slipwise.cli.tables import number
 
     columns = [Column("stream")]
     heads = ("runs", "samples", "duration [s]", "rate [Hz]", "gaps", "longest gap [s]", "frames")
@@ -107,8 +107,8 @@ def _show_streams(out: Output, streams: Sequence[Stream]) -> None:
     rows = [
         (
             s.name,
-            *(str(s.runs), str(s.samples), f"{s.seconds:.1f}", number(s.rate), str(s.gaps)),
-            *(number(s.longest_gap), str(s.frames or "")),
+            *(str(s.runs), str(s.samples), f"{s.seconds:.1f}", number_text(s.rate), str(s.gaps)),
+            *(number_text(s.longest_gap), str(s.frames or "")),
         )
         for s in streams
     ]
@@ -117,12 +117,18 @@ def _show_streams(out: Output, streams: Sequence[Stream]) -> None:
 
 def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
     from slipwise.cli.output import Column
-    from slipwise.cli.tables import number
 
     columns = [Column("input"), Column("time"), Column("value [s]", True), Column("std [s]", True)]
     columns += [Column("determined"), Column("meaning")]
     rows = [
-        (t.input, t.name, number(t.seconds), number(t.std, 2), "yes" if t.determined else "no", t.meaning)
+        (
+            t.input,
+            t.name,
+            number_text(t.seconds),
+            number_text(t.std, 2),
+            "yes" if t.determined else "no",
+            t.meaning,
+        )
         for t in timing
     ]
     out.table("Clock offset, delay and lag between inputs and poses", columns, rows)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.cli.output import Column, Output
+from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import Verdict
@@ -16,20 +17,6 @@ if TYPE_CHECKING:
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
     from slipwise.models.schema import Parameter
-
-DASH = "–"
-
-
-def number(value: float, digits: int = 3) -> str:
-    """Return a number with about `digits` significant digits, a dash where it is not finite."""
-    if not math.isfinite(value):
-        return DASH
-    if value == 0.0:
-        return "0"
-    decimals = digits - 1 - math.floor(math.log10(abs(value)))
-    if -3 <= decimals <= 6:
-        return f"{value:.{max(decimals, 0)}f}"
-    return f"{value:.{digits}g}"
 
 
 def show_notes(output: Output, notes: Sequence[str]) -> None:
@@ -66,7 +53,7 @@ def show_parameters(output: Output, parameters: Sequence[Parameter]) -> None:
     rows = []
     for p in parameters:
         name, value, std, unit = in_plain_units(p)
-        rows.append((name, number(value), number(std, 2), unit, "yes" if p.determined else "no"))
+        rows.append((name, number_text(value), number_text(std, 2), unit, "yes" if p.determined else "no"))
     columns = (
         Column("parameter"),
         Column("value", True),
@@ -122,18 +109,18 @@ def _score_row(score: Score) -> tuple[str, ...]:
     return (
         score.method + ("" if score.causal else " †"),
         _error(score.position, 1.0),
-        number(score.position_ratio[0], 2),
-        number(score.position_to_rival, 2),
-        number(score.in_sample_position, 2),
+        number_text(score.position_ratio[0], 2),
+        number_text(score.position_to_rival, 2),
+        number_text(score.in_sample_position, 2),
         _error(score.heading, degrees),
-        number(score.heading_ratio[0], 2),
-        number(score.heading_to_rival, 2),
-        number(score.in_sample_heading * degrees, 2),
-        number(score.nis, 2),
+        number_text(score.heading_ratio[0], 2),
+        number_text(score.heading_to_rival, 2),
+        number_text(score.in_sample_heading * degrees, 2),
+        number_text(score.nis, 2),
         "/".join(f"{100.0 * share:.0f}" for share in score.coverage),
     )
 
 
 def _error(summary: ErrorSummary, scale: float) -> str:
-    low, high = number(summary.low * scale, 2), number(summary.high * scale, 2)
-    return f"{number(summary.mean * scale)} ({low}–{high})"
+    low, high = number_text(summary.low * scale, 2), number_text(summary.high * scale, 2)
+    return f"{number_text(summary.mean * scale)} ({low}–{high})"

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from html import escape as _escape
 
-DASH = "–"
+from slipwise.number_text import number_text
+
 MINUS = "−"
 
 
@@ -18,14 +18,8 @@ def escape(text: object) -> str:
 
 
 def number(value: float, digits: int = 3) -> str:
-    """Return a number with `digits` significant digits, a dash where it is not finite."""
-    if not math.isfinite(value):
-        return DASH
-    if value == 0.0:
-        return "0"
-    decimals = digits - 1 - math.floor(math.log10(abs(value)))
-    text = f"{value:.{max(decimals, 0)}f}" if -3 <= decimals <= 6 else f"{value:.{digits}g}"
-    return text.replace("-", MINUS)
+    """Return `number_text` with a true minus sign."""
+    return number_text(value, digits).replace("-", MINUS)
 
 
 def paragraph(text: str, *, kind: str = "") -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from slipwise.cli.output import Column, Output, to_json
-from slipwise.cli.tables import in_plain_units, number
+from slipwise.cli.tables import in_plain_units
 from slipwise.models.schema import Parameter
 
 
@@ -31,14 +31,6 @@ def test_nothing_but_json_is_printed_where_json_goes_to_stdout(capsys: pytest.Ca
     output.table("Title", [Column("a")], [["1"]])
     output.document({"a": 1})
     assert json.loads(capsys.readouterr().out) == {"a": 1}
-
-
-@pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.0, "0"), (1234.5, "1234"), (0.012345, "0.0123"), (1e-9, "1e-09"), (float("nan"), "–")],
-)
-def test_numbers_have_three_digits(value: float, text: str) -> None:
-    assert number(value) == text
 
 
 def test_what_is_learned_as_a_logarithm_is_shown_in_seconds() -> None:

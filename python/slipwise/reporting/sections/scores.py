@@ -7,8 +7,9 @@ import math
 from collections.abc import Sequence
 
 from slipwise.evaluation.result import ErrorSummary, Score
+from slipwise.number_text import DASH
 from slipwise.reporting.contents import MAIN_METHODS, Contents
-from slipwise.reporting.markup import DASH, details, escape, missing, number, scrolling
+from slipwise.reporting.markup import details, escape, missing, number, scrolling
 from slipwise.reporting.palette import stroke_of
 
 _DEGREES = math.degrees(1.0)

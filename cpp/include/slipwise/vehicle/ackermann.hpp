@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cars with steered front wheels: body twist of the rear axle from speed and steering angle (the bicycle model).
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <stdexcept>
+
+#include "slipwise/lie/body_twist.hpp"
+
+namespace slipwise {
+
+/// The robot's frame is at the middle of the rear axle.
+struct Ackermann {
+  double wheelbase;  ///< distance between the axles [m]
+
+  /// \throws std::invalid_argument when the wheelbase is not positive.
+  explicit Ackermann(double wheelbase_m) : wheelbase(wheelbase_m) {
+    if (!(wheelbase > 0.0)) {
+      throw std::invalid_argument("the wheelbase must be positive [m]; measure from axle to axle");
+    }
+  }
+
+  /// `v` [m/s] at the rear axle, `steer` [rad] of the middle of the front axle, to the left.
+  BodyTwist twist(double v, double steer) const {
+    return {.v = v, .vy = 0.0, .omega = v * std::tan(steer) / wheelbase};
+  }
+
+  /// Derivative of (v, omega) by (v, steer).
+  Eigen::Matrix2d twist_jacobian(double v, double steer) const {
+    const double tangent = std::tan(steer);
+    return (Eigen::Matrix2d() << 1.0, 0.0, tangent / wheelbase, v * (1.0 + tangent * tangent) / wheelbase).finished();
+  }
+};
+
+}  // namespace slipwise
