@@ -92,6 +92,9 @@ class MapProblem {
 
 /// (I - K J) P (I - K J)^T + K R K^T.
 Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
+  if (prior.size() == 0) {
+    return prior;  // the plain model has nothing to learn
+  }
   const Jacobian spread = jacobian * prior;
   const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
   const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = s.llt().solve(spread).transpose();

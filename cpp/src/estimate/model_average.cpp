@@ -93,13 +93,16 @@ AverageState ModelAverage::state() const {
                      weights_};
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const double weight = weights_[static_cast<Eigen::Index>(i)];
+    state.noise_scale += weight * filters_[i].noise_scale();
+    if (places_[i].empty()) {
+      continue;  // the plain model: it has no parameters, and adds nothing to any mean
+    }
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
     mean(places_[i]) = filters_[i].estimate().mean;
     state.estimate.mean += weight * mean;
     state.estimate.covariance(places_[i], places_[i]) += weight * filters_[i].estimate().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
     state.prior_std(places_[i]) = filters_[i].prior_std();
-    state.noise_scale += weight * filters_[i].noise_scale();
   }
   state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
   return state;
@@ -113,6 +116,9 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
   Eigen::VectorXd square = having;
   Eigen::VectorXd prior = having;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
+    if (places_[i].empty()) {
+      continue;
+    }
     const double weight = weights_[static_cast<Eigen::Index>(i)];
     const Estimate& estimate = filters_[i].estimate();
     having(places_[i]).array() += weight;

@@ -46,6 +46,9 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
 
 std::optional<Estimate> change_slip_prior(const Estimate& estimate, const Eigen::VectorXd& old_std,
                                           const Eigen::VectorXd& new_std) {
+  if (old_std.size() == 0) {
+    return estimate;
+  }
   // In units of the present standard deviations, so that terms of very different size do not spoil the inverse.
   const Eigen::VectorXd unit = estimate.covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd per_unit = unit.cwiseInverse();
