@@ -12,6 +12,8 @@
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/model_average.hpp"
 #include "slipwise/estimate/observability.hpp"
+#include "slipwise/estimate/sliding_mode_observer.hpp"
+#include "slipwise/estimate/slip_ratio_filter.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -92,6 +94,46 @@ void bind_results(nb::module_& m) {
       .def_ro("weakest_ratio", &Observability::weakest_ratio);
 }
 
+void bind_slip_ratios(nb::module_& m) {
+  m.attr("NOMINAL_TRACK") = kNominalTrack;
+  m.def("slip_ratio_model", &slip_ratio_model, "full-linear-6 behind an identity chain.");
+  nb::class_<SlipRatioFilterSettings>(m, "SlipRatioFilterSettings")
+      .def(nb::init<>())
+      .def_rw("track", &SlipRatioFilterSettings::track)
+      .def_rw("prior_ratio_std", &SlipRatioFilterSettings::prior_ratio_std)
+      .def_rw("prior_angle_std", &SlipRatioFilterSettings::prior_angle_std)
+      .def_rw("walk_ratio", &SlipRatioFilterSettings::walk_ratio)
+      .def_rw("walk_angle", &SlipRatioFilterSettings::walk_angle)
+      .def_rw("huber", &SlipRatioFilterSettings::huber)
+      .def_rw("noise", &SlipRatioFilterSettings::noise);
+  nb::class_<SlipRatioUpdate>(m, "SlipRatioUpdate", "One segment's update of the slip ratios.")
+      .def_ro("innovation", &SlipRatioUpdate::innovation)
+      .def_ro("innovation_covariance", &SlipRatioUpdate::innovation_covariance)
+      .def_ro("nis", &SlipRatioUpdate::nis)
+      .def_ro("weight", &SlipRatioUpdate::weight);
+  nb::class_<SlipRatioFilter>(m, "SlipRatioFilter", "Slip ratios and slip angle by an EKF.")
+      .def(nb::init<const SlipRatioFilterSettings&>(), "settings"_a)
+      .def("learn", &SlipRatioFilter::learn, "wheels"_a, "segment"_a)
+      .def_prop_ro("estimate", &SlipRatioFilter::estimate, "Belief about (left, right, angle).")
+      .def("linear_estimate", &SlipRatioFilter::linear_estimate, "The same about full-linear-6.");
+  nb::class_<SlidingModeSettings>(m, "SlidingModeSettings")
+      .def(nb::init<>())
+      .def_rw("track", &SlidingModeSettings::track)
+      .def_rw("ratio_gain", &SlidingModeSettings::ratio_gain)
+      .def_rw("angle_gain", &SlidingModeSettings::angle_gain)
+      .def_rw("side_layer", &SlidingModeSettings::side_layer)
+      .def_rw("drift_layer", &SlidingModeSettings::drift_layer)
+      .def_rw("slowest", &SlidingModeSettings::slowest);
+  nb::class_<SlidingModeUpdate>(m, "SlidingModeUpdate", "What a segment said to the observer.")
+      .def_ro("surface", &SlidingModeUpdate::surface)
+      .def_ro("used", &SlidingModeUpdate::used);
+  nb::class_<SlidingModeObserver>(m, "SlidingModeObserver", "Slip ratios and slip angle by a sliding-mode observer.")
+      .def(nb::init<const SlidingModeSettings&>(), "settings"_a)
+      .def("learn", &SlidingModeObserver::learn, "wheels"_a, "segment"_a)
+      .def_prop_ro("slip", [](const SlidingModeObserver& o) -> Eigen::Vector3d { return o.slip().vector(); })
+      .def("linear_mean", &SlidingModeObserver::linear_mean, "The slip as parameters of full-linear-6.");
+}
+
 BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
                             const std::vector<const InputTrack*>& inputs, const std::vector<Segment>& segments,
                             const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
@@ -110,6 +152,7 @@ BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
 void bind_estimate(nb::module_& m) {
   bind_settings(m);
   bind_results(m);
+  bind_slip_ratios(m);
   m.def("iekf_update", &iekf_update, "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
   m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
   m.def(

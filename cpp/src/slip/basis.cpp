@@ -19,6 +19,7 @@ const std::vector<NamedTerms>& shipped() {
   static const std::vector<std::string> thesis{"kappa", "V", "kappa*V", "kappa^2", "V^2"};  // thesis 5.1
   static const std::vector<NamedTerms> bases{
       {"edd-2", {"V"}, {}, {"w"}},
+      {"icr-3", {"V"}, {"w"}, {"w"}},  // thesis 2.1 to 2.3
       {"drive-5", {"V"}, {"V*w"}, {"V*w", "V", "w"}},
       {"inertial-5", {"V"}, {"abs(V)*V*w/g"}, {"abs(V)*V*w/g", "V", "w"}},
       {"full-linear-6", {"V", "w"}, {"V", "w"}, {"V", "w"}},

@@ -10,6 +10,7 @@
 
 #include "sample_bases.hpp"
 #include "slipwise/slip/basis.hpp"
+#include "slipwise/slip/slip_surface.hpp"
 
 namespace slipwise {
 namespace {
@@ -40,8 +41,8 @@ std::set<std::string> mirror_breakers(const Basis& basis) {
 
 TEST_CASE("the shipped bases have the sizes of the published table") {
   const std::vector<std::pair<std::string, std::size_t>> published{
-      {"edd-2", 2},  {"drive-5", 5},      {"inertial-5", 5}, {"full-linear-6", 6},
-      {"ipem-9", 9}, {"odd-even-10", 10}, {"ipem-13", 13},   {"thesis-15", 15}};
+      {"edd-2", 2},  {"icr-3", 3},        {"drive-5", 5},  {"inertial-5", 5}, {"full-linear-6", 6},
+      {"ipem-9", 9}, {"odd-even-10", 10}, {"ipem-13", 13}, {"thesis-15", 15}};
   CHECK(basis_names().size() == published.size());
   for (const auto& [name, size] : published) {
     CAPTURE(name);
@@ -91,9 +92,22 @@ TEST_CASE("features and linearised features agree") {
   }
 }
 
+TEST_CASE("in icr-3 the robot turns about a point at a fixed distance ahead of its origin") {
+  const Basis basis = named_basis("icr-3");
+  const Eigen::Vector3d alpha(-0.05, 0.12, -0.4);
+  const double x_icr = -alpha[1] / (1.0 + alpha[2]);  // thesis 2.3 for the true yaw rate
+  for (const double v : {0.0, 0.7, -0.4}) {
+    for (const double omega : {0.8, -0.3}) {
+      const Eigen::Vector3d slip = slip_rate(basis, alpha, {.v = v, .omega = omega});
+      CHECK(slip.y() + x_icr * (omega + slip.z()) == doctest::Approx(0.0).epsilon(1e-14));
+    }
+  }
+}
+
 TEST_CASE("a robot and its mirror image slip alike in the bases without odd ones out") {
-  // edd-2 alone of the shipped bases is free of terms that break the mirror.
+  // edd-2 and icr-3 alone of the shipped bases are free of terms that break the mirror.
   CHECK(mirror_breakers(named_basis("edd-2")).empty());
+  CHECK(mirror_breakers(named_basis("icr-3")).empty());
   CHECK(mirror_breakers(Basis("mirrored", Texts{"V", "w^2"}, Texts{"w", "V*w", "gy"}, Texts{"w*abs(w)"})).empty());
 }
 
