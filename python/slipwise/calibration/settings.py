@@ -83,6 +83,12 @@ class WindowTable(_Section):
     still_speed: Positive = _RULES.still_speed
 
 
+class VehicleTable(_Section):
+    """What the log does not say of the robot; the methods with slip ratios alone need it."""
+
+    track: Positive = _core.NOMINAL_TRACK  # m, between the left and the right wheels
+
+
 class Settings(_Section):
     """Everything that changes what is learned."""
 
@@ -94,6 +100,7 @@ class Settings(_Section):
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
+    vehicle: VehicleTable = VehicleTable()
 
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""

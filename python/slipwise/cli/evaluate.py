@@ -45,7 +45,8 @@ def evaluate(
         typer.Option(
             metavar="NAMES",
             show_default=False,
-            help="vendor, batch, model, auto or bases, separated by commas; `none` always is. Default: all.",
+            help="vendor, batch, model, auto, slip-ratio-ekf, slip-ratio-smo or bases, separated by commas; "
+            "`none` always is. Default: all but those with slip ratios.",
         ),
     ] = None,
     vendor_track_multiplier: Annotated[
@@ -76,6 +77,7 @@ def evaluate(
       slipwise evaluate drive.mcap
       slipwise evaluate drive.mcap --model model.yaml --horizons 2,5
       slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
+      slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301

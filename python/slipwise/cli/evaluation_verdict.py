@@ -11,12 +11,13 @@ if TYPE_CHECKING:
     from slipwise.evaluation import Evaluation
     from slipwise.models import Model
 
-_LEARN_NOTHING_CAUSALLY = ("none", "vendor", "batch")
+#: What learns nothing, or nothing causally, and rivals that no model file can hold.
+_NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo")
 
 
 def judged_method(methods: tuple[str, ...]) -> str | None:
-    """Return the method that is judged: `model`, else `auto`, else the first that learns; or None."""
-    names = [name for name in methods if name not in _LEARN_NOTHING_CAUSALLY]
+    """Return the method that is judged: `model`, else `auto`, else the first that learns a model; or None."""
+    names = [name for name in methods if name not in _NOT_JUDGED]
     return next((name for name in ("model", "auto") if name in names), names[0] if names else None)
 
 

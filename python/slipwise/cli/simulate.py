@@ -19,7 +19,7 @@ def simulate(
     duration: Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")] = 300.0,
     drive: Annotated[str, typer.Option(metavar="NAME", help="Command script: thesis or dull.")] = "thesis",
     ground: Annotated[
-        str, typer.Option(metavar="NAME", help="tyre-force, or MuJoCo's own contact-friction.")
+        str, typer.Option(metavar="NAME", help="tyre-force, traction-law, or MuJoCo's own contact-friction.")
     ] = "tyre-force",
     seed: Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")] = 1,
     pose_rate: Annotated[float, typer.Option(metavar="HZ", help="Rate of poses and wheel speeds.")] = 20.0,

@@ -17,6 +17,7 @@ from slipwise.calibration.learner import learn_causally, make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
+from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.models.model import Model
 
 BATCH_BASIS = "odd-even-10"
@@ -69,6 +70,14 @@ def method_info(name: str) -> MethodInfo:
         ),
         "model": MethodInfo(_model, "the model file as it is"),
         "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
+        "slip-ratio-ekf": MethodInfo(
+            lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows),
+            "slip ratios and slip angle (thesis 2.5 to 2.7) by an EKF, from wheel speeds",
+        ),
+        "slip-ratio-smo": MethodInfo(
+            lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows),
+            "the same by a sliding-mode observer; its covariance is the noise shape alone",
+        ),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in special:

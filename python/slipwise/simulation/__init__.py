@@ -4,6 +4,7 @@
 from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
+from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 
@@ -12,11 +13,13 @@ __all__ = [
     "LandTamer",
     "Scenario",
     "Simulation",
+    "TractionLaw",
     "Truth",
     "TyreLaw",
     "dull_drive",
     "hold",
     "simulate",
     "thesis_drive",
+    "traction_force",
     "tyre_force",
 ]

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,10 +16,11 @@ from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.logs.log import Inputs
 from slipwise.simulation.engine import load_mujoco
 from slipwise.simulation.land_tamer import LandTamer, mjcf, wheel_names
+from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
-from slipwise.simulation.tyre_force import TyreForceGround, TyreLaw
+from slipwise.simulation.tyre_force import ForceLaw, TyreForceGround, TyreLaw, tyre_force
 
-GROUNDS = ("tyre-force", "contact-friction")
+GROUNDS = ("tyre-force", "traction-law", "contact-friction")
 LONGEST_STEP = 0.002  # [s] short enough for smooth contact friction; tyre forces alone would allow 0.005
 SETTLING_TIME = 1.0  # [s] at rest before the log begins, for the suspension to find its balance
 
@@ -32,6 +34,16 @@ class World:
     vehicle: LandTamer
     ground: str  # one of GROUNDS
     law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
+    traction: TractionLaw = TractionLaw()
+
+    @property
+    def force_law(self) -> ForceLaw | None:
+        """The law of the ground's forces; None where MuJoCo's contacts give them."""
+        if self.ground == "contact-friction":
+            return None
+        if self.ground == "traction-law":
+            return partial(traction_force, self.traction)
+        return partial(tyre_force, self.law)
 
 
 @dataclass(frozen=True)
@@ -91,7 +103,8 @@ def run_physics(
     """
     mujoco = load_mujoco()
     names = wheel_names(world.vehicle)
-    friction = None if world.ground == "tyre-force" else world.law.friction
+    force_law = world.force_law
+    friction = world.law.friction if force_law is None else None
     xml = mjcf(world.vehicle, time_step=sampling.time_step, friction=friction)
     try:
         model = mujoco.MjModel.from_xml_string(xml)
@@ -99,7 +112,7 @@ def run_physics(
         advice = "use values nearer the defaults"
         raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
     data = mujoco.MjData(model)
-    tyres = TyreForceGround(world.law, world.vehicle, model) if friction is None else None
+    tyres = None if force_law is None else TyreForceGround(force_law, world.vehicle, model)
     advance = _stepper(mujoco, model, data, tyres)
     for _ in range(math.ceil(SETTLING_TIME / sampling.time_step)):
         advance()

@@ -13,6 +13,7 @@ from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.physics import GROUNDS, Progress, Sampling, World, run_physics
+from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
 
@@ -24,9 +25,10 @@ class Scenario:
     duration: float = 300.0  # [s]
     drive: str = "thesis"  # name of a command script in DRIVES
     commands: Inputs | None = None  # drive by these instead of a script
-    ground: str = "tyre-force"  # or "contact-friction", MuJoCo's own
+    ground: str = "tyre-force"  # or "traction-law", or "contact-friction", MuJoCo's own
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
+    traction: TractionLaw = TractionLaw()
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
@@ -58,7 +60,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
     if commands is None:
         commands = DRIVES[scenario.drive](seed, scenario.duration)
     truth = run_physics(
-        World(scenario.vehicle, scenario.ground, scenario.tyre),
+        World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction),
         commands,
         Sampling.over(scenario.duration, scenario.pose_rate),
         progress=progress,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.simulation.land_tamer import LandTamer, wheel_names
+
+#: Load [N, wheels], patch velocity [m/s, (2, wheels)], rim speed [m/s, wheels] -> force [N, (2, wheels)].
+ForceLaw = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 
 
 @dataclass(frozen=True)
@@ -55,13 +59,13 @@ def tyre_force(
 
 
 class TyreForceGround:
-    """Applies `tyre_force` to a MuJoCo model of the vehicle; call `apply` between mj_step1 and mj_step2."""
+    """Applies a law of force to a MuJoCo model of the vehicle; call `apply` between mj_step1 and mj_step2."""
 
-    def __init__(self, law: TyreLaw, vehicle: LandTamer, model: Any) -> None:
+    def __init__(self, law: ForceLaw, vehicle: LandTamer, model: Any) -> None:
         """Look up where the vehicle's parts are in the model's arrays.
 
         Args:
-            law: the ground.
+            law: the force of the ground on each wheel.
             vehicle: the constants.
             model: the mujoco.MjModel made from `land_tamer.mjcf`, with frictionless contacts.
         """
@@ -84,7 +88,7 @@ class TyreForceGround:
         twist = np.concatenate((velocity[:3] @ axes, velocity[3:6]))
         patch_velocity = (self._patch_jacobian @ twist).reshape(2, -1)
         rim_speed = velocity[self._spins] * self._radius
-        force = tyre_force(self._law, data.sensordata, patch_velocity, rim_speed)
+        force = self._law(data.sensordata, patch_velocity, rim_speed)
         forward, left = axes[:, 0], axes[:, 1]
         arm = self._radius
         wrenches = np.concatenate((forward, -arm * left, left, arm * forward)).reshape(2, 6)

@@ -79,6 +79,35 @@ def test_vehicle_turns_in_place_about_its_centre() -> None:
     assert np.hypot(truth.x, truth.y).max() < 0.01
 
 
+@pytest.mark.parametrize("v", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("curvature", [0.1, -0.25, 0.5])
+def test_traction_law_turns_like_a_husky_and_goes_nearly_as_fast_as_its_wheels(
+    v: float, curvature: float
+) -> None:
+    """Clearpath's multiplier of 1.875 for the Husky is a yaw ratio of 0.53; 0.4 to 0.65 is plausible."""
+    yaw, forward = ratios(drive(hold(v, v * curvature, 10.0), 10.0, "traction-law"), since=7.0)
+    assert 0.4 < yaw < 0.65
+    assert 0.95 < forward < 1.0
+
+
+def test_mirrored_command_gives_the_mirrored_path_under_the_traction_law() -> None:
+    left, right = (drive(hold(1.0, omega, 12.0), 12.0, "traction-law") for omega in (0.5, -0.5))
+    assert left.yaw[-1] > 1.0
+    np.testing.assert_allclose(right.x, left.x, atol=1e-3)
+    np.testing.assert_allclose(right.y, -left.y, atol=1e-3)
+    np.testing.assert_allclose(right.yaw, -left.yaw, atol=1e-3)
+
+
+def test_rolling_vehicle_only_loses_energy_under_the_traction_law() -> None:
+    """Told to stop while it drives, the vehicle slows down all along and comes to rest."""
+    going = hold(1.5, 0.0, 20.0)
+    stop = (going.t < 5.0).astype(float)
+    truth = drive(Inputs(t=going.t, v=going.v * stop, vy=going.vy, omega=going.omega), 20.0, "traction-law")
+    after = truth.t > 5.5
+    assert np.diff(truth.vx[after]).max() < 1e-6
+    assert abs(truth.vx[-1]) < 1e-4
+
+
 def test_contact_friction_slips_more_in_yaw_than_tyre_forces() -> None:
     yaw, forward = ratios(drive(hold(1.0, 0.5, 10.0), 10.0, "contact-friction"), since=7.0)
     assert 0.30 < yaw < 0.45

@@ -29,7 +29,7 @@ def minute() -> Simulation:
     return simulate(Scenario(duration=60.0), seed=11)
 
 
-@pytest.mark.parametrize("ground", ["tyre-force", "contact-friction"])
+@pytest.mark.parametrize("ground", ["tyre-force", "traction-law", "contact-friction"])
 def test_same_seed_gives_the_same_bytes(ground: str) -> None:
     scenario = replace(SHORT, ground=ground)
     assert column_bytes(simulate(scenario, seed=4)) == column_bytes(simulate(scenario, seed=4))
@@ -117,7 +117,7 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
         ({"std_xy": -0.01}, "std_xy is -0.01"),
         ({"std_yaw": float("inf")}, "std_yaw is inf"),
         ({"pose_delay": float("nan")}, "pose_delay is nan"),
-        ({"ground": "ice"}, "unknown ground 'ice'.*tyre-force, contact-friction"),
+        ({"ground": "ice"}, "unknown ground 'ice'.*tyre-force, traction-law, contact-friction"),
         ({"drive": "rally"}, "unknown drive 'rally'.*thesis, dull"),
     ],
 )

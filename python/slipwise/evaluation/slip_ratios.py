@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rivals with slip ratios and a slip angle, learned causally by an EKF or a sliding-mode observer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.forecast import Forecaster
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.settings import Settings
+from slipwise.errors import SettingsError
+
+SIZE = 6  # parameters of full-linear-6, in which both rivals predict
+
+
+@dataclass(frozen=True)
+class Rival:
+    """An estimator of slip ratios: how it learns a window, and what it believes now."""
+
+    learn: Callable[[_core.InputTrack, _core.Segment], object]
+    belief: Callable[[], Belief]
+
+
+class RivalPass:
+    """Learns windows in order, only as far as it is asked to."""
+
+    def __init__(self, rival: Rival, windows: WindowSet) -> None:
+        """Start before the first window."""
+        self._rival, self._windows = rival, windows
+        self._learned = 0
+
+    def belief(self, count: int) -> Belief:
+        """Return the belief after `count` windows.
+
+        Raises:
+            ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
+        """
+        if count < self._learned:
+            raise ValueError(f"the belief after {count} windows is gone: {self._learned} are learned")
+        for i in range(self._learned, count):
+            self._rival.learn(self._windows.track(i), self._windows.segments[i])
+        self._learned = count
+        return self._rival.belief()
+
+
+def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
+    """`slip-ratio-ekf`: predictions carry the filter's covariance and the noise shape.
+
+    Raises:
+        SettingsError: the input is not wheel speeds.
+    """
+    name = "slip-ratio-ekf"
+    _refuse_commands(name, input_name)
+    table = _core.SlipRatioFilterSettings()
+    table.track, table.huber = settings.vehicle.track, settings.filter.huber
+    table.noise = settings.filter_settings().noise.shape
+    estimator = _core.SlipRatioFilter(table)
+
+    def belief() -> Belief:
+        linear = estimator.linear_estimate()
+        return _belief(np.array(linear.mean), np.array(linear.covariance))
+
+    return _forecaster(name, settings, RivalPass(Rival(estimator.learn, belief), windows))
+
+
+def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
+    """`slip-ratio-smo`: an observer has no covariance, so that predictions carry the noise shape alone.
+
+    Raises:
+        SettingsError: the input is not wheel speeds.
+    """
+    name = "slip-ratio-smo"
+    _refuse_commands(name, input_name)
+    table = _core.SlidingModeSettings()
+    table.track = settings.vehicle.track
+    estimator = _core.SlidingModeObserver(table)
+
+    def belief() -> Belief:
+        return _belief(np.array(estimator.linear_mean()), np.zeros((SIZE, SIZE)))
+
+    return _forecaster(name, settings, RivalPass(Rival(estimator.learn, belief), windows))
+
+
+def _refuse_commands(name: str, input_name: str) -> None:
+    if input_name != "wheel":
+        raise SettingsError(
+            f"the method {name} learns slip between wheels and ground, and needs wheel speeds",
+            where="--methods",
+            advice="give --input wheel, or leave the method out",
+        )
+
+
+def _belief(mean: np.ndarray, covariance: np.ndarray) -> Belief:
+    ones = np.ones(SIZE)
+    return Belief(mean, covariance, np.ones(3), ones, ones, np.ones(1))
+
+
+def _forecaster(name: str, settings: Settings, learned: RivalPass) -> Forecaster:
+    shape = settings.filter_settings().noise.shape
+    return Forecaster(name, _core.slip_ratio_model(), shape, learned.belief, False)
