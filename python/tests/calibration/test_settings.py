@@ -56,6 +56,9 @@ adapt = false
 bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
+
+[vehicle]
+track = 1.08
 """
 
 
@@ -85,6 +88,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
+    assert settings.vehicle.track == 1.08
     average = settings.average_settings()
     assert (average.learning_rate, average.share) == (0.7, 0.01)
     (basis,) = settings.bases()

@@ -16,8 +16,8 @@ namespace slipwise {
 /// twice what the slip may move in one segment, so that a step never overshoots and the observer does not chatter.
 struct SlidingModeSettings {
   double track = kNominalTrack;  ///< between the two sides [m]
-  double ratio_gain = 0.2;       ///< largest rate of a slip ratio [1/s]
-  double angle_gain = 0.1;       ///< largest rate of the slip angle [rad/s]
+  double ratio_gain = 0.05;      ///< largest rate of a slip ratio [1/s]
+  double angle_gain = 0.025;     ///< largest rate of the slip angle [rad/s]
   double side_layer = 0.05;      ///< boundary layer of the side speeds at standstill [m/s]
   double drift_layer = 0.05;     ///< boundary layer of the sideways speed at standstill [m/s]
   double slowest = 0.02;         ///< a side, or the robot, that is slower teaches its slip nothing [m/s]

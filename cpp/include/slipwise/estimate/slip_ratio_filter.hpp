@@ -31,8 +31,8 @@ struct SlipRatioFilterSettings {
   double track = kNominalTrack;  ///< between the two sides [m]
   double prior_ratio_std = 0.3;  ///< of each slip ratio before any data [-]
   double prior_angle_std = 0.2;  ///< of the slip angle before any data [rad]
-  double walk_ratio = 0.1;       ///< random walk of each slip ratio while driving [1/sqrt(s)]
-  double walk_angle = 0.05;      ///< random walk of the slip angle while driving [rad/sqrt(s)]
+  double walk_ratio = 0.01;      ///< random walk of each slip ratio while driving [1/sqrt(s)]
+  double walk_angle = 0.005;     ///< random walk of the slip angle while driving [rad/sqrt(s)]
   double huber = 2.5;            ///< a residual of more than this many sigma counts for less [-]
   MotionNoise noise = {};        ///< of a segment's measurement
 };
