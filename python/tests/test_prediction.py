@@ -16,7 +16,7 @@ from slipwise.errors import SettingsError
 from slipwise.models import Model
 from slipwise.prediction import growth_at, predict
 
-BASES = ["edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
+BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
 
 
 def learned(basis: str, input_name: str) -> Model:
