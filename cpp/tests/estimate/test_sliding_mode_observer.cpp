@@ -78,8 +78,8 @@ TEST_CASE("under noise the error stays bounded") {
       sum += largest_error(observer);
     }
   }
-  CHECK(worst < 0.4);
-  CHECK(sum / static_cast<double>(count - 30) < 0.12);
+  CHECK(worst < 0.15);
+  CHECK(sum / static_cast<double>(count - 30) < 0.04);
 }
 
 TEST_CASE("a parked side and a turn in place teach nothing about the slip that they do not show") {
