@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bayesian linear regression with rank-one updates of the information's Cholesky factor (derivations.md, section 11).
+// Bayesian linear regression with rank-one updates of the information's Cholesky factor.
 #include "slipwise/estimate/bayesian_regression.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares by QR and singular values of scaled columns, with named null directions (derivations.md, section 11).
+// Least squares by QR and singular values of scaled columns, with named null directions.
 #include "slipwise/estimate/least_squares_surface.hpp"
 
 #include <Eigen/QR>

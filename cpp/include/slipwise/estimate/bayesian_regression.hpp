@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bayesian linear regression in information form, with known or learned noise (derivations.md, section 11).
+// Bayesian linear regression in information form, with known or learned noise.
 #pragma once
 
 #include <Eigen/Cholesky>
