@@ -35,6 +35,7 @@ SIZES = (100, 1_000, 10_000)
 LARGE = 1_000  # a Gaussian process of more examples is factored once here
 KINDS: dict[str, Callable[[], Any]] = {
     "least squares": lambda: LeastSquaresSurface(BASIS),
+    "least squares, thesis spread": lambda: LeastSquaresSurface(BASIS, spread="thesis"),
     "gaussian process": lambda: GaussianProcessSurface(options=GaussianProcessOptions(largest=20_000)),
     "bayesian": lambda: BayesianSurface(BASIS),
     "bayesian, window 200": lambda: BayesianSurface(BASIS, options=BayesianOptions(window=200)),
