@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
   bind_motion(m);
   bind_segment(m);
   bind_estimate(m);
+  bind_regression(m);
 }

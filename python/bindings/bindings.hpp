@@ -13,5 +13,6 @@ void bind_actuator(nanobind::module_& m);
 void bind_motion(nanobind::module_& m);
 void bind_segment(nanobind::module_& m);
 void bind_estimate(nanobind::module_& m);
+void bind_regression(nanobind::module_& m);
 
 }  // namespace slipwise::bindings

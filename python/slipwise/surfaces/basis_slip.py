@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A slip surface as the parameters of a slip basis, which a motion model can use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.surfaces.examples import CHANNELS, SlipExamples
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BasisSlip:
+    """Parameters of a basis with their covariance, and the noise about them."""
+
+    basis: _core.Basis
+    alpha: Floats  # [p]
+    covariance: Floats  # [p, p]
+    prior_std: Floats  # [p] before the examples; infinite where there was no prior
+    noise_std: Floats  # [3] of one segment's slip rates (m/s, m/s, rad/s), mean over the examples
+    projection_rms: Floats = field(default_factory=lambda: np.zeros(3))  # what the basis misses
+    projection_largest: Floats = field(default_factory=lambda: np.zeros(3))  # at most
+
+
+def channel_slices(basis: _core.Basis) -> tuple[slice, slice, slice]:
+    """Where the parameters of lon, lat and ang stand."""
+    lon, lat = len(basis.lon), len(basis.lon) + len(basis.lat)
+    return slice(0, lon), slice(lon, lat), slice(lat, basis.size)
+
+
+def channel_designs(basis: _core.Basis, v: Floats, omega: Floats) -> list[Floats]:
+    """Features of each channel's terms, [N, terms of the channel]; kappa is finite at V = 0."""
+    rows = _core.feature_rows(basis, v, omega)
+    return [np.asfortranarray(rows[:, part]) for part in channel_slices(basis)]
+
+
+def channel_terms(basis: _core.Basis) -> tuple[list[str], list[str], list[str]]:
+    """Texts of the terms of lon, lat and ang."""
+    return basis.lon, basis.lat, basis.ang
+
+
+def block_covariance(basis: _core.Basis, blocks: list[Floats]) -> Floats:
+    """Covariance of all parameters from those of the channels, which are learned apart."""
+    covariance = np.zeros((basis.size, basis.size))
+    for part, block in zip(channel_slices(basis), blocks, strict=True):
+        covariance[part, part] = block
+    return covariance
+
+
+def undetermined(basis: _core.Basis, examples: SlipExamples) -> list[str]:
+    """What the drives of the examples do not determine, such as 'lon: V and V^2 are not told apart'."""
+    said = []
+    for name, design, terms in zip(
+        CHANNELS, channel_designs(basis, examples.v, examples.omega), channel_terms(basis), strict=True
+    ):
+        if terms:
+            ones = np.ones(len(examples))
+            fit = _core.fit_least_squares(design, ones, ones)
+            said += [f"{name}: {text}" for text in _core.undetermined_directions(fit, terms)]
+    return said
