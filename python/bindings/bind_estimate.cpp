@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/estimate.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
@@ -11,9 +12,11 @@
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/model_average.hpp"
+#include "slipwise/estimate/noise_fit.hpp"
 #include "slipwise/estimate/observability.hpp"
 #include "slipwise/estimate/sliding_mode_observer.hpp"
 #include "slipwise/estimate/slip_ratio_filter.hpp"
+#include "slipwise/estimate/slip_rate_fit.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -147,12 +150,69 @@ BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
   return batch_fit(model, prior, data, settings);
 }
 
+void bind_slip_rate_fit(nb::module_& m) {
+  nb::class_<SlipRateSettings>(m, "SlipRateSettings")
+      .def(nb::init<>())
+      .def_rw("length", &SlipRateSettings::length)
+      .def_rw("angular", &SlipRateSettings::angular)
+      .def_rw("noise", &SlipRateSettings::noise)
+      .def_rw("iterations", &SlipRateSettings::iterations)
+      .def_rw("tolerance", &SlipRateSettings::tolerance);
+  nb::class_<SlipRateFit>(m, "SlipRateFit", "Slip rates of a group of steady segments.")
+      .def_ro("slip", &SlipRateFit::slip)
+      .def_ro("covariance", &SlipRateFit::covariance)
+      .def_ro("cost", &SlipRateFit::cost)
+      .def_ro("rms", &SlipRateFit::rms)
+      .def_ro("residuals", &SlipRateFit::residuals)
+      .def_ro("iterations", &SlipRateFit::iterations)
+      .def_ro("status", &SlipRateFit::status);
+  m.def("steady_residuals", &steady_residuals, "segment"_a, "slip"_a, "Measured - predicted charts, [3, N - 1].");
+  m.def(
+      "fit_slip_rates",
+      [](const std::vector<SteadySegment>& segments, const SlipRateSettings& settings) {
+        return fit_slip_rates(segments, settings);
+      },
+      "segments"_a, "settings"_a);
+}
+
+void bind_noise_fit(nb::module_& m) {
+  nb::enum_<ScatterCentre>(m, "ScatterCentre").value("Mean", ScatterCentre::Mean).value("Curve", ScatterCentre::Curve);
+  nb::enum_<NoiseObjective>(m, "NoiseObjective")
+      .value("Thesis", NoiseObjective::Thesis)
+      .value("Fisher", NoiseObjective::Fisher);
+  nb::class_<NoiseGroup>(m, "NoiseGroup", "Residuals [3, K] of segments at common times [K] along one steady twist.")
+      .def(nb::init<BodyTwist, std::vector<double>, std::vector<Eigen::Matrix3Xd>>(), "twist"_a, "times"_a,
+           "residuals"_a);
+  nb::class_<NoiseFitSettings>(m, "NoiseFitSettings")
+      .def(nb::init<>())
+      .def_rw("objective", &NoiseFitSettings::objective)
+      .def_rw("centre", &NoiseFitSettings::centre)
+      .def_rw("pose", &NoiseFitSettings::pose)
+      .def_rw("iterations", &NoiseFitSettings::iterations)
+      .def_rw("tolerance", &NoiseFitSettings::tolerance);
+  nb::class_<NoiseFit>(m, "NoiseFit", "Slip noise and start uncertainty, with the covariance [6, 6] of (psd, start).")
+      .def_ro("noise", &NoiseFit::noise)
+      .def_ro("covariance", &NoiseFit::covariance)
+      .def_ro("scatter_definite", &NoiseFit::scatter_definite)
+      .def_ro("iterations", &NoiseFit::iterations)
+      .def_ro("status", &NoiseFit::status);
+  m.def("scatter_matrix", &scatter_matrix, "group"_a, "centre"_a, "Scatter of the stacked charts, [3K, 3K].");
+  m.def(
+      "fit_noise",
+      [](const std::vector<NoiseGroup>& groups, const NoiseFitSettings& settings) {
+        return fit_noise(groups, settings);
+      },
+      "groups"_a, "settings"_a);
+}
+
 }  // namespace
 
 void bind_estimate(nb::module_& m) {
   bind_settings(m);
   bind_results(m);
   bind_slip_ratios(m);
+  bind_slip_rate_fit(m);
+  bind_noise_fit(m);
   m.def("iekf_update", &iekf_update, "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
   m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
   m.def(

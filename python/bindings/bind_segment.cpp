@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
+#include "slipwise/segment/steady_segment.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -21,6 +22,49 @@ Eigen::MatrixX3d pose_matrix(const std::vector<Pose2>& poses) {
     matrix.row(static_cast<Eigen::Index>(i)) = poses[i].vector();
   }
   return matrix;
+}
+
+std::vector<double> list_of(const Eigen::VectorXd& values) { return {values.begin(), values.end()}; }
+
+void bind_steady(nb::module_& m) {
+  nb::class_<SteadySegment>(m, "SteadySegment",
+                            "Poses [N, 3] seen from the first, at times [N] from 0 on, under one command.")
+      .def(
+          "__init__",
+          [](SteadySegment* self, const BodyTwist& command, const Eigen::VectorXd& times,
+             const Eigen::MatrixX3d& poses) {
+            std::vector<Pose2> list;
+            for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+              list.push_back(Pose2::from_vector(poses.row(i).transpose()));
+            }
+            new (self) SteadySegment{command, list_of(times), std::move(list)};
+          },
+          "command"_a, "times"_a, "poses"_a)
+      .def_ro("command", &SteadySegment::command)
+      .def_ro("times", &SteadySegment::times)
+      .def_prop_ro("poses", [](const SteadySegment& segment) { return pose_matrix(segment.poses); });
+  nb::class_<SteadyNoise>(m, "SteadyNoise",
+                          "Slip noise, start uncertainty P0 and variance of a measured pose, [3] each.")
+      .def(nb::init<Eigen::Vector3d, Eigen::Vector3d, Eigen::Vector3d>(), "psd"_a, "start"_a, "pose"_a)
+      .def_ro("psd", &SteadyNoise::psd)
+      .def_ro("start", &SteadyNoise::start)
+      .def_ro("pose", &SteadyNoise::pose);
+  m.def(
+      "steady_path",
+      [](const BodyTwist& twist, const Eigen::VectorXd& times) {
+        std::vector<Pose2> poses;
+        for (const double t : times) {
+          poses.push_back(steady_pose(twist, t));
+        }
+        return pose_matrix(poses);
+      },
+      "twist"_a, "times"_a, "Where a constant twist leads, [K, 3].");
+  m.def(
+      "steady_covariance",
+      [](const BodyTwist& twist, const Eigen::VectorXd& times, const SteadyNoise& noise) {
+        return steady_covariance(twist, list_of(times), noise);
+      },
+      "twist"_a, "times"_a, "noise"_a, "Covariance of the stacked charts at positive times [K], [3K, 3K].");
 }
 
 }  // namespace
@@ -72,6 +116,7 @@ void bind_segment(nb::module_& m) {
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
   m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);
   m.def("pose_noise_covariance", &pose_noise_covariance, "measured"_a, "noise"_a);
+  bind_steady(m);
 }
 
 }  // namespace slipwise::bindings
