@@ -190,19 +190,28 @@ IekfUpdate DelayedState::learn(const InputTrack& inputs, const Segment& segment)
   return result;
 }
 
-/// Information added to single parameters, negative where the prior widens (derivations.md, section 10); the covariance
-/// may be singular.
-void DelayedState::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+/// Information added to single parameters, negative where the prior widens (derivations.md, section 10); the clone
+/// makes the covariance singular, so that it is never inverted.
+bool DelayedState::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+  Estimate changed = joint_;
   for (Eigen::Index i = 0; i < new_std.size(); ++i) {
     const double added = 1.0 / (new_std[i] * new_std[i]) - 1.0 / (old_std[i] * old_std[i]);
-    if (added == 0.0) {
-      continue;
+    if (added != 0.0) {
+      const Eigen::VectorXd column = changed.covariance.col(i);
+      const Eigen::VectorXd gain = column / (1.0 / added + column[i]);
+      changed.mean -= gain * changed.mean[i];
+      changed.covariance -= gain * column.transpose();
     }
-    const Eigen::VectorXd column = joint_.covariance.col(i);
-    const Eigen::VectorXd gain = column / (1.0 / added + column[i]);
-    joint_.mean -= gain * joint_.mean[i];
-    joint_.covariance -= gain * column.transpose();
   }
+  const Eigen::Index m = model_.size();
+  const Eigen::VectorXd per_unit = changed.covariance.diagonal().head(m).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation =
+      per_unit.asDiagonal() * changed.covariance.topLeftCorner(m, m) * per_unit.asDiagonal();
+  if (!changed.covariance.allFinite() || !correlation.allFinite() || correlation.llt().info() != Eigen::Success) {
+    return false;
+  }
+  joint_ = std::move(changed);
+  return true;
 }
 
 }  // namespace slipwise

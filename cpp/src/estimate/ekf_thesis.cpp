@@ -3,6 +3,7 @@
 #include "slipwise/estimate/ekf_thesis.hpp"
 
 #include <Eigen/Cholesky>
+#include <optional>
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
@@ -44,9 +45,14 @@ IekfUpdate EkfThesis::learn(const InputTrack& inputs, const Segment& segment) {
           .status = Status::Converged};
 }
 
-void EkfThesis::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
-  estimate_ = change_slip_prior(estimate_, old_std, new_std);
+bool EkfThesis::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+  std::optional<Estimate> changed = change_slip_prior(estimate_, old_std, new_std);
+  if (!changed) {
+    return false;
+  }
+  estimate_ = std::move(*changed);
   prior_variance_.head(new_std.size()) = new_std.cwiseAbs2();
+  return true;
 }
 
 }  // namespace slipwise

@@ -33,9 +33,10 @@ void FollowingEstimator::follow() {
     return;
   }
   const double fraction = settings_.prior.slip_fraction;
-  estimator_.change_prior(slip_prior_std(model().basis(), reference_, fraction),
-                          slip_prior_std(model().basis(), now, fraction));
-  reference_ = now;
+  const Eigen::VectorXd old_std = slip_prior_std(model().basis(), reference_, fraction);
+  if (estimator_.change_prior(old_std, slip_prior_std(model().basis(), now, fraction))) {
+    reference_ = now;  // otherwise the old prior stays in force
+  }
 }
 
 Eigen::VectorXd FollowingEstimator::prior_std() const {

@@ -27,8 +27,9 @@ IekfUpdate GradientDescent::learn(const InputTrack& inputs, const Segment& segme
           .status = Status::Converged};
 }
 
-void GradientDescent::change_prior(const Eigen::VectorXd& /*old_std*/, const Eigen::VectorXd& new_std) {
+bool GradientDescent::change_prior(const Eigen::VectorXd& /*old_std*/, const Eigen::VectorXd& new_std) {
   estimate_.covariance.diagonal().head(new_std.size()) = new_std.cwiseAbs2();
+  return true;
 }
 
 }  // namespace slipwise

@@ -2,6 +2,7 @@
 // iekf_update, segment after segment.
 #include "slipwise/estimate/iekf_estimator.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
@@ -19,8 +20,13 @@ IekfUpdate IekfEstimator::learn(const InputTrack& inputs, const Segment& segment
   return update;
 }
 
-void IekfEstimator::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
-  estimate_ = change_slip_prior(estimate_, old_std, new_std);
+bool IekfEstimator::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+  std::optional<Estimate> changed = change_slip_prior(estimate_, old_std, new_std);
+  if (!changed) {
+    return false;
+  }
+  estimate_ = std::move(*changed);
+  return true;
 }
 
 }  // namespace slipwise

@@ -134,7 +134,7 @@ TEST_CASE("every estimator takes a prior of other speeds") {
       changed.learn(drive.inputs, segment);
       known.learn(drive.inputs, segment);
     }
-    changed.change_prior(old_std, new_std);
+    CHECK(changed.change_prior(old_std, new_std));
     CHECK((changed.estimate().mean - known.estimate().mean).norm() < 1e-4);
     CHECK((changed.estimate().covariance - known.estimate().covariance).norm() <
           1e-2 * known.estimate().covariance.norm());

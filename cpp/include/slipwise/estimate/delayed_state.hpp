@@ -43,7 +43,8 @@ class DelayedState {
   Estimate estimate() const;                            ///< of the parameters
   const Estimate& joint() const { return joint_; }      ///< [p; X_now; X_delayed]
   Pose2 pose() const { return at_row(model_.size()); }  ///< X_now
-  void change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
+  /// The same data under another slip prior; false, and nothing done, where the belief is too ill-conditioned.
+  bool change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
   /// Factor of the noise variances of (x, y, theta).
   void scale_noise(const Eigen::Vector3d& scale) { scale_ = scale; }
 

@@ -24,8 +24,9 @@ concept OnlineEstimator =
       { estimator.learn(inputs, segment) } -> std::same_as<IekfUpdate>;
       { known.estimate() } -> std::same_as<Estimate>;
       { known.model() } -> std::same_as<const MotionModel&>;
-      estimator.change_prior(std, std);  // the same data under another slip prior
-      estimator.scale_noise(scale);      // factor of the noise variances of (x, y, theta)
+      // The same data under another slip prior; false where that cannot be done.
+      { estimator.change_prior(std, std) } -> std::same_as<bool>;
+      estimator.scale_noise(scale);  // factor of the noise variances of (x, y, theta)
     };
 
 /// Any of the estimators, as a value.
@@ -44,8 +45,8 @@ class Estimator {
   const MotionModel& model() const {
     return std::visit([](const auto& e) -> const MotionModel& { return e.model(); }, estimator_);
   }
-  void change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
-    std::visit([&](auto& e) { e.change_prior(old_std, new_std); }, estimator_);
+  bool change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
+    return std::visit([&](auto& e) { return e.change_prior(old_std, new_std); }, estimator_);
   }
   void scale_noise(const Eigen::Vector3d& scale) {
     std::visit([&](auto& e) { e.scale_noise(scale); }, estimator_);

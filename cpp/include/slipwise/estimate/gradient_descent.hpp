@@ -18,7 +18,8 @@ class GradientDescent {
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
   const MotionModel& model() const { return model_; }
   Estimate estimate() const { return estimate_; }
-  void change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
+  /// The same data under another slip prior; false, and nothing done, where the belief is too ill-conditioned.
+  bool change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
   /// Does nothing: the step does not depend on the noise.
   void scale_noise(const Eigen::Vector3d&) {}
 

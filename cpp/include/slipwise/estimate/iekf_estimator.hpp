@@ -16,7 +16,8 @@ class IekfEstimator {
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
   const MotionModel& model() const { return model_; }
   Estimate estimate() const { return estimate_; }
-  void change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
+  /// The same data under another slip prior; false, and nothing done, where the belief is too ill-conditioned.
+  bool change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std);
   /// Factor of the noise variances of (x, y, theta).
   void scale_noise(const Eigen::Vector3d& scale) { scale_ = scale; }
 
