@@ -29,7 +29,7 @@ DelayedState::Leg leg_of(const Segment& segment) {
 
 }  // namespace
 
-DelayedState::DelayedState(MotionModel model, Estimate prior, const EstimatorSettings& settings)
+DelayedState::DelayedState(MotionModel model, const Estimate& prior, const EstimatorSettings& settings)
     : model_(std::move(model)),
       noise_(settings.noise),
       iekf_(settings.iekf),

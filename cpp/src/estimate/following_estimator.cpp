@@ -3,7 +3,6 @@
 #include "slipwise/estimate/following_estimator.hpp"
 
 #include <cmath>
-#include <utility>
 
 namespace slipwise {
 namespace {
@@ -24,8 +23,8 @@ FollowingEstimator::FollowingEstimator(std::string_view name, const MotionModel&
                                        const CausalFilterSettings& filter, EstimatorSettings settings)
     : settings_(filter),
       noise_scale_(filter.noise),
-      estimator_(make_estimator(name, model, prior_estimate(model, reference_, filter.prior),
-                                with_noise(std::move(settings), filter))) {}
+      estimator_(
+          make_estimator(name, model, prior_estimate(model, reference_, filter.prior), with_noise(settings, filter))) {}
 
 void FollowingEstimator::follow() {
   const ReferenceSpeeds now = driven_.reference();

@@ -22,7 +22,7 @@ class DelayedState {
     double gy = 0.0;                        ///< [m/s^2]
   };
 
-  DelayedState(MotionModel model, Estimate prior, const EstimatorSettings& settings);
+  DelayedState(MotionModel model, const Estimate& prior, const EstimatorSettings& settings);
 
   /// X_now = a measured pose, with its noise; what was known of earlier poses is dropped.
   void start(double time, const Pose2& measured);
