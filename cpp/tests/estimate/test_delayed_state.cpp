@@ -4,7 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -29,7 +31,7 @@ InputTrack varying_speed() {
 }
 
 const MotionNoise kShared{.psd_time = {1e-3, 2e-3, 0.0}, .pose_std_xy = 0.1, .pose_std_yaw = 1e-9};
-const std::vector<double> kStamps{0.0, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0};
+constexpr std::array<double, 7> kStamps{0.0, 1.5, 3.0, 4.5, 6.0, 8.0, 10.0};
 
 EstimatorSettings settings_of(const MotionNoise& noise) {
   EstimatorSettings settings;
@@ -39,8 +41,8 @@ EstimatorSettings settings_of(const MotionNoise& noise) {
 }
 
 /// Measured positions, the first at the origin.
-std::vector<Pose2> measured_poses() {
-  std::mt19937_64 random(91);
+std::vector<Pose2> measured_poses(std::uint64_t seed) {
+  std::mt19937_64 random(seed);
   std::vector<Pose2> poses{{}};
   for (std::size_t i = 1; i < kStamps.size(); ++i) {
     const Eigen::Vector3d draw = tests::normal3(random);
@@ -74,7 +76,7 @@ Estimate batch_axis(const Eigen::VectorXd& z, const Eigen::VectorXd& driven, dou
 TEST_CASE("with shared poses the filter is the batch solution of the whole drive") {
   const MotionModel model = linear_model();
   const InputTrack inputs = varying_speed();
-  const auto poses = measured_poses();
+  const auto poses = measured_poses(91);
   const Estimate prior{Eigen::VectorXd::Zero(2), 0.04 * Eigen::MatrixXd::Identity(2, 2)};
   DelayedState filter(model, prior, settings_of(kShared));
   const auto n = static_cast<Eigen::Index>(poses.size());
@@ -84,7 +86,7 @@ TEST_CASE("with shared poses the filter is the batch solution of the whole drive
     y[i] = poses[static_cast<std::size_t>(i)].y;
   }
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    Segment segment{.start = kStamps[i - 1], .end = kStamps[i], .measured = between(poses[i - 1], poses[i])};
+    const Segment segment{.start = kStamps[i - 1], .end = kStamps[i], .measured = between(poses[i - 1], poses[i])};
     driven[static_cast<Eigen::Index>(i) - 1] =
         integrate_segment(model, Eigen::Vector2d::Zero(), inputs, segment).poses.back().x;
     filter.learn(inputs, segment);
@@ -123,10 +125,9 @@ TEST_CASE("a pose that arrives late tells as much as one in time") {
 
 TEST_CASE("the Jacobian of the pose prediction by parameters and start is the derivative") {
   const MotionModel model(named_basis("odd-even-10"), {});
-  std::mt19937_64 random(92);
-  const InputTrack inputs = tests::random_inputs(random, 10.0, 0.05);
+  const InputTrack inputs = tests::simulate_drive(model, Eigen::VectorXd::Zero(10), {.seed = 92, .windows = 2}).inputs;
   // Without noise the covariance after advance() is F P F^T: with P = I, the cross-covariance is F itself.
-  MotionNoise exact{.pose_std_xy = 1.0, .pose_std_yaw = 1.0};
+  const MotionNoise exact{.pose_std_xy = 1.0, .pose_std_yaw = 1.0};
   DelayedState filter(model, {Eigen::VectorXd::Constant(10, 0.05), Eigen::MatrixXd::Identity(10, 10)},
                       settings_of(exact));
   const Pose2 start{3.0, -2.0, 0.7};

@@ -4,6 +4,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -24,12 +25,13 @@ InputTrack straight() {
   return {t, v, zero, zero};
 }
 
-const Estimate kPrior{Eigen::VectorXd::Constant(1, 0.1), Eigen::MatrixXd::Constant(1, 1, 0.04)};
+Estimate prior() { return {Eigen::VectorXd::Constant(1, 0.1), Eigen::MatrixXd::Constant(1, 1, 0.04)}; }
 const IekfSettings kTrusting{.huber = 1e9, .gate = 1e18};
 
 /// Two seconds each at 1 m/s; the slip share drifts slowly.
-std::vector<BatchDatum> drifting_data(const InputTrack& inputs, std::size_t count, std::vector<double>& truth) {
-  std::mt19937_64 random(95);
+std::vector<BatchDatum> drifting_data(const InputTrack& inputs, std::size_t count, std::vector<double>& truth,
+                                      std::uint64_t seed = 95) {
+  std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<BatchDatum> data;
   for (std::size_t i = 0; i < count; ++i) {
@@ -68,7 +70,7 @@ TEST_CASE("on a linear problem the smoother is the batch solution, for both kind
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 30, truth);
   for (const Drift drift : {Drift::RandomWalk, Drift::MeanReverting}) {
-    const auto smoothed = rts_smooth(forward_model(), kPrior, data, {.drift = drift, .length = 50.0}, kTrusting);
+    const auto smoothed = rts_smooth(forward_model(), prior(), data, {.drift = drift, .length = 50.0}, kTrusting);
     const double a = drift == Drift::RandomWalk ? 1.0 : std::exp(-2.0 / 50.0);
     const double added = 0.04 * (drift == Drift::RandomWalk ? 2.0 / 50.0 : 1.0 - a * a);
     const Estimate expected = batch(data, a, added);
@@ -84,8 +86,8 @@ TEST_CASE("smoothed drifting slip is nearer to the truth than one constant, and 
   const InputTrack inputs = straight();
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 100, truth);
-  const auto smoothed = rts_smooth(forward_model(), kPrior, data, {.length = 30.0}, kTrusting);
-  const auto constant = rts_smooth(forward_model(), kPrior, data, {.length = 1e12}, kTrusting);
+  const auto smoothed = rts_smooth(forward_model(), prior(), data, {.length = 30.0}, kTrusting);
+  const auto constant = rts_smooth(forward_model(), prior(), data, {.length = 1e12}, kTrusting);
   double squared = 0.0, squared_constant = 0.0, nees = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double error = smoothed[i].mean[0] - truth[i];
@@ -100,11 +102,11 @@ TEST_CASE("smoothed drifting slip is nearer to the truth than one constant, and 
 TEST_CASE("a parked robot forgets nothing, one that drove far is back at its prior") {
   const Estimate known{Eigen::VectorXd::Constant(1, 0.5), Eigen::MatrixXd::Constant(1, 1, 1e-4)};
   for (const Drift drift : {Drift::RandomWalk, Drift::MeanReverting}) {
-    const Estimate parked = drifted(known, kPrior, 0.0, {.drift = drift, .length = 10.0});
+    const Estimate parked = drifted(known, prior(), 0.0, {.drift = drift, .length = 10.0});
     CHECK(parked.mean == known.mean);
     CHECK(parked.covariance == known.covariance);
   }
-  const Estimate far = drifted(known, kPrior, 1e4, {.length = 10.0});
+  const Estimate far = drifted(known, prior(), 1e4, {.length = 10.0});
   CHECK(far.mean[0] == doctest::Approx(0.1));
   CHECK(far.covariance(0, 0) == doctest::Approx(0.04));
 }
@@ -113,8 +115,8 @@ TEST_CASE("nothing to smooth and a drift without length are refused") {
   const InputTrack inputs = straight();
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 2, truth);
-  CHECK_THROWS_AS(rts_smooth(forward_model(), kPrior, {}), std::invalid_argument);
-  CHECK_THROWS_AS(rts_smooth(forward_model(), kPrior, data, {.length = 0.0}), std::invalid_argument);
+  CHECK_THROWS_AS(rts_smooth(forward_model(), prior(), {}), std::invalid_argument);
+  CHECK_THROWS_AS(rts_smooth(forward_model(), prior(), data, {.length = 0.0}), std::invalid_argument);
 }
 
 }  // namespace
