@@ -4,6 +4,9 @@
 For each run the true parameters are drawn from the prior, a ten-minute drive with white slip noise and pose
 noise is simulated step by step, and a filter learns from it: the IEKF on disjoint 5 s windows. For comparison
 the same filter is fed 20 times a second with overlapping 5 s windows, as the thesis does (its Table 6.1).
+
+A second table has every estimator on the same shorter drives, with windows that share poses as in a real log,
+once with the noise above and once with poses so noisy that they outweigh the slip noise.
 """
 
 from __future__ import annotations
@@ -37,6 +40,19 @@ FILTERS = (
     ("iekf, disjoint", int(WINDOW / STEP) + 1, 1_000_000),
     ("overlapping (thesis)", 1, 100),
 )
+# Estimators: name, steps between the starts of windows, Jacobian.
+EXACT, THESIS = _core.SegmentJacobian.Exact, _core.SegmentJacobian.Thesis
+SHARED = int(WINDOW / STEP)
+ESTIMATORS = (
+    ("gradient-descent", 1, EXACT),
+    ("ekf-thesis", 1, THESIS),
+    ("ekf-thesis", 1, EXACT),
+    ("iekf", SHARED, EXACT),
+    ("delayed-state", SHARED, EXACT),
+)
+ESTIMATOR_MINUTES, ESTIMATOR_RUNS = 3, 100
+POSE_NOISE = _core.MotionNoise([2e-5, 2e-5, 1e-5], [0.0] * 3, [0.0] * 3, 0.03, 0.01)
+NOISES = {"slip and poses": NOISE, "mostly poses": POSE_NOISE}
 CHI_SQUARE_90 = {10: 15.987179172105261, 15: 22.307129581578689}
 
 
@@ -50,9 +66,9 @@ class RunResult:
     in_region_90: bool
 
 
-def commands(rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
+def commands(rng: np.random.Generator, minutes: float) -> tuple[Floats, Floats, Floats]:
     """Held random speeds and curvatures (the thesis's ranges) for the whole drive."""
-    count = int(MINUTES * 60 / STEP)
+    count = int(minutes * 60 / STEP)
     t = np.arange(count, dtype=np.float64) * STEP
     held = rng.integers(20, 80, size=count)
     edges = np.minimum(np.cumsum(held), count)
@@ -65,24 +81,28 @@ def commands(rng: np.random.Generator) -> tuple[Floats, Floats, Floats]:
 
 
 def drive(
-    basis: _core.Basis, alpha: Floats, rng: np.random.Generator
+    basis: _core.Basis,
+    alpha: Floats,
+    rng: np.random.Generator,
+    noise: _core.MotionNoise = NOISE,
+    minutes: float = MINUTES,
 ) -> tuple[_core.InputTrack, list[_core.Pose2]]:
     """Simulate the drive step by step; return the inputs and the measured poses."""
-    t, v, omega = commands(rng)
-    psd = np.sqrt(np.array(NOISE.psd_time) * STEP)
+    t, v, omega = commands(rng, minutes)
+    psd = np.sqrt(np.array(noise.psd_time) * STEP)
     pose, measured = _core.Pose2(0.0, 0.0, 0.0), []
     for speed, rate in zip(v.tolist(), omega.tolist(), strict=True):
-        measured.append(disturbed(pose, rng))
+        measured.append(disturbed(pose, rng, noise))
         slip = _core.slip_rate(basis, alpha, _core.SlipState(speed, rate, 0.0, 0.0))
         tangent = (np.array([speed, 0.0, rate]) + slip) * STEP + psd * rng.standard_normal(3)
         pose = _core.compose(pose, _core.exp(tangent))
-    measured.append(disturbed(pose, rng))
+    measured.append(disturbed(pose, rng, noise))
     return _core.InputTrack(t, v, np.zeros_like(v), omega), measured
 
 
-def disturbed(pose: _core.Pose2, rng: np.random.Generator) -> _core.Pose2:
+def disturbed(pose: _core.Pose2, rng: np.random.Generator, noise: _core.MotionNoise) -> _core.Pose2:
     """Return the pose as a sensor would measure it."""
-    x, y, theta = rng.standard_normal(3) * (NOISE.pose_std_xy, NOISE.pose_std_xy, NOISE.pose_std_yaw)
+    x, y, theta = rng.standard_normal(3) * (noise.pose_std_xy, noise.pose_std_xy, noise.pose_std_yaw)
     return _core.Pose2(pose.x + x, pose.y + y, pose.theta + theta)
 
 
@@ -124,12 +144,56 @@ def one_run(job: tuple[str, int, int]) -> RunResult:
     """Simulate and learn one seed with windows that start every `stride` steps."""
     name, seed, stride = job
     rng = np.random.default_rng(seed)
-    model = _core.MotionModel(_core.named_basis(name), False, False)
+    model, prior, truth = drawn(name, rng)
+    return judged(learn(model, prior, drive(model.basis, truth, rng), stride), truth)
+
+
+def drawn(basis: str, rng: np.random.Generator) -> tuple[_core.MotionModel, _core.Estimate, Floats]:
+    """Return the model, its prior, and true parameters drawn from the prior."""
+    model = _core.MotionModel(_core.named_basis(basis), False, False)
     prior_settings = _core.PriorSettings()
     prior_settings.slip_fraction = SLIP_FRACTION
     prior = _core.prior_estimate(model, *SPEEDS, prior_settings)
-    truth = np.sqrt(np.diag(prior.covariance)) * rng.standard_normal(model.size)
-    return judged(learn(model, prior, drive(model.basis, truth, rng), stride), truth)
+    return model, prior, np.sqrt(np.diag(prior.covariance)) * rng.standard_normal(model.size)
+
+
+def estimators_on_one_drive(job: tuple[str, int]) -> list[RunResult]:
+    """Learn one seed with every estimator, in the order of `ESTIMATORS`."""
+    noise_name, seed = job
+    noise, rng, results = NOISES[noise_name], np.random.default_rng(seed), []
+    model, prior, truth = drawn(TRUTHS[0], rng)
+    track, poses = drive(model.basis, truth, rng, noise, ESTIMATOR_MINUTES)
+    length = int(WINDOW / STEP)
+    for name, stride, jacobian in ESTIMATORS:
+        settings = _core.EstimatorSettings()
+        settings.noise, settings.ekf_thesis.jacobian = noise, jacobian
+        settings.iekf.huber, settings.iekf.gate = 1e9, 1e18
+        estimator = _core.make_estimator(name, model, prior, settings)
+        for i in range(0, len(poses) - length, stride):
+            measured = _core.between(poses[i], poses[i + length])
+            segment = _core.Segment(i * STEP, (i + length) * STEP, measured, None, 0.0, 0.0)
+            estimator.learn(track, segment)
+        results.append(judged(estimator.estimate(), truth))
+    return results
+
+
+def compare_estimators(runs: int) -> dict[str, object]:
+    """Print and return the table of all estimators."""
+    report = {}
+    print(f"\n{'noise':16s} {'estimator':31s}  runs  NEES/m  95 % band")
+    for noise in NOISES:
+        with ProcessPoolExecutor() as pool:
+            drives = list(
+                pool.map(estimators_on_one_drive, [(noise, seed) for seed in range(runs)], chunksize=5)
+            )
+        for (name, stride, jacobian), results in zip(ESTIMATORS, zip(*drives, strict=True), strict=True):
+            fed = "20 Hz" if stride == 1 else "shared poses"
+            label = f"{name}, {fed}" + (", (6.7)" if jacobian == THESIS else "")
+            figures = summary(list(results), _core.named_basis(TRUTHS[0]).size)
+            low, high = nees_band(runs, _core.named_basis(TRUTHS[0]).size)
+            print(f"{noise:16s} {label:31s} {runs:5d} {figures['nees_over_m']:7.3f}  {low:.3f} .. {high:.3f}")
+            report[f"{noise}/{label}"] = {**figures, "runs": [asdict(r) for r in results]}
+    return report
 
 
 def nees_band(runs: int, size: int) -> tuple[float, float]:
@@ -171,7 +235,7 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=400)
     parser.add_argument("--json", type=Path, help="write the figures and every run's result here")
     options = parser.parse_args()
-    report = {}
+    report: dict[str, object] = {}
     print(f"{'truth':12s} {'filter':21s}  runs  NEES/m  95 % band        1 sigma  90 % interval  90 % region")
     for name in TRUTHS:
         for label, stride, most in FILTERS:
@@ -181,6 +245,7 @@ def main() -> None:
             show(name, label, results)
             figures = summary(results, _core.named_basis(name).size)
             report[f"{name}/{label}"] = {**figures, "runs": [asdict(r) for r in results]}
+    report |= compare_estimators(min(options.runs, ESTIMATOR_RUNS))
     if options.json:
         options.json.write_text(json.dumps(report, indent=1), encoding="utf-8")
 

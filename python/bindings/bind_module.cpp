@@ -16,4 +16,5 @@ NB_MODULE(_core, m) {
   bind_segment(m);
   bind_estimate(m);
   bind_regression(m);
+  bind_estimators(m);
 }

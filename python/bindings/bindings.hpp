@@ -14,5 +14,6 @@ void bind_motion(nanobind::module_& m);
 void bind_segment(nanobind::module_& m);
 void bind_estimate(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
+void bind_estimators(nanobind::module_& m);
 
 }  // namespace slipwise::bindings

@@ -26,7 +26,7 @@ bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedCh
 }  // namespace
 
 CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
-    : model_(std::move(model)), settings_(settings) {
+    : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
 }
@@ -59,25 +59,12 @@ Learned CausalFilter::learn(const InputTrack& inputs, const Segment& segment, co
   const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
   const Eigen::Matrix3d expected =
       slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
-  Learned learned{iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_), settings_.iekf), 0.0};
+  Learned learned{
+      iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_.value()), settings_.iekf), 0.0};
   learned.log_score = student_log_score(learned.update.nis, learned.update.innovation_covariance);
   estimate_ = learned.update.estimate;
-  if (settings_.noise.adapt) {
-    adapt_noise(inputs, segment, expected.diagonal());
-  }
+  noise_scale_.learn(model_, estimate_, inputs, segment, expected.diagonal());
   return learned;
-}
-
-/// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
-void CausalFilter::adapt_noise(const InputTrack& inputs, const Segment& segment, const Eigen::Vector3d& expected) {
-  const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d open = at.by_parameter * estimate_.covariance * at.by_parameter.transpose();
-  const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
-  segments_ += 1.0;
-  const double gain = std::max(1.0 / (segments_ + settings_.noise.prior_segments), 1.0 / settings_.noise.memory);
-  noise_scale_ +=
-      gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.noise.largest * noise_scale_) - noise_scale_);
 }
 
 Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,

@@ -10,9 +10,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kReferenceShare = 0.9;  // reference speeds are the 90th percentile of those driven so far
-constexpr double kLeastSpeed = 0.05;     // [m/s] and [rad/s]; slower references would make priors meaningless
-
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   if (bases.empty()) {
@@ -46,26 +43,12 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
   }
 }
 
-void ModelAverage::see_speeds(const InputTrack& inputs, const Segment& segment) {
-  for (const DriveStep& step : drive_steps(inputs, {}, {.start = segment.start, .end = segment.end}).steps) {
-    if (step.duration > 0.0) {
-      speeds_.add(step.forward / step.duration, step.duration);
-      yaw_rates_.add(step.turn / step.duration, step.duration);
-    }
-  }
-}
-
-ReferenceSpeeds ModelAverage::reference_speeds() const {
-  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed),
-          .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
-}
-
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
-  see_speeds(inputs, segment);
+  speeds_.see(inputs, segment);
   Eigen::VectorXd log_scores(weights_.size());
   std::vector<IekfUpdate> updates;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    Learned learned = filters_[i].learn(inputs, segment, reference_speeds());
+    Learned learned = filters_[i].learn(inputs, segment, speeds_.reference());
     log_scores[static_cast<Eigen::Index>(i)] = learned.log_score;
     updates.push_back(std::move(learned.update));
   }

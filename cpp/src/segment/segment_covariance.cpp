@@ -51,4 +51,11 @@ Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& 
   return from_start * pose * from_start.transpose() + pose;
 }
 
+Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
+                              const Eigen::Vector3d& scale) {
+  const Eigen::Vector3d root = scale.cwiseSqrt();
+  return root.asDiagonal() * (slip_covariance(path, noise) + pose_noise_covariance(measured, noise)) *
+         root.asDiagonal();
+}
+
 }  // namespace slipwise

@@ -45,8 +45,9 @@ def evaluate(
         typer.Option(
             metavar="NAMES",
             show_default=False,
-            help="vendor, batch, model, auto, slip-ratio-ekf, slip-ratio-smo or bases, separated by commas; "
-            "`none` always is. Default: all but those with slip ratios.",
+            help="vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
+            "delayed-state), slip-ratio-ekf or slip-ratio-smo, separated by commas; `none` always is. "
+            "Default: all but estimators and slip ratios.",
         ),
     ] = None,
     vendor_track_multiplier: Annotated[
@@ -78,6 +79,7 @@ def evaluate(
       slipwise evaluate drive.mcap --model model.yaml --horizons 2,5
       slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
+      slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
       slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
@@ -175,13 +177,17 @@ def _write_result(
 
 def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibration | None:
     """Learn what the judged method learns, for its parameters; None where no method learns."""
+    from slipwise import _core
     from slipwise.calibration import calibrate
+    from slipwise.calibration.estimator_pass import estimator_basis
     from slipwise.cli.evaluation_verdict import judged_method
 
     method = judged_method(evaluation.methods)
     if method is None:
         return None
-    if method != "model":
+    if method in _core.estimator_names():  # its basis, learned by the filter that calibrates
+        settings = settings.model_copy(update={"basis": estimator_basis(settings)})
+    elif method != "model":
         settings = settings.model_copy(update={"basis": method})
     return calibrate(log, input_name=evaluation.input, settings=settings)
 

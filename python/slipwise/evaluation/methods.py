@@ -12,6 +12,7 @@ from slipwise import _core
 from slipwise.calibration.batch import fit_batch
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.estimator_pass import EstimatorPass, estimator_motion
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import learn_causally, make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
@@ -44,7 +45,7 @@ class MethodInfo:
 
 
 def method_names(contest: Contest) -> tuple[str, ...]:
-    """Return the methods compared where none are named: all that the contest allows."""
+    """Return the methods compared where none are named: all that the contest allows but single estimators."""
     names = ["none"]
     if contest.vendor_track_multiplier is not None:
         names.append("vendor")
@@ -84,7 +85,9 @@ def method_info(name: str) -> MethodInfo:
         return special[name]
     if name in _core.basis_names():
         return MethodInfo(_learned, f"the basis {name}, learned causally")
-    known = ", ".join([*special, *_core.basis_names()])
+    if name in _core.estimator_names():
+        return MethodInfo(_estimator, f"the estimator {name} with the basis of the settings")
+    known = ", ".join([*special, *_core.basis_names(), *_core.estimator_names()])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
 
 
@@ -94,6 +97,13 @@ def _learned(name: str, contest: Contest) -> Forecaster:
     shape = contest.settings.filter_settings().noise.shape
     causal_pass = CausalPass(average, contest.windows)
     return Forecaster(name, average.model, shape, causal_pass.belief, learner.dynamics)
+
+
+def _estimator(name: str, contest: Contest) -> Forecaster:
+    motion = estimator_motion(name, contest.settings, contest.input_name)
+    passing = EstimatorPass(name, motion, contest.settings, contest.windows)
+    shape = contest.settings.filter_settings().noise.shape
+    return Forecaster(name, motion, shape, passing.belief, motion.dynamics)
 
 
 def _vendor(name: str, contest: Contest) -> Forecaster:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cutting runs into disjoint windows between two measured poses, with what is left out counted."""
+"""Cutting runs into windows between two measured poses, disjoint or not, with what is left out counted."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ class WindowRules:
     length_tolerance: float = 0.05  # a window may be this fraction longer or shorter than asked for
     still_speed: float = 0.02  # m/s and rad/s; a window whose inputs never exceed this teaches nothing
     whole_frames: bool = False  # a frame that is shorter than a window is one window
+    stride: float | None = None  # s between the starts of windows; None: each starts where the last ended
 
 
 _REASONS = {
@@ -44,7 +45,7 @@ _REASONS = {
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """Disjoint windows of one run, [N] each."""
+    """Windows of one run in order of time, [N] each."""
 
     start: Floats  # s, stamp of the first pose
     end: Floats  # s, stamp of the second pose
@@ -74,7 +75,7 @@ class Windows:
 def cut_windows(
     run: Run, inputs: Inputs, length: float, rules: WindowRules, *, earlier: Floats | None = None
 ) -> Windows:
-    """Cut one run into disjoint windows of `length` [s], each as soon after the last as the poses allow.
+    """Cut one run into windows of `length` [s], each as soon after the last as the poses and rules allow.
 
     `earlier` are the pose intervals [s] of the runs before this one. No window depends on a pose measured
     after its end, so that a log cut off at any time has the same windows until then.
@@ -137,7 +138,13 @@ class _Cutter:
             if problem == "unknown-input":
                 at = max(at + 1, int(np.searchsorted(times, self._known_again(float(times[at])))))
             else:
-                at = at + 1 if problem == "heading-ambiguous" else end
+                at = at + 1 if problem == "heading-ambiguous" else self._next(times, at, end)
+
+    def _next(self, times: Floats, at: int, end: int) -> int:
+        """Return the index at which the window after at..end starts."""
+        if self._rules.stride is None:
+            return end
+        return max(at + 1, int(np.searchsorted(times, float(times[at]) + self._rules.stride - 1e-6)))
 
     @staticmethod
     def _nearest(times: Floats, wanted: float, tolerance: float) -> int:

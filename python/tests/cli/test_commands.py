@@ -90,6 +90,16 @@ def test_evaluate_exits_with_1_where_learning_does_not_help(slipwise: Slipwise, 
     assert "NOT GOOD ENOUGH" in result.out
 
 
+def test_evaluate_names_the_estimators_and_takes_them(slipwise: Slipwise, drive_csv: Path) -> None:
+    words = slipwise("evaluate", "--help").out
+    arguments = ("--input", "wheel", "--methods", "ekf-thesis,delayed-state", "--horizons", "2")
+    result = slipwise("evaluate", drive_csv, *arguments)
+    assert result.code == 0
+    for name in ("ekf-thesis", "delayed-state"):
+        assert name in words
+        assert name in result.out
+
+
 def test_evaluate_shows_every_method_at_every_horizon(slipwise: Slipwise, drive_csv: Path) -> None:
     arguments = (
         "--methods",

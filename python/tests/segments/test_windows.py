@@ -44,6 +44,11 @@ def test_windows_follow_each_other_without_a_gap() -> None:
     assert windows.left_out == ()
 
 
+def test_windows_overlap_where_a_stride_is_given() -> None:
+    windows = cut(steady_run(seconds=4.0), 2.0, replace(RULES, stride=0.5))
+    assert pairs(windows) == [(0.0, 2.0), (0.5, 2.5), (1.0, 3.0), (1.5, 3.5), (2.0, 4.0)]
+
+
 def test_window_longer_than_the_run_does_not_exist() -> None:
     assert len(cut(steady_run(seconds=1.9), 2.5)) == 0
 

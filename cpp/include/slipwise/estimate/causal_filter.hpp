@@ -5,24 +5,11 @@
 #include <Eigen/Core>
 
 #include "slipwise/estimate/iekf.hpp"
+#include "slipwise/estimate/noise_scale.hpp"
 #include "slipwise/estimate/prior.hpp"
 #include "slipwise/estimate/speed_range.hpp"
-#include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
-
-/// Noise of segments: a shape that grows with the motion, and a learned factor of the variances of (x, y, theta).
-struct NoiseSettings {
-  MotionNoise shape{.psd_time = {0.0, 0.0, 0.0},
-                    .psd_motion = {1e-3, 1e-3, 1e-3},
-                    .fraction = {0.05, 0.05, 0.05},
-                    .pose_std_xy = 0.02,
-                    .pose_std_yaw = 0.01};
-  bool adapt = true;            ///< learn the factor from the residuals
-  double prior_segments = 5.0;  ///< the shape counts as much as this many segments [-]
-  double memory = 40.0;  ///< the factor is a mean over about this many segments, so that it follows the ground [-]
-  double largest = 9.0;  ///< a squared residual counts at most this many times its expected value [-]
-};
 
 struct CausalFilterSettings {
   PriorSettings prior = {};
@@ -48,12 +35,11 @@ class CausalFilter {
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Learned factor of the noise variances of (x, y, theta).
-  Eigen::Vector3d noise_scale() const { return noise_scale_; }
+  Eigen::Vector3d noise_scale() const { return noise_scale_.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }
 
  private:
   void follow(const ReferenceSpeeds& speeds);
-  void adapt_noise(const InputTrack& inputs, const Segment& segment, const Eigen::Vector3d& expected);
 
   MotionModel model_;
   CausalFilterSettings settings_;
@@ -61,8 +47,7 @@ class CausalFilter {
   bool started_ = false;
   Estimate estimate_;
   Eigen::VectorXd slip_std_;
-  Eigen::Vector3d noise_scale_ = Eigen::Vector3d::Ones();
-  double segments_ = 0.0;
+  NoiseScale noise_scale_;
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

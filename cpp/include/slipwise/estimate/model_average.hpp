@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slipwise/estimate/causal_filter.hpp"
+#include "slipwise/estimate/driven_speeds.hpp"
 
 namespace slipwise {
 
@@ -39,11 +40,10 @@ class ModelAverage {
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
-  ReferenceSpeeds reference_speeds() const;
+  ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
   Eigen::VectorXd variance_ratio() const;
-  void see_speeds(const InputTrack& inputs, const Segment& segment);
   void weigh(const Eigen::VectorXd& log_scores);
 
   MotionModel model_;
@@ -51,8 +51,7 @@ class ModelAverage {
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   Eigen::VectorXd weights_;
-  SpeedRange speeds_;
-  SpeedRange yaw_rates_;
+  DrivenSpeeds speeds_;
 };
 
 }  // namespace slipwise

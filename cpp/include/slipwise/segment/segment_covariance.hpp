@@ -25,5 +25,8 @@ inline constexpr double kStraightRadius = 5.0;  ///< driving this far disturbs t
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
 /// Covariance of a measured T_start_end because both poses are measured: H R H^T + R.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise);
+/// R of a measured segment: slip and both poses, with a factor of the variances of (x, y, theta).
+Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
+                              const Eigen::Vector3d& scale);
 
 }  // namespace slipwise

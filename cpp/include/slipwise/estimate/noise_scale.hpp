@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// How large the noise of segments really is: a factor of its variances, learned from the residuals.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+
+/// Noise of segments: a shape that grows with the motion, and a learned factor of the variances of (x, y, theta).
+struct NoiseSettings {
+  MotionNoise shape{.psd_time = {0.0, 0.0, 0.0},
+                    .psd_motion = {1e-3, 1e-3, 1e-3},
+                    .fraction = {0.05, 0.05, 0.05},
+                    .pose_std_xy = 0.02,
+                    .pose_std_yaw = 0.01};
+  bool adapt = true;            ///< learn the factor from the residuals
+  double prior_segments = 5.0;  ///< the shape counts as much as this many segments [-]
+  double memory = 40.0;  ///< the factor is a mean over about this many segments, so that it follows the ground [-]
+  double largest = 9.0;  ///< a squared residual counts at most this many times its expected value [-]
+};
+
+class NoiseScale {
+ public:
+  explicit NoiseScale(const NoiseSettings& settings) : settings_(settings) {}
+
+  /// Learned factor of the noise variances of (x, y, theta).
+  const Eigen::Vector3d& value() const { return value_; }
+  /// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
+  /// `expected` are the variances of the shape. Does nothing where the settings say that the noise is known.
+  void learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs, const Segment& segment,
+             const Eigen::Vector3d& expected);
+
+ private:
+  NoiseSettings settings_;
+  Eigen::Vector3d value_ = Eigen::Vector3d::Ones();
+  double segments_ = 0.0;
+};
+
+}  // namespace slipwise

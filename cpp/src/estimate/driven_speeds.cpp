@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Percentiles of speed and yaw rate over the moving time.
+#include "slipwise/estimate/driven_speeds.hpp"
+
+#include "slipwise/actuator/command_chain.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kReferenceShare = 0.9;  // reference speeds are the 90th percentile of those driven so far
+constexpr double kLeastSpeed = 0.05;     // [m/s] and [rad/s]; slower references would make priors meaningless
+
+}  // namespace
+
+void DrivenSpeeds::see(const InputTrack& inputs, const Segment& segment) {
+  for (const DriveStep& step : drive_steps(inputs, {}, {.start = segment.start, .end = segment.end}).steps) {
+    if (step.duration > 0.0) {
+      speeds_.add(step.forward / step.duration, step.duration);
+      yaw_rates_.add(step.turn / step.duration, step.duration);
+    }
+  }
+}
+
+ReferenceSpeeds DrivenSpeeds::reference() const {
+  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed),
+          .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The running mean of squared residuals over their expected size.
+#include "slipwise/estimate/noise_scale.hpp"
+
+#include <algorithm>
+
+namespace slipwise {
+
+void NoiseScale::learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+                       const Segment& segment, const Eigen::Vector3d& expected) {
+  if (!settings_.adapt) {
+    return;
+  }
+  const auto at = linearize_segment(model, estimate.mean, inputs, segment);
+  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
+  const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
+  const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
+  segments_ += 1.0;
+  const double gain = std::max(1.0 / (segments_ + settings_.prior_segments), 1.0 / settings_.memory);
+  value_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.largest * value_) - value_);
+}
+
+}  // namespace slipwise

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Estimators by name: what they learn, from which windows, and in what order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slipwise import _core
+from slipwise.calibration import make_settings
+from slipwise.calibration.calibrate import learning_windows
+from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.drive import WindowSet, prepare_drive
+from slipwise.calibration.estimator_pass import EstimatorPass, estimator_basis, estimator_motion
+from slipwise.calibration.learner import make_learner
+from slipwise.calibration.settings import Settings
+from slipwise.logs.log import Inputs, Log, Poses, Run
+
+SLIP = np.array([-0.1, -0.3])  # edd-2
+
+
+def circling_log() -> Log:
+    """Two minutes of changing circles, poses at 20 Hz, slip in proportion to both speeds."""
+    t = np.arange(0.0, 120.0, 0.05)
+    v = 1.0 + 0.5 * np.sign(np.sin(0.4 * t))
+    omega = 0.6 * np.sign(np.sin(0.23 * t + 0.5))
+    pose, poses = _core.Pose2(0.0, 0.0, 0.0), []
+    for speed, rate in zip(v.tolist(), omega.tolist(), strict=True):
+        poses.append(pose.vector())
+        tangent = np.array([speed * (1.0 + SLIP[0]), 0.0, rate * (1.0 + SLIP[1])]) * 0.05
+        pose = _core.compose(pose, _core.exp(tangent))
+    x, y, yaw = np.array(poses).T
+    rng = np.random.default_rng(5)
+    x, y, yaw = (column + 0.003 * rng.standard_normal(len(t)) for column in (x, y, yaw))
+    wheels = Inputs(t=t, v=v, vy=np.zeros_like(t), omega=omega)
+    seen = Poses(t=t, x=x, y=y, yaw=yaw, frame=np.zeros(len(t), dtype=np.int64))
+    return Log(runs=(Run(name="circles", commands=None, wheels=wheels, poses=seen),))
+
+
+@pytest.fixture(scope="module")
+def settings() -> Settings:
+    return make_settings({"basis": "edd-2", "learn_clock_offset": False})
+
+
+@pytest.fixture(scope="module")
+def windows(settings: Settings) -> WindowSet:
+    return learning_windows(prepare_drive(circling_log(), "wheel"), "wheel", settings)
+
+
+@pytest.mark.parametrize("name", _core.estimator_names())
+def test_every_estimator_learns_the_slip(name: str, settings: Settings, windows: WindowSet) -> None:
+    motion = estimator_motion(name, settings, "wheel")
+    belief = EstimatorPass(name, motion, settings, windows).belief(len(windows))
+    assert belief.mean == pytest.approx(SLIP, abs=0.01)
+    assert belief.variance_ratio.shape == (2,)
+
+
+def test_iekf_is_the_filter_that_calibrates(settings: Settings, windows: WindowSet) -> None:
+    motion = estimator_motion("iekf", settings, "wheel")
+    belief = EstimatorPass("iekf", motion, settings, windows).belief(40)
+    known = CausalPass(make_learner(settings, "wheel").fresh(), windows).belief(40)
+    assert belief.mean == pytest.approx(known.mean, rel=1e-9)
+    assert belief.covariance == pytest.approx(known.covariance, rel=1e-9)
+
+
+def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(
+    settings: Settings, windows: WindowSet
+) -> None:
+    motion = estimator_motion("ekf-thesis", settings, "wheel")
+    thesis = EstimatorPass("ekf-thesis", motion, settings, windows)
+    at = int(np.searchsorted(windows.end, 10.0))
+    assert (thesis.belief(0).mean == 0.0).all()
+    thesis.belief(at)
+    assert thesis._learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
+    with pytest.raises(ValueError, match="is gone"):
+        thesis.belief(at - 1)
+
+
+def test_basis_is_that_of_the_settings_and_thesis_estimators_have_no_lag() -> None:
+    assert estimator_basis(Settings()) == "odd-even-10"
+    assert estimator_basis(make_settings({"basis": "drive-5"})) == "drive-5"
+    assert estimator_motion("delayed-state", Settings(), "command").size == 14
+    assert estimator_motion("ekf-thesis", Settings(), "command").size == 10
+    assert estimator_motion("iekf", Settings(), "wheel").clock_offset
+
+
+def test_an_unknown_estimator_is_refused_by_name(settings: Settings, windows: WindowSet) -> None:
+    motion = estimator_motion("iekf", settings, "wheel")
+    known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state"
+    with pytest.raises(ValueError, match=known):
+        EstimatorPass("magic", motion, settings, windows)
