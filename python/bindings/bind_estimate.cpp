@@ -15,8 +15,8 @@
 #include "slipwise/estimate/noise_fit.hpp"
 #include "slipwise/estimate/observability.hpp"
 #include "slipwise/estimate/sliding_mode_observer.hpp"
-#include "slipwise/estimate/slip_ratio_filter.hpp"
 #include "slipwise/estimate/slip_rate_fit.hpp"
+#include "slipwise/estimate/slip_ratio_filter.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
