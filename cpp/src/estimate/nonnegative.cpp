@@ -53,14 +53,16 @@ Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::Vect
   std::vector<Eigen::Index> free;
   for (Eigen::Index round = 0; round < 3 * b.size(); ++round) {
     Eigen::VectorXd downhill = target - scaled * x;
-    downhill(free).setConstant(0.0);
+    for (const Eigen::Index i : free) {
+      downhill[i] = 0.0;
+    }
     Eigen::Index enter = 0;
     if (downhill.maxCoeff(&enter) <= tolerance) {
       break;
     }
     free.push_back(enter);
     Eigen::VectorXd next = restricted_solution(scaled, target, free);
-    while (!free.empty() && (next(free).array() <= 0.0).any()) {
+    while (std::ranges::any_of(free, [&](Eigen::Index i) { return next[i] <= 0.0; })) {
       step_to_border(x, next, free);
       next = restricted_solution(scaled, target, free);
     }
