@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The causal pass over a log: learn window after window, and keep the belief at the moments asked for."""
+"""What is learned causally, and the belief about its parameters at one moment."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.settings import Settings
 
 Floats = NDArray[np.float64]
@@ -67,18 +66,3 @@ def belief_of(average: _core.ModelAverage) -> Belief:
         variance_ratio=np.array(state.variance_ratio),
         weights=np.array(state.weights),
     )
-
-
-def learn_causally(
-    average: _core.ModelAverage,
-    windows: WindowSet,
-    moments: Collection[int],
-) -> dict[int, Belief]:
-    """Learn all windows in order; return the belief after each number of windows in `moments`."""
-    wanted = set(moments)
-    beliefs = {0: belief_of(average)} if 0 in wanted else {}
-    for i, segment in enumerate(windows.segments):
-        average.learn(windows.track(i), segment)
-        if i + 1 in wanted:
-            beliefs[i + 1] = belief_of(average)
-    return beliefs

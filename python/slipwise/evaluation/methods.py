@@ -14,7 +14,7 @@ from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.estimator_pass import EstimatorPass, estimator_motion
 from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import learn_causally, make_learner
+from slipwise.calibration.learner import make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
@@ -127,7 +127,7 @@ def _model(name: str, contest: Contest) -> Forecaster:
 def _batch(name: str, contest: Contest) -> Forecaster:
     learner = make_learner(contest.settings.model_copy(update={"basis": BATCH_BASIS}), contest.input_name)
     average = learner.fresh()
-    last = learn_causally(average, contest.windows, [len(contest.windows)])[len(contest.windows)]
+    last = CausalPass(average, contest.windows).finish()
     shape = contest.settings.filter_settings().noise.shape
     belief = fit_batch(
         average.model,

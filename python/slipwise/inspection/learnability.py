@@ -9,8 +9,9 @@ import numpy as np
 
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
+from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learner import Belief, learn_causally, make_learner
+from slipwise.calibration.learner import Belief, make_learner
 from slipwise.calibration.verdict import UNDETERMINED_RATIO, drives_for
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
@@ -58,7 +59,7 @@ def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnabili
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
     average = make_learner(settings, input_name).fresh()
-    belief = learn_causally(average, windows, [len(windows)])[len(windows)]
+    belief = CausalPass(average, windows).finish()
     parameters = tuple(
         _parameter((info.name, info.unit), belief, i) for i, info in enumerate(average.model.parameters)
     )
