@@ -16,6 +16,7 @@ from slipwise.models.model import Model
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, between the poses of a predicted path
+LONGEST_OFFSET = 10.0  # s; no clock offset is longer
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,15 +60,25 @@ def predict(
     if initial is not None and not np.isfinite(initial).all():
         raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
     track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    twist = None if initial is None else _core.BodyTwist(initial[0], 0.0, initial[1])
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
-        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
+        segment = _segment(begin, seconds, initial)
         at = _core.linearize_segment(model.motion, model.mean, track, segment)
         poses.append(at.predicted.vector())
         covariance.append(prediction_covariance(model, at, seconds))
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance))
+
+
+def _segment(begin: float, seconds: float, initial: tuple[float, float] | None) -> _core.Segment:
+    """A segment from `begin` on; speeds measured there held while the poses, stamped late, were under way."""
+    segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    if initial is None:
+        return segment
+    held = _core.InputTrack(
+        *(np.array([value]) for value in (begin - LONGEST_OFFSET, initial[0], 0.0, initial[1]))
+    )
+    return segment.with_known_drive(held, begin, _core.BodyTwist(initial[0], 0.0, initial[1]))
 
 
 def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:

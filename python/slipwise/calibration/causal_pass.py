@@ -74,8 +74,12 @@ class HistoryRecorder:
 
     def __call__(self, i: int, update: _core.IekfUpdate, belief: Belief) -> None:
         """Write the row of window i."""
+        self.record(i, update.nis, update.weight, belief)
+
+    def record(self, i: int, nis: float, weight: float, belief: Belief) -> None:
+        """Write the row of window i: its NIS before it was learned, its weight, the belief after it."""
         rows = self.history
         rows.mean[i], rows.std[i] = belief.mean, np.sqrt(np.diag(belief.covariance))
-        rows.nis[i], rows.weight[i], rows.basis_weight[i] = update.nis, update.weight, belief.weights
+        rows.nis[i], rows.weight[i], rows.basis_weight[i] = nis, weight, belief.weights
         if self._progress is not None and i % 50 == 0:
             self._progress((i + 1) / len(rows.t))

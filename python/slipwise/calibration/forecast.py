@@ -87,7 +87,9 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 
 def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
-    at = _core.linearize_segment(forecaster.model, belief.mean, targets.track(i), targets.segments[i])
+    at = _core.linearize_segment(
+        belief.motion or forecaster.model, belief.mean, targets.track(i), targets.segments[i]
+    )
     draft.pose[i] = at.predicted.vector()
     draft.covariance[i] = _core.prediction_covariance(
         at, belief.covariance, forecaster.noise, belief.noise_scale
@@ -97,7 +99,11 @@ def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> N
 def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     path = _core.integrate_segment(
-        forecaster.model, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
+        belief.motion or forecaster.model,
+        belief.mean,
+        targets.track(i),
+        targets.segments[i],
+        _core.Integrator.Exact,
     )
     draft.in_sample[i] = path.poses[-1]
 

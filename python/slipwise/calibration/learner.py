@@ -26,6 +26,7 @@ class Belief:
     prior_std: Floats  # [P]
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
+    motion: _core.MotionModel | None = None  # whose parameters these are, where it is not the forecaster's
 
 
 @dataclass(frozen=True, eq=False)

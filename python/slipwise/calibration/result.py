@@ -40,6 +40,8 @@ class History:
     weight: Floats  # [W] how much the window counted: 1 full, 0 left out
     bases: tuple[str, ...]  # [B] bases averaged, one where the basis is fixed
     basis_weight: Floats  # [W, B] their weights after the window
+    structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
+    structure_weight: Floats | None = None  # [W, S] their weights after the window
 
 
 @dataclass(frozen=True, eq=False)

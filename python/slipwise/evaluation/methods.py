@@ -17,6 +17,7 @@ from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.structure_choice import learning_pass
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.models.model import Model
@@ -92,11 +93,12 @@ def method_info(name: str) -> MethodInfo:
 
 
 def _learned(name: str, contest: Contest) -> Forecaster:
-    learner = make_learner(contest.settings.model_copy(update={"basis": name}), contest.input_name)
+    settings = contest.settings.model_copy(update={"basis": name})
+    learner = make_learner(settings, contest.input_name)
     average = learner.fresh()
-    shape = contest.settings.filter_settings().noise.shape
-    causal_pass = CausalPass(average, contest.windows)
-    return Forecaster(name, average.model, shape, causal_pass.belief, learner.dynamics)
+    shape = settings.filter_settings().noise.shape
+    passing = learning_pass(average, contest.windows, settings)
+    return Forecaster(name, average.model, shape, passing.belief, learner.dynamics)
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:

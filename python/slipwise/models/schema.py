@@ -119,6 +119,7 @@ class ModelFile(_Section):
     slip: Slip
     dynamics: bool  # lag and delay are parameters
     clock_offset: bool  # the offset between inputs and poses is a parameter
+    response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise

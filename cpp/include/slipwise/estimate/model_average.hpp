@@ -17,6 +17,11 @@ struct ModelAverageSettings {
   double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a model can come back [-]
 };
 
+/// The weights after models predicted a segment with these log scores (derivations.md, section 7).
+/// \throws std::invalid_argument when there is not one score per weight.
+Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
+                          const ModelAverageSettings& settings);
+
 /// Parameters, covariance and noise of the average, over the union of all terms.
 struct AverageState {
   Estimate estimate;
@@ -43,8 +48,8 @@ class ModelAverage {
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
+  Eigen::VectorXd log_scores(const std::vector<IekfUpdate>& updates) const;
   Eigen::VectorXd variance_ratio() const;
-  void weigh(const Eigen::VectorXd& log_scores);
 
   MotionModel model_;
   std::vector<CausalFilter> filters_;

@@ -32,8 +32,12 @@ class NoiseScale {
   /// `expected` are the variances of the shape. Does nothing where the settings say that the noise is known.
   void learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs, const Segment& segment,
              const Eigen::Vector3d& expected);
+  /// The same for a model that never learns the segment: of its squared error, the parameters explain `open`.
+  void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
 
  private:
+  void follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected);
+
   NoiseSettings settings_;
   Eigen::Vector3d value_ = Eigen::Vector3d::Ones();
   double segments_ = 0.0;
