@@ -16,11 +16,8 @@ from slipwise.simulation import Scenario, Simulation, hold, simulate
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # [m/s]
 CURVATURES = (0.1, 0.25, 0.5)  # [1/m], driven to both sides
 CIRCLE = (0.5, 0.5)  # [m/s], [1/m] of figure 4.1
-WANDER = (
-    0.1,
-    0.15,
-)  # [m/s], [rad/s] by which the drives wander around the command they hold, anew every 0.05 s
-STD_XY, STD_YAW = 0.003, 0.005  # [m], [rad] of the poses of held commands, smoothed by an inertial unit
+WANDER = (0.05, 0.1)  # [m/s], [rad/s] by which drives wander around what they hold, anew every 0.05 s
+STD_XY, STD_YAW = 0.005, 0.015  # [m], [rad] of a measured pose under held commands
 ENDINGS = (".csv.gz", ".csv", ".parquet", ".mcap", "")
 
 
