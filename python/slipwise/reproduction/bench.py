@@ -27,15 +27,19 @@ class MissingLogError(LogError):
 
 @dataclass(frozen=True)
 class BenchSize:
-    """How long the simulated drives are."""
+    """How much is simulated."""
 
-    circle_time: float = 33.0  # [s] on each of the 24 circles
+    circle_speeds: tuple[float, ...] = SPEEDS  # [m/s]
+    circle_time: float = 33.0  # [s] on each of the circles
     one_circle_time: float = 303.0  # [s] on the circle of figure 4.1
     long_time: float = 540.0  # [s] of the drive with changing commands
+    drawn_groups: int = 60  # of segments with known slip and noise
 
 
 FULL = BenchSize()
-SMALL = BenchSize(circle_time=10.0, one_circle_time=33.0, long_time=60.0)
+SMALL = BenchSize(
+    circle_speeds=(1.0, 2.0), circle_time=9.2, one_circle_time=18.0, long_time=60.0, drawn_groups=4
+)
 
 
 class Bench:
@@ -54,9 +58,10 @@ class Bench:
         self._logs: dict[str, Log] = {}
 
     def circles(self, ground: str = "tyre-force") -> Simulation:
-        """Return held commands: 4 speeds times 3 curvatures to both sides; the drives wander around them."""
+        """Return held commands: speeds times curvatures to both sides; the drives wander around them."""
         held = [
-            (v, side * curvature * v) for v, curvature, side in itertools.product(SPEEDS, CURVATURES, (1, -1))
+            (v, side * curvature * v)
+            for v, curvature, side in itertools.product(self.size.circle_speeds, CURVATURES, (1, -1))
         ]
         return self._held(f"circles, {ground}", held, self.size.circle_time, ground)
 

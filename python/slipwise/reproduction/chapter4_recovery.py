@@ -6,14 +6,14 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.reproduction.bench import SMALL, Bench
+from slipwise.reproduction.bench import Bench
 from slipwise.reproduction.drawn_groups import PSD, START, drawn_group
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.grid import Grid
 from slipwise.reproduction.panel import FITTED, RIVAL, ErrorBars, Floats, Line, Panel
 from slipwise.steady import NoiseRules, fit_group_noise
 
-GROUPS, SEGMENTS = 40, 60
+SEGMENTS = 60
 NAMES = ("q lon", "q lat", "q ang", "P0 x", "P0 y", "P0 θ")
 FITS = {
     ("(4.13)", "mean"): NoiseRules(objective=_core.NoiseObjective.Thesis),
@@ -25,7 +25,7 @@ FITS = {
 
 def recovered_noise(bench: Bench) -> Exhibit:
     """Compare objectives and centres over groups with known noise."""
-    count = GROUPS if bench.size != SMALL else 3
+    count = bench.size.drawn_groups
     groups = [drawn_group(seed=1000 * bench.seed + 500 + seed, count=SEGMENTS) for seed in range(count)]
     truth = np.concatenate((PSD, START))
     found: dict[tuple[str, str], Floats] = {}

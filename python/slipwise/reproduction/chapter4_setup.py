@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.reproduction.bench import CURVATURES, SPEEDS, Bench
+from slipwise.reproduction.bench import CURVATURES, Bench
 from slipwise.reproduction.chapter4_paths import RULES, held_paths
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.grid import Grid
@@ -38,9 +38,9 @@ def commands(bench: Bench) -> Exhibit:
         thesis="Figure 4.7",
         title="Commands of the experiment",
         shows="Speed and curvature as they were commanded, each pair held, and the path.",
-        agrees=f"Circles at {len(SPEEDS)} speeds and {len(CURVATURES)} curvatures, to the left and to the "
-        f"right, on level ground that is the same everywhere: {len(groups)} commands give {len(paths)} "
-        f"segments of {RULES.length:g} s.",
+        agrees=f"Circles at {len(bench.size.circle_speeds)} speeds and {len(CURVATURES)} curvatures, to the "
+        f"left and to the right, on level ground that is the same everywhere: {len(groups)} commands give "
+        f"{len(paths)} segments of {RULES.length:g} s.",
         differs=f"Each command is held for {bench.size.circle_time:g} s, and the first {RULES.settle:g} s "
         "are left out until the drive's lag has settled; the thesis drove for longer and does not say what "
         "it left out, nor which its speeds and other curvatures were.",

@@ -7,13 +7,13 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.reproduction.bench import SMALL, Bench
+from slipwise.reproduction.bench import Bench
 from slipwise.reproduction.drawn_groups import NOISE, SLIP, drawn_group
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.grid import Grid
 from slipwise.steady import SlipFitRules, SteadyGroup, fit_slip
 
-GROUPS, SEGMENTS = 60, 20
+SEGMENTS = 20
 PRINTED_LENGTH = 0.25  # [m] of the row with the weight L instead of L²
 RULES = {
     "(4.1) with L², L = 1 m": SlipFitRules(length=1.0),
@@ -25,7 +25,7 @@ RULES = {
 
 def compared_weights(bench: Bench) -> Exhibit:
     """Compare the weights over groups of segments with known slip."""
-    count = GROUPS if bench.size != SMALL else 6
+    count = bench.size.drawn_groups
     groups = [drawn_group(seed=1000 * bench.seed + seed, count=SEGMENTS) for seed in range(count)]
     rows, sizes = [], {}
     for name, rules in RULES.items():
