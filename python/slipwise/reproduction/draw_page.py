@@ -71,6 +71,6 @@ def _legend(panel: Panel) -> str:
         if isinstance(series, Line):
             kind = {"solid": "line", "dot": "dot"}.get(series.dash, "dash")
         elif isinstance(series, Points | ErrorBars):
-            kind = "mark"
+            kind = "ring" if series.mark == "ring" else "mark"
         entries.setdefault(series.label, (series.label, colour, kind))
     return legend(entries.values()) if entries else ""

@@ -165,13 +165,14 @@ def _heat(heat: Heat) -> Trace:
 
 
 def _axes(panel: Panel) -> Trace:
-    x = axis(panel.x_label, type="log") if panel.log_x else axis(panel.x_label)
+    powers: Trace = {"type": "log", "exponentformat": "power"}
+    x = axis(panel.x_label, **(powers if panel.log_x else {}))
+    y = axis(panel.y_label, **(powers if panel.log_y else {}))
     if panel.x_names:
         x |= {
             "tickvals": list(range(len(panel.x_names))),
             "ticktext": [plain_label(n) for n in panel.x_names],
         }
-    y = axis(panel.y_label, type="log") if panel.log_y else axis(panel.y_label)
     if panel.equal_axes:
         y |= {"scaleanchor": "x", "scaleratio": 1}
     if any(isinstance(series, Heat) for series in panel.series):
