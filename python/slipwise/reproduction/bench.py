@@ -3,15 +3,18 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
+import signal
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from slipwise.errors import LogError
+from slipwise.errors import LogError, SlipwiseError
 from slipwise.logs import Inputs, Log, open_log
 from slipwise.simulation import Scenario, Simulation, hold, simulate
+from slipwise.simulation.engine import load_mujoco
 
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # [m/s]
 CURVATURES = (0.1, 0.25, 0.5)  # [1/m], driven to both sides
@@ -121,3 +124,11 @@ def _one_after_the_other(parts: list[Inputs]) -> Inputs:
     t = np.concatenate([part.t + start for part, start in zip(parts, starts, strict=True)])
     v, vy, omega = (np.concatenate([getattr(part, name) for part in parts]) for name in ("v", "vy", "omega"))
     return Inputs(t=t, v=v, vy=vy, omega=omega)
+
+
+def load_simulator() -> None:
+    """Load MuJoCo with SIGTERM held back: it starts programs of its own then, which would complain."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
+    with contextlib.suppress(SlipwiseError):
+        load_mujoco()
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import multiprocessing
 import queue
 import signal
@@ -15,12 +14,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError, SlipwiseError
-from slipwise.reproduction.bench import FULL, Bench, BenchSize
+from slipwise.reproduction.bench import FULL, Bench, BenchSize, load_simulator
 from slipwise.reproduction.chapter2 import chapter2_exhibits
 from slipwise.reproduction.chapter3 import chapter3_exhibits
 from slipwise.reproduction.chapter4 import chapter4_exhibits
 from slipwise.reproduction.exhibit import Exhibit
-from slipwise.simulation.engine import load_mujoco
 
 if TYPE_CHECKING:
     from multiprocessing.queues import Queue
@@ -151,17 +149,9 @@ class _Worker:
 
 def _start(plan: BenchPlan, reports: Queue[tuple[str, str, float]]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent ends the workers
-    _load_simulator()
+    load_simulator()
     _Worker.bench = Bench(seed=plan.seed, data=plan.data, size=plan.size)
     _Worker.reports = reports
-
-
-def _load_simulator() -> None:
-    """Load MuJoCo with SIGTERM held back: it starts programs of its own then, which would complain."""
-    signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGTERM,))
-    with contextlib.suppress(SlipwiseError):
-        load_mujoco()
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGTERM,))
 
 
 def _make(chapter: Chapter) -> list[Exhibit]:
