@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.reproduction.bench import FULL, Bench, BenchSize
 from slipwise.reproduction.chapter4 import chapter4_exhibits
+from slipwise.reproduction.chapter5 import chapter5_exhibits
 from slipwise.reproduction.exhibit import Exhibit
 
 if TYPE_CHECKING:
@@ -45,7 +46,10 @@ class ChapterResult:
     exhibits: tuple[Exhibit, ...]
 
 
-CHAPTERS = (Chapter("chapter-4", "Steady state", chapter4_exhibits),)
+CHAPTERS = (
+    Chapter("chapter-4", "Steady state", chapter4_exhibits),
+    Chapter("chapter-5", "Slip surfaces", chapter5_exhibits),
+)
 
 
 @dataclass(frozen=True)
