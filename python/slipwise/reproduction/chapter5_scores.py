@@ -12,7 +12,7 @@ from slipwise.reproduction.bench import Bench
 from slipwise.reproduction.chapter5_examples import SteadyExamples, all_examples, fitted
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.grid import Grid
-from slipwise.reproduction.panel import FITTED, INK, MEASURED, RIVAL, Band, Line, Panel, Points, Series
+from slipwise.reproduction.panel import FITTED, INK, MEASURED, RIVAL, Band, Dash, Line, Panel, Points, Series
 from slipwise.surfaces import (
     BayesianSurface,
     GaussianProcessSurface,
@@ -31,10 +31,10 @@ SURFACES: dict[str, Callable[[], SlipSurface]] = {
     "Bayesian, terms of (5.1)": lambda: BayesianSurface(THESIS),
     "Bayesian, odd-even-10": lambda: BayesianSurface(ODD_EVEN),
 }
-CUT = (
-    ("least squares, odd-even-10", FITTED),
-    ("Gaussian process", RIVAL),
-    ("Bayesian, odd-even-10", MEASURED),
+CUT: tuple[tuple[str, str, Dash], ...] = (
+    ("least squares, odd-even-10", FITTED, "solid"),
+    ("Gaussian process", RIVAL, "solid"),
+    ("Bayesian, odd-even-10", MEASURED, "dash"),
 )
 COLUMNS = (
     "surface",
@@ -57,7 +57,8 @@ def score_exhibit(bench: Bench) -> Exhibit:
         thesis="Not in the thesis",
         title="The three regressions on commands that they have not learned",
         shows="Every fifth command is left out of learning and predicted. Log score: mean logarithm of the "
-        "predicted density at what was measured, more is better. The pictures cut the surfaces of the forward slip rate at one speed.",
+        "predicted density at what was measured, more is better. The pictures cut the surfaces of the "
+        "forward slip rate at one speed.",
         agrees=_agrees(sources, scores),
         differs="The thesis shows the surfaces and scores none. " + _differs(scores[0]),
         source="; ".join(source.source for source in sources),
@@ -106,24 +107,25 @@ def _agrees(sources: list[SteadyExamples], scores: list[dict[str, SurfaceScore]]
 def _differs(simulated: dict[str, SurfaceScore]) -> str:
     """What the terms of (5.1) cost on the ground with a known law."""
     thesis, other = simulated["least squares, terms of (5.1)"], simulated["least squares, odd-even-10"]
+    sideways = [f"{1e3 * score.error[1]:.1f} mm/s" for score in (thesis, other)]
     return (
-        f"The terms of (5.1) have no V ω: sideways they miss by {1e3 * thesis.error[1]:.1f} mm/s where those "
-        f"of odd-even-10 miss by {1e3 * other.error[1]:.1f} on tyre-force ground. A dash for a log score means "
-        "that the standard deviation of (5.6) is negative somewhere."
+        f"The terms of (5.1) have no V ω: sideways they miss by {sideways[0]} where those of odd-even-10 "
+        f"miss by {sideways[1]} on tyre-force ground. A dash for a log score means that the standard "
+        "deviation of (5.6) is negative somewhere."
     )
 
 
 def _cut(source: SteadyExamples) -> Panel:
-    """The forward slip rate over yaw rate, where the three differ the most, at the speed that was driven the most."""
+    """The forward slip rate, in which the three differ the most, over yaw rate at the median speed."""
     v = float(np.median(np.abs(source.whole.v)))
     yaw_rate = np.linspace(source.whole.omega.min(), source.whole.omega.max(), 61)
     series: list[Series] = []
-    for label, colour in CUT:
+    for label, colour, dash in CUT:
         prediction = fitted(SURFACES[label], source.learned).predict(np.full_like(yaw_rate, v), yaw_rate)
         mean, std = prediction.mean[:, 0], prediction.std[:, 0]
         series += [
             Band(yaw_rate, mean - std, mean + std, colour=colour),
-            Line(yaw_rate, mean, label, colour),
+            Line(yaw_rate, mean, label, colour, dash),
         ]
     near = np.abs(source.held_out.v - v) < 0.3
     held = source.held_out[near]

@@ -17,6 +17,7 @@ from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.reproduction.bench import FULL, Bench, BenchSize
 from slipwise.reproduction.chapter4 import chapter4_exhibits
 from slipwise.reproduction.chapter5 import chapter5_exhibits
+from slipwise.reproduction.chapter6 import chapter6_exhibits
 from slipwise.reproduction.exhibit import Exhibit
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ class ChapterResult:
 CHAPTERS = (
     Chapter("chapter-4", "Steady state", chapter4_exhibits),
     Chapter("chapter-5", "Slip surfaces", chapter5_exhibits),
+    Chapter("chapter-6", "Transient dynamics", chapter6_exhibits),
 )
 
 
