@@ -83,8 +83,8 @@ def filter_exhibit(filtered: Recording, descent: Recording, source: str) -> Exhi
         f"{100.0 * apart:.0f} % of the way from zero to the filter's end apart. {_settling(filtered)}",
         differs=f"Its residuals are {_told(filtered.innovation)}, {more} than those of gradient descent "
         f"({_told(descent.innovation)}): Table 6.2 shows which predicts better. The thesis takes "
-        "the different values for local minima; the terms of (6.10) do not hold this ground's slip, so each estimator settles on "
-        "what fits the segments as it weighs them.",
+        "the different values for local minima; the terms of (6.10) do not hold this ground's slip, so each "
+        "estimator settles on what fits the segments as it weighs them.",
         source=source,
         parts=(*parameter_panels(filtered), *_residual_panels(filtered.t[1:], filtered.innovation, "filter")),
     )

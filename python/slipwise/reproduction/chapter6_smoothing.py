@@ -55,7 +55,8 @@ def smoothing_exhibit(seed: int, duration: float) -> Exhibit:
         differs="The thesis filters only. Afterwards, the smoother knows both sides of every moment: "
         f"{number_text(errors[1][0], 2)} and {number_text(errors[1][1], 2)} rms, without the filter's "
         f"lateness. Within one stated standard deviation lie {inside[0]:.0f} % (filter) and "
-        f"{inside[1]:.0f} % (smoother) of the true values; 68 % would be exact for a random walk, which a sine is not.",
+        f"{inside[1]:.0f} % (smoother) of the true values; 68 % would be exact for a random walk, "
+        "which a sine is not.",
         source=f"windows of {WINDOW:g} s simulated with known slip noise and pose noise, {duration:g} s",
         parts=tuple(_panel(found, parameter) for parameter in range(len(NAMES))),
     )

@@ -145,8 +145,8 @@ def _agrees(contests: dict[str, Contest]) -> str:
         said.append(
             f"from {INPUTS[name]} the default is in-sample {number_text(default[0], 2)} times better in "
             f"position and {number_text(default[1], 2)} in heading than no slip, {reach} the thesis's 4.4 "
-            f"and 19.5; the thesis's own filter is {number_text(thesis[0], 2)} and {number_text(thesis[1], 2)} "
-            "times better"
+            f"and 19.5; the thesis's own filter is {number_text(thesis[0], 2)} and "
+            f"{number_text(thesis[1], 2)} times better"
         )
     return f"Learned slip makes residuals many times smaller: {'; '.join(said)}."
 

@@ -71,8 +71,8 @@ def learned_surface_exhibit(filtered: Recording, correct: Recording, source: str
         "curvature, as the surfaces of chapter 5.",
         differs="The sheets are of the mean surface, without the noise of single segments. The iterated "
         f"filter on disjoint segments differs from it by {number_text(away[0], 2)}, "
-        f"{number_text(away[1], 2)} m/s and {number_text(away[2], 2)} rad/s rms, {_sigmas(mean - other, std)} "
-        "of the thesis's standard deviations (median) and "
+        f"{number_text(away[1], 2)} m/s and {number_text(away[2], 2)} rad/s rms, "
+        f"{_sigmas(mean - other, std)} of the thesis's standard deviations (median) and "
         f"{_sigmas(mean - other, other_std)} of its own.",
         source=source,
         parts=panels,
