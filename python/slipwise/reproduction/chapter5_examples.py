@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise import _core
-from slipwise.reproduction.bench import Bench, MissingLogError
+from slipwise.reproduction.bench import CURVATURES, Bench, MissingLogError
 from slipwise.reproduction.chapter4_paths import held_paths
 from slipwise.reproduction.panel import Floats
 from slipwise.steady import PathRules, SlipFitRules, SteadyGroup, SteadyPath, fit_slip
@@ -37,7 +37,8 @@ class SteadyExamples:
 
 def simulated_examples(bench: Bench, ground: str) -> SteadyExamples:
     """Return the segments of the bench's circles on one ground."""
-    told = f"24 circles of {bench.size.circle_time:g} s"
+    circles = len(bench.size.circle_speeds) * len(CURVATURES) * 2
+    told = f"{circles} circles of {bench.size.circle_time:g} s"
     return _split(f"simulated Land Tamer on {ground} ground, {told}", held_paths(bench.circles(ground).log))
 
 

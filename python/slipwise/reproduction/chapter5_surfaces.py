@@ -55,22 +55,25 @@ def surface_exhibit(bench: Bench, regression: Regression) -> Exhibit:
     """Make figure 5.1, 5.2 or 5.3."""
     examples = simulated_examples(bench, "tyre-force")
     surface = fitted(lambda: regression.make(TERMS), examples.whole)
-    parts = [curvature_panel(surface, examples.whole, channel) for channel in range(3)]
-    sources = [examples]
+    parts = [curvature_panel(surface, examples.whole, channel, name) for channel, name in enumerate(CHANNELS)]
+    contact = simulated_examples(bench, "contact-friction")
+    other = fitted(lambda: regression.make(TERMS), contact.whole)
+    parts.append(curvature_panel(other, contact.whole, 2, "angular, contact friction"))
+    sources = [examples, contact]
     try:
         sources.append(husky_examples(bench))
     except MissingLogError as error:
         missing = f"; {error}"
     else:
-        real, missing = fitted(lambda: regression.make(STILL_TERMS), sources[1].whole), ""
-        parts.append(yaw_rate_panel(real, sources[1].whole, 2, "angular, real Husky"))
+        real, missing = fitted(lambda: regression.make(STILL_TERMS), sources[2].whole), ""
+        parts.append(yaw_rate_panel(real, sources[2].whole, 2, "angular, real Husky"))
     at = surface.predict(examples.whole.v, examples.whole.omega)
     return Exhibit(
         key=regression.key,
         thesis=regression.figure,
         title=f"Slip surfaces by {regression.title}",
         shows="Each dot is the slip rate of one segment of 3 s; the coloured surface is the mean, the grey "
-        "sheets lie one standard deviation of a segment away. They can be turned.",
+        "sheets lie one standard deviation of a segment away. Without a name of a ground: tyre force.",
         agrees=_agrees(regression, examples.whole, at),
         differs=_differs(regression),
         source="; ".join(s.source for s in sources) + missing,
@@ -78,14 +81,14 @@ def surface_exhibit(bench: Bench, regression: Regression) -> Exhibit:
     )
 
 
-def curvature_panel(surface: SlipSurface, examples: SlipExamples, channel: int) -> Panel:
+def curvature_panel(surface: SlipSurface, examples: SlipExamples, channel: int, title: str) -> Panel:
     """Draw one channel over speed and curvature, as the thesis does."""
     kappa = examples.omega / examples.v
     speed = np.linspace(examples.v.min(), examples.v.max(), NODES)
     curvature = np.linspace(kappa.min(), kappa.max(), NODES)
     prediction = over_curvature(surface, speed, curvature)
     points = Points(examples.v, kappa, examples.slip[:, channel], colour=INK, size=3.0)
-    return _solid(CHANNELS[channel], "κ [1/m]", prediction, (speed, curvature, channel), points)
+    return _solid(title, "κ [1/m]", prediction, (speed, curvature, channel), points)
 
 
 def yaw_rate_panel(surface: SlipSurface, examples: SlipExamples, channel: int, title: str) -> Panel:
