@@ -23,4 +23,4 @@ def chapter5_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> l
     exhibits.append(score_exhibit(bench))
     exhibits.insert(1, spread_exhibit(bench))
     progress("times", 0.9)
-    return [*exhibits, times_exhibit(bench.seed)]
+    return [*exhibits, times_exhibit(bench)]
