@@ -80,8 +80,8 @@ def filter_exhibit(filtered: Recording, descent: Recording, source: str) -> Exhi
         thesis="Figure 6.5",
         title="Extended Kalman filter: parameters and residuals",
         shows="The same drive learned by the filter of Table 6.1 as written, with its Jacobian (6.7).",
-        agrees="The parameters converge to other values than those of gradient descent: the two ends lie "
-        f"{100.0 * apart:.0f} % of the way from zero to the filter's end apart. {_settling(filtered)}",
+        agrees="The parameters converge to other values than those of gradient descent: their difference is "
+        f"{100.0 * apart:.0f} % as long as the filter's own, in units of the priors. {_settling(filtered)}",
         differs=f"Its residuals are {_told(filtered.innovation)}, {more} than those of gradient descent "
         f"({_told(descent.innovation)}): Table 6.2 shows which predicts better. The thesis takes "
         "the different values for local minima; the terms of (6.10) do not hold this ground's slip, so each "
@@ -151,8 +151,8 @@ def _settling(recording: Recording) -> str:
     whole = float(np.linalg.norm(recording.mean[-1] / prior))
     left = float(np.linalg.norm((recording.mean[-1] - recording.mean[at]) / prior))
     return (
-        f"After {recording.t[at] - recording.t[0]:.0f} s they are still {100.0 * left / whole:.0f} % of the "
-        "way from zero to their end away from it (in units of their priors)."
+        f"After {recording.t[at] - recording.t[0]:.0f} s their distance to their end is still "
+        f"{100.0 * left / whole:.0f} % of what it was at the start."
     )
 
 
