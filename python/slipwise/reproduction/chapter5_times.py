@@ -104,17 +104,18 @@ def _seconds(work: Callable[[], object]) -> float:
 def _grid(costs: dict[str, list[Cost]]) -> Grid:
     rows = []
     for name, row in costs.items():
-        fits = [_milliseconds(c.fit, measured=c.measured) for c in row]
-        adds = [_milliseconds(c.add, measured=c.measured) for c in row]
+        fits = [_time_text(c.fit, measured=c.measured) for c in row]
+        adds = [_time_text(c.add, measured=c.measured) for c in row]
         rows.append((name, *fits, *adds))
-    heads = [f"{what}, N = {size} [ms]" for what in ("fit", "add one") for size in SIZES]
+    heads = [f"{what}, N = {size}" for what in ("fit", "add one") for size in SIZES]
     note = "Times depend on the machine and differ from run to run."
     return Grid("Processor time", ("surface", *heads), tuple(rows), note)
 
 
-def _milliseconds(seconds: float, *, measured: bool) -> str:
-    value = float(f"{1e3 * seconds:.2g}")
-    return number_text(value, 2) if measured else f"about {number_text(value, 2)}"
+def _time_text(seconds: float, *, measured: bool) -> str:
+    rounded = float(f"{seconds:.2g}")
+    text = f"{number_text(rounded, 2)} s" if seconds >= 1.0 else f"{number_text(1e3 * rounded, 2)} ms"
+    return text if measured else f"about {text}"
 
 
 def _panel(costs: dict[str, list[Cost]]) -> Panel:

@@ -43,7 +43,7 @@ def test_every_figure_and_table_is_there_and_told_with_finite_numbers(exhibits: 
 
 def test_surfaces_have_a_finite_mean_a_positive_spread_and_their_examples(exhibits: Exhibits) -> None:
     for key in ("figure-5-1", "figure-5-2", "figure-5-3"):
-        assert len(exhibits[key].panels) == 4
+        assert len(exhibits[key].panels) == 3
         assert "is missing" in exhibits[key].source
         for panel in exhibits[key].panels:
             surface = next(series for series in panel.series if isinstance(series, Surface))
