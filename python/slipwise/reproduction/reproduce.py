@@ -18,6 +18,8 @@ from slipwise.reproduction.bench import FULL, Bench, BenchSize, load_simulator
 from slipwise.reproduction.chapter2 import chapter2_exhibits
 from slipwise.reproduction.chapter3 import chapter3_exhibits
 from slipwise.reproduction.chapter4 import chapter4_exhibits
+from slipwise.reproduction.chapter5 import chapter5_exhibits
+from slipwise.reproduction.chapter6 import chapter6_exhibits
 from slipwise.reproduction.exhibit import Exhibit
 
 if TYPE_CHECKING:
@@ -51,6 +53,8 @@ CHAPTERS = (
     Chapter("chapter-2", "Chapter 2: related work", chapter2_exhibits),
     Chapter("chapter-3", "Chapter 3: the vehicle's dynamics", chapter3_exhibits),
     Chapter("chapter-4", "Chapter 4: steady state", chapter4_exhibits),
+    Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_exhibits),
+    Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_exhibits),
 )
 
 
