@@ -26,6 +26,7 @@ class Belief:
     prior_std: Floats  # [P]
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
+    noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
 
 
 @dataclass(frozen=True, eq=False)
