@@ -51,6 +51,7 @@ class SurfaceRules:
     method: str
     motion: _core.MotionModel  # the terms behind lag, delay and clock offset
     slip_fraction: float  # of the motion that a term may explain before any example
+    noise: _core.MotionNoise  # its pose noise holds beside the surface's own slip noise
 
 
 def surface_forecaster(name: str, input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
@@ -62,11 +63,11 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     learner = make_learner(settings.model_copy(update={"basis": CHAIN_BASIS}), input_name)
     basis = settings.model_copy(update={"basis": estimator_basis(settings)}).bases()[0]
     motion = _core.MotionModel(basis, learner.dynamics, learner.clock_offset)
-    rules = SurfaceRules(name, motion, settings.prior.slip_fraction)
+    shape = settings.filter_settings().noise.shape
+    rules = SurfaceRules(name, motion, settings.prior.slip_fraction, shape)
     if name == "surface-gaussian-process":
         require_scikit_learn()
     learned = SurfacePass(rules, learner.fresh(), windows)
-    shape = settings.filter_settings().noise.shape
     return Forecaster(name, motion, shape, learned.belief, learner.dynamics)
 
 
@@ -128,7 +129,7 @@ class SurfacePass:
         covariance[size:, size:] = chain.covariance[start:, start:]
         prior_std = np.concatenate((slip.prior_std, chain.prior_std[start:]))
         variance = np.square(slip.noise_std) + np.square(slip.projection_rms)
-        learned = self._regression.fitted
+        noise = self._slip_noise(variance * self._windows.length) if self._regression.fitted else None
         return Belief(
             mean=np.concatenate((slip.alpha, chain.mean[start:])),
             covariance=covariance,
@@ -136,7 +137,14 @@ class SurfacePass:
             prior_std=prior_std,
             variance_ratio=np.diag(covariance) / prior_std**2,
             weights=np.ones(1),
-            noise=_slip_noise(variance * self._windows.length) if learned else None,
+            noise=noise,
+        )
+
+    def _slip_noise(self, density: Floats) -> _core.MotionNoise:
+        """White slip noise of this density [3], and the pose noise of the settings."""
+        poses = self._rules.noise
+        return _core.MotionNoise(
+            density.tolist(), [0.0] * 3, [0.0] * 3, poses.pose_std_xy, poses.pose_std_yaw
         )
 
 
@@ -218,8 +226,3 @@ class SurfaceRegression:
     def _prior_std(self, reference: tuple[float, float]) -> Floats:
         std = _core.slip_prior_std(self._basis, *reference, self._rules.slip_fraction)
         return np.asarray(std, dtype=np.float64)
-
-
-def _slip_noise(density: Floats) -> _core.MotionNoise:
-    """White slip noise of this density; the noise of poses is already in what examples scatter by."""
-    return _core.MotionNoise(density.tolist(), [0.0] * 3, [0.0] * 3, 0.0, 0.0)
