@@ -101,7 +101,7 @@ $(STAMPS)/env: FORCE
 
 $(STAMPS)/run: $(STAMPS)/env pyproject.toml constraints.txt
 	@echo "installing what slipwise needs"
-	@$(PYTHON_IN) tools/requirements.py build native run gp sim > $(STAMPS)/run.txt
+	@$(PYTHON_IN) tools/requirements.py build native run gp sim thesis > $(STAMPS)/run.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/run.txt
 	@touch $@
 

@@ -12,13 +12,16 @@ Floats = NDArray[np.float64]
 RADIUS_95 = float(np.sqrt(-2.0 * np.log(0.05)))
 
 
-def ellipse(centre: Floats, covariance: Floats, points: int = 49) -> Floats | None:
+def ellipse(
+    centre: Floats, covariance: Floats, points: int = 49, *, radius: float = RADIUS_95
+) -> Floats | None:
     """Return the outline [points, 2] of the 95 % ellipse; None where the covariance [2, 2] is none.
 
     Args:
         centre: x, y [m].
         covariance: of x, y [m^2].
         points: of the closed outline.
+        radius: in standard deviations.
     """
     if not (np.isfinite(covariance).all() and np.isfinite(centre).all()):
         return None
@@ -27,4 +30,4 @@ def ellipse(centre: Floats, covariance: Floats, points: int = 49) -> Floats | No
         return None
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     circle = np.column_stack((np.cos(angle), np.sin(angle)))
-    return np.asarray(centre + RADIUS_95 * (circle * np.sqrt(values)) @ vectors.T)
+    return np.asarray(centre + radius * (circle * np.sqrt(values)) @ vectors.T)

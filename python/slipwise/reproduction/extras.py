@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Says before the work which optional library it lacks."""
+
+from __future__ import annotations
+
+import importlib
+
+from slipwise.errors import SlipwiseError
+
+_LIBRARIES = {"matplotlib": "pictures", "mujoco": "simulation", "sklearn": "Gaussian processes"}
+
+
+def refuse_missing_extras() -> None:
+    """Raise where a library that the reproduction needs is not installed.
+
+    Raises:
+        SlipwiseError: one is missing.
+    """
+    for library, purpose in _LIBRARIES.items():
+        try:
+            importlib.import_module(library)
+        except ImportError as error:
+            raise SlipwiseError(
+                f"the reproduction needs {library} for {purpose}, which is not installed",
+                where=str(error),
+                advice='pip install "slipwise[thesis,sim,gp]"',
+            ) from error
