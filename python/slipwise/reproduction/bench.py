@@ -30,15 +30,16 @@ class MissingLogError(LogError):
 
 @dataclass(frozen=True)
 class BenchSize:
-    """How long the simulated drives are."""
+    """How long the simulated drives are, and how many."""
 
     circle_time: float = 33.0  # [s] on each of the 24 circles
     one_circle_time: float = 303.0  # [s] on the circle of figure 4.1
     long_time: float = 540.0  # [s] of the drive with changing commands
+    seeds: int = 100  # drives of known slip in a Monte-Carlo
 
 
 FULL = BenchSize()
-SMALL = BenchSize(circle_time=10.0, one_circle_time=33.0, long_time=60.0)
+SMALL = BenchSize(circle_time=10.0, one_circle_time=33.0, long_time=60.0, seeds=3)
 
 
 class Bench:

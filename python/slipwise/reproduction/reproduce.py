@@ -16,7 +16,9 @@ from typing import TYPE_CHECKING
 from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.reproduction.bench import FULL, Bench, BenchSize
 from slipwise.reproduction.chapter4 import chapter4_exhibits
+from slipwise.reproduction.consistency import consistency_exhibits
 from slipwise.reproduction.exhibit import Exhibit
+from slipwise.reproduction.real_logs import real_log_exhibits
 
 if TYPE_CHECKING:
     from multiprocessing.queues import Queue
@@ -45,7 +47,11 @@ class ChapterResult:
     exhibits: tuple[Exhibit, ...]
 
 
-CHAPTERS = (Chapter("chapter-4", "Steady state", chapter4_exhibits),)
+CHAPTERS = (
+    Chapter("chapter-4", "Steady state", chapter4_exhibits),
+    Chapter("real-logs", "Surfaces and estimators on real logs", real_log_exhibits),
+    Chapter("consistency", "Is the stated uncertainty true?", consistency_exhibits),
+)
 
 
 @dataclass(frozen=True)
