@@ -111,10 +111,10 @@ def _show(out: Any, made: tuple[ChapterResult, ...], files: dict[str, Path]) -> 
         Column("chapter", whole=True),
         Column("in the thesis", whole=True),
         Column("exhibit"),
-        Column("data"),
+        Column(""),
     ]
     rows = [
-        (chapter.key, exhibit.thesis, exhibit.title, "missing" if exhibit.missing else exhibit.source)
+        (chapter.key, exhibit.thesis, exhibit.title, "missing" if exhibit.missing else "")
         for chapter in made
         for exhibit in chapter.exhibits
     ]

@@ -16,11 +16,8 @@ from slipwise.simulation import Scenario, Simulation, hold, simulate
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # [m/s]
 CURVATURES = (0.1, 0.25, 0.5)  # [1/m], driven to both sides
 CIRCLE = (0.5, 0.5)  # [m/s], [1/m] of figure 4.1
-WANDER = (
-    0.1,
-    0.15,
-)  # [m/s], [rad/s] by which the drives wander around the command they hold, anew every 0.05 s
-STD_XY, STD_YAW = 0.003, 0.005  # [m], [rad] of the poses of held commands, smoothed by an inertial unit
+WANDER = (0.05, 0.1)  # [m/s], [rad/s] by which drives wander around what they hold, anew every 0.05 s
+STD_XY, STD_YAW = 0.005, 0.015  # [m], [rad] of a measured pose under held commands
 ENDINGS = (".csv.gz", ".csv", ".parquet", ".mcap", "")
 
 
@@ -30,16 +27,20 @@ class MissingLogError(LogError):
 
 @dataclass(frozen=True)
 class BenchSize:
-    """How long the simulated drives are, and how many."""
+    """How much is simulated."""
 
-    circle_time: float = 33.0  # [s] on each of the 24 circles
+    circle_speeds: tuple[float, ...] = SPEEDS  # [m/s]
+    circle_time: float = 33.0  # [s] on each of the circles
     one_circle_time: float = 303.0  # [s] on the circle of figure 4.1
     long_time: float = 540.0  # [s] of the drive with changing commands
-    seeds: int = 100  # drives of known slip in a Monte-Carlo
+    drawn_groups: int = 60  # of segments with known slip and noise
+    seeds: int = 100  # drives of known slip and noise
 
 
 FULL = BenchSize()
-SMALL = BenchSize(circle_time=10.0, one_circle_time=33.0, long_time=60.0, seeds=3)
+SMALL = BenchSize(
+    circle_speeds=(1.0, 2.0), circle_time=9.2, one_circle_time=18.0, long_time=60.0, drawn_groups=4, seeds=2
+)
 
 
 class Bench:
@@ -58,9 +59,10 @@ class Bench:
         self._logs: dict[str, Log] = {}
 
     def circles(self, ground: str = "tyre-force") -> Simulation:
-        """Return held commands: 4 speeds times 3 curvatures to both sides; the drives wander around them."""
+        """Return held commands: speeds times curvatures to both sides; the drives wander around them."""
         held = [
-            (v, side * curvature * v) for v, curvature, side in itertools.product(SPEEDS, CURVATURES, (1, -1))
+            (v, side * curvature * v)
+            for v, curvature, side in itertools.product(self.size.circle_speeds, CURVATURES, (1, -1))
         ]
         return self._held(f"circles, {ground}", held, self.size.circle_time, ground)
 

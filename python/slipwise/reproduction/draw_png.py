@@ -21,6 +21,7 @@ DPI = 100
 PANEL_SIZE = (4.4, 3.4)  # [in]
 SINGLE_SIZE = (6.2, 4.0)  # [in] of a panel that stands alone
 LARGEST = 60_000  # [bytes]; a picture that is larger gets fewer colours
+MOST_LETTERS = 45  # that fit side by side below a panel
 _MARKS = {"dot": "o", "ring": "o", "cross": "x", "square": "s", "diamond": "D"}
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
@@ -61,6 +62,8 @@ def _draw(figure: Figure, place: tuple[int, int, int], panel: Panel) -> None:
             _bars(axes, series, colour, (bars.index(series), len(bars)))
         else:
             _series(axes, series, colour, solid=panel.solid)
+    if panel.x_names:
+        _name_ticks(axes, panel.x_names)
     if panel.log_x:
         axes.set_xscale("log")
     if panel.log_y:
@@ -138,7 +141,13 @@ def _bars(axes: Any, bars: Bars, colour: str, place: tuple[int, int]) -> None:
     width = 0.8 / count
     at = np.arange(len(bars.names)) + (index - (count - 1) / 2) * width
     axes.bar(at, bars.values, width, yerr=bars.error, color=colour, label=bars.label or None, capsize=2)
-    axes.set_xticks(np.arange(len(bars.names)), bars.names)
+    _name_ticks(axes, bars.names)
+
+
+def _name_ticks(axes: Any, names: tuple[str, ...]) -> None:
+    """Name the places 0, 1, 2, ... of the x axis, aslant where the names are long."""
+    aslant: dict[str, Any] = {"rotation": 25, "ha": "right"} if sum(map(len, names)) > MOST_LETTERS else {}
+    axes.set_xticks(range(len(names)), names, fontsize=8, **aslant)
 
 
 def _surface(axes: Any, surface: Surface) -> None:

@@ -65,6 +65,6 @@ def _anchor(heading: str) -> str:
 def _plain(text: str) -> str:
     """Return text on one line in which Markdown marks nothing."""
     marked = " ".join(text.split())
-    for mark in "\\`*_[]<|":
+    for mark in "\\`*_<|":
         marked = marked.replace(mark, f"\\{mark}")
     return marked

@@ -121,6 +121,7 @@ class Panel:
     y_label: str
     series: tuple[Series, ...]
     z_label: str = ""
+    x_names: tuple[str, ...] = ()  # instead of the numbers 0, 1, 2, ... at the x axis
     equal_axes: bool = False
     log_x: bool = False
     log_y: bool = False
@@ -144,7 +145,7 @@ def paths_line(paths: Sequence[Floats], *, label: str = "", colour: str = MEASUR
     """Return many paths [K, 2 or more] as one thin line with gaps, drawn by their first two columns."""
     gap = np.full((1, 2), np.nan)
     joined = np.concatenate([part for path in paths for part in (np.asarray(path)[:, :2], gap)])
-    return Line(joined[:, 0], joined[:, 1], label, colour, width=0.8, opacity=0.7)
+    return Line(joined[:, 0], joined[:, 1], label, colour, width=0.7, opacity=0.6)
 
 
 def outline(centre: Floats, covariance: Floats, *, label: str = "", colour: str = INK) -> Line:

@@ -166,6 +166,11 @@ def _heat(heat: Heat) -> Trace:
 
 def _axes(panel: Panel) -> Trace:
     x = axis(panel.x_label, type="log") if panel.log_x else axis(panel.x_label)
+    if panel.x_names:
+        x |= {
+            "tickvals": list(range(len(panel.x_names))),
+            "ticktext": [plain_label(n) for n in panel.x_names],
+        }
     y = axis(panel.y_label, type="log") if panel.log_y else axis(panel.y_label)
     if panel.equal_axes:
         y |= {"scaleanchor": "x", "scaleratio": 1}

@@ -15,7 +15,11 @@ from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.reproduction.bench import FULL, Bench, BenchSize
+from slipwise.reproduction.chapter2 import chapter2_exhibits
+from slipwise.reproduction.chapter3 import chapter3_exhibits
 from slipwise.reproduction.chapter4 import chapter4_exhibits
+from slipwise.reproduction.chapter5 import chapter5_exhibits
+from slipwise.reproduction.chapter6 import chapter6_exhibits
 from slipwise.reproduction.consistency import consistency_exhibits
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.real_logs import real_log_exhibits
@@ -48,9 +52,13 @@ class ChapterResult:
 
 
 CHAPTERS = (
-    Chapter("chapter-4", "Steady state", chapter4_exhibits),
-    Chapter("real-logs", "Surfaces and estimators on real logs", real_log_exhibits),
-    Chapter("consistency", "Is the stated uncertainty true?", consistency_exhibits),
+    Chapter("chapter-2", "Chapter 2: related work", chapter2_exhibits),
+    Chapter("chapter-3", "Chapter 3: the vehicle's dynamics", chapter3_exhibits),
+    Chapter("chapter-4", "Chapter 4: steady state", chapter4_exhibits),
+    Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_exhibits),
+    Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_exhibits),
+    Chapter("real-logs", "Beyond: all methods on real logs", real_log_exhibits),
+    Chapter("consistency", "Beyond: is the stated uncertainty true?", consistency_exhibits),
 )
 
 

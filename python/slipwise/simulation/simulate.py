@@ -12,6 +12,7 @@ from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.perturbation import Perturbation, perturbed_truth
 from slipwise.simulation.physics import GROUNDS, Progress, Sampling, World, run_physics
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
@@ -29,6 +30,7 @@ class Scenario:
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
+    perturbation: Perturbation | None = None  # slip surfaces in place of ground and physics
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
@@ -48,7 +50,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
 
     Args:
         scenario: what is simulated.
-        seed: of the command script and, independently, of the pose noise.
+        seed: of the command script and, independently, of the pose noise and of the surfaces' noise.
         progress: called now and then with the fraction done.
 
     Raises:
@@ -59,12 +61,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
     commands = scenario.commands
     if commands is None:
         commands = DRIVES[scenario.drive](seed, scenario.duration)
-    truth = run_physics(
-        World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction),
-        commands,
-        Sampling.over(scenario.duration, scenario.pose_rate),
-        progress=progress,
-    )
+    truth = _drive(scenario, commands, seed, progress)
     run = Run(
         name="simulation",
         commands=commands,
@@ -72,8 +69,24 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
         poses=_measure(scenario, truth, seed),
         extra={},
     )
-    note = f"simulated: {scenario.ground} ground, {scenario.duration:g} s, seed {seed}"
+    ground = f"{scenario.ground} ground" if scenario.perturbation is None else "slip surfaces"
+    note = f"simulated: {ground}, {scenario.duration:g} s, seed {seed}"
     return Simulation(log=Log(runs=(run,), sources=(), left_out=(), notes=(note,)), truth=truth)
+
+
+def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress | None) -> Truth:
+    sampling = Sampling.over(scenario.duration, scenario.pose_rate)
+    if scenario.perturbation is None:
+        world = World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction)
+        return run_physics(world, commands, sampling, progress=progress)
+    times = np.arange(sampling.count) / sampling.rate
+    stream = _stream(seed, 1)
+    return perturbed_truth(scenario.perturbation, scenario.vehicle, commands, times, random=stream)
+
+
+def _stream(seed: int, number: int) -> np.random.Generator:
+    """Random numbers that are not those of the command script: 0 of the pose noise, 1 of the slip."""
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed).spawn(number + 1)[number]))
 
 
 def _wheels(vehicle: LandTamer, truth: Truth) -> Inputs:
@@ -83,8 +96,7 @@ def _wheels(vehicle: LandTamer, truth: Truth) -> Inputs:
 
 def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
     """Poses with white noise and late stamps; heading wrapped as a receiver gives it."""
-    stream = np.random.SeedSequence(seed).spawn(1)[0]  # not the command script's stream
-    noise = np.random.Generator(np.random.PCG64(stream)).standard_normal((3, truth.t.size))
+    noise = _stream(seed, 0).standard_normal((3, truth.t.size))
     yaw = truth.yaw + scenario.std_yaw * noise[2]
     return Poses(
         t=truth.t + scenario.pose_delay,
