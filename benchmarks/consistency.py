@@ -5,9 +5,9 @@ For each run the true parameters are drawn from the prior, a ten-minute drive wi
 noise is simulated step by step, and a filter learns from it: the IEKF on disjoint 5 s windows. For comparison
 the same filter is fed 20 times a second with overlapping 5 s windows, as the thesis does (its Table 6.1).
 
-A second table has every estimator on shorter drives, with windows that share poses as in a real log,
-once with the noise above and once with poses so noisy that they outweigh the slip noise. The experiment itself
-is `slipwise.reproduction.monte_carlo`.
+A second table has every estimator on shorter drives, with windows that share poses as in a real log, once
+with the noise above and once with poses so noisy that they outweigh the slip noise. The experiment itself is
+`slipwise.reproduction.monte_carlo`.
 """
 
 from __future__ import annotations
@@ -50,14 +50,14 @@ def one_run(job: tuple[str, int, Feeding]) -> RunResult:
     """Simulate and learn one seed."""
     name, seed, feeding = job
     drive = known_drive(name, seed, minutes=MINUTES)
-    return judged(learned(feeding, drive), drive.truth)
+    return judged(learned(feeding, drive), drive)
 
 
 def estimators_on_one_drive(job: tuple[str, int]) -> list[RunResult]:
     """Learn one seed with every estimator, in the order of `ESTIMATORS`."""
     noise, seed = job
     drive = known_drive(TRUTHS[0], seed, NOISES[noise], minutes=ESTIMATOR_MINUTES)
-    return [judged(learned(feeding, drive), drive.truth) for feeding in ESTIMATORS]
+    return [judged(learned(feeding, drive), drive) for feeding in ESTIMATORS]
 
 
 def compare_estimators(runs: int) -> dict[str, object]:

@@ -75,12 +75,13 @@ class KnownDrive:
 
 @dataclass(frozen=True)
 class RunResult:
-    """One estimator on one drive: NEES / m, parameters within their intervals, and the joint region."""
+    """One estimator on one drive: NEES / m, parameters in their intervals, joint region, error."""
 
     nees: float
     within_sigma: float
     within_90: float
     in_region_90: bool
+    error: float  # root mean square over the parameters, in units of the prior's standard deviations
 
 
 def known_drive(basis: str, seed: int, noise: _core.MotionNoise = NOISE, *, minutes: float) -> KnownDrive:
@@ -118,17 +119,18 @@ def learned(feeding: Feeding, drive: KnownDrive) -> _core.Estimate:
     return estimator.estimate()
 
 
-def judged(estimate: _core.Estimate, truth: Floats) -> RunResult:
+def judged(estimate: _core.Estimate, drive: KnownDrive) -> RunResult:
     """Compare an estimate with the true parameters."""
-    error = estimate.mean - truth
+    error = estimate.mean - drive.truth
     covariance = np.array(estimate.covariance)
     squared = float(error @ np.linalg.solve(covariance, error))
     sigmas = np.abs(error) / np.sqrt(np.diag(covariance))
     return RunResult(
-        nees=squared / len(truth),
+        nees=squared / len(error),
         within_sigma=float(np.mean(sigmas <= 1.0)),
         within_90=float(np.mean(sigmas <= SIGMAS_90)),
-        in_region_90=squared <= CHI_SQUARE_90[len(truth)],
+        in_region_90=squared <= CHI_SQUARE_90[len(error)],
+        error=float(np.sqrt(np.mean(error**2 / np.diag(drive.prior.covariance)))),
     )
 
 
