@@ -78,14 +78,12 @@ class SurfacePass:
     """
 
     def __init__(self, rules: SurfaceRules, chain: _core.ModelAverage, windows: WindowSet) -> None:
-        """`chain` has learned nothing yet; what it learns beside its slip is used."""
+        """`chain` has learned nothing yet; it gives lag, delay and offset, and tells slip from curves."""
         self._rules, self._windows = rules, windows
         self._chain = CausalPass(chain, windows, self._observe)
         self._weight = np.zeros(len(windows))
-        self._chain_start = chain.model.basis.size
-        self._bare = _core.MotionModel(
-            _core.Basis("none", [], [], []), rules.motion.dynamics, rules.motion.clock_offset
-        )
+        self._chain_start = chain.model.slip_size
+        self._reference = chain.model
         self._regression = SurfaceRegression(rules)
         self._learned = 0
 
@@ -118,7 +116,7 @@ class SurfacePass:
             self._regression.learn(self._examples(chain, np.array([i])))
 
     def _examples(self, chain: Belief, places: NDArray[np.int64]) -> SlipExamples | None:
-        return window_examples((self._bare, chain.mean[self._chain_start :]), self._windows, places)
+        return window_examples((self._reference, chain.mean), self._windows, places)
 
     def _joined(self, chain: Belief) -> Belief:
         """Put the surface before the chain's parameters; the two are taken as independent."""

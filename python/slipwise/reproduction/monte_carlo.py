@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drives with known slip and noise, learned by every estimator: is the covariance that it states true?"""
+"""Drives with known slip and noise, to hold the covariance of every estimator against the truth."""
 
 from __future__ import annotations
 

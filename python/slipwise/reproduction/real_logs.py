@@ -44,9 +44,9 @@ SHOWS = (
     "Every surface of chapter 5 and every estimator of chapter 6, beside their rivals. Each window is "
     "predicted from what was known one horizon before it, and the second half of the windows counts; errors "
     "are ratios to those of none, the plain model that believes the wheels or the commands. Batch alone has "
-    "learned the windows that it is judged on. Surfaces and estimators learn the terms of odd-even-10. In "
-    "the picture: SR slip-ratio-ekf, LS least squares, GP Gaussian process, BLR Bayesian surface, GD gradient "
-    "descent, EKF ekf-thesis, DS delayed-state."
+    "learned the windows that it is judged on. Surfaces and estimators learn the terms of odd-even-10. "
+    "In the picture: SR slip-ratio-ekf, LS least squares, GP Gaussian process, BLR Bayesian surface, GD "
+    "gradient descent, EKF ekf-thesis, DS delayed-state."
 )
 
 

@@ -68,8 +68,8 @@ def test_slip_rates_of_windows_are_those_of_a_steady_drive() -> None:
         slip_psd=(0.0, 0.0, 0.0),
     )
     windows = learning_windows(prepare_drive(simulated_log(drive), "wheel"), "wheel", SETTINGS)
-    bare = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
-    examples = window_examples((bare, np.zeros(0)), windows, np.arange(3))
+    wrong = _core.MotionModel(_core.named_basis("edd-2"), False, False), np.array([0.2, -0.5])
+    examples = window_examples(wrong, windows, np.arange(3))
     assert examples is not None
     true = _core.slip_rate(SLIP, np.array(ALPHA), _core.SlipState(1.0, 0.4, 0.0, 0.0))
     np.testing.assert_allclose(examples.slip, np.tile(true, (3, 1)), atol=1e-9)
