@@ -34,12 +34,19 @@ class BenchSize:
     one_circle_time: float = 303.0  # [s] on the circle of figure 4.1
     long_time: float = 540.0  # [s] of the drive with changing commands
     drawn_groups: int = 60  # of segments with known slip and noise
+    largest_process: int = 2_000  # examples of the largest Gaussian process that is timed
     seeds: int = 100  # drives of known slip and noise
 
 
 FULL = BenchSize()
 SMALL = BenchSize(
-    circle_speeds=(1.0, 2.0), circle_time=9.2, one_circle_time=18.0, long_time=60.0, drawn_groups=4, seeds=2
+    circle_speeds=(1.0, 2.0),
+    circle_time=9.2,
+    one_circle_time=18.0,
+    long_time=60.0,
+    drawn_groups=4,
+    largest_process=200,
+    seeds=2,
 )
 
 

@@ -73,7 +73,7 @@ def fitted_curves(bench: Bench) -> Exhibit:
             f"{number_text(1000 * fits.to_polynomial)} mm rms from the polynomial, that with forward and "
             f"side slip only {number_text(1000 * fits.translation_to_polynomial)} mm, and its cost is "
             f"{number_text(fits.curve('translation').cost / fits.curve('three channels').cost)} times as "
-            "high"
+            "high."
         )
     return Exhibit(
         key="figure-4-2",

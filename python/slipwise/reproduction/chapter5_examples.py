@@ -39,7 +39,9 @@ def simulated_examples(bench: Bench, ground: str) -> SteadyExamples:
     """Return the segments of the bench's circles on one ground."""
     circles = len(bench.size.circle_speeds) * len(CURVATURES) * 2
     told = f"{circles} circles of {bench.size.circle_time:g} s"
-    return _split(f"simulated Land Tamer on {ground} ground, {told}", held_paths(bench.circles(ground).log))
+    return examples_of(
+        f"simulated Land Tamer on {ground} ground, {told}", held_paths(bench.circles(ground).log)
+    )
 
 
 def husky_examples(bench: Bench) -> SteadyExamples:
@@ -49,7 +51,7 @@ def husky_examples(bench: Bench) -> SteadyExamples:
         MissingLogError: the log is not there.
     """
     log = bench.real_log(HUSKY_LOG)
-    return _split(f"real Husky, {HUSKY_LOG}, 200 held commands of 6 s", held_paths(log, HUSKY_RULES))
+    return examples_of(f"real Husky, {HUSKY_LOG}, 200 held commands of 6 s", held_paths(log, HUSKY_RULES))
 
 
 def all_examples(bench: Bench) -> list[SteadyExamples]:
@@ -74,7 +76,8 @@ def over_curvature(surface: SlipSurface, speed: Floats, curvature: Floats) -> Su
     return surface.predict(v.ravel(), (v * kappa).ravel())
 
 
-def _split(source: str, paths: Sequence[SteadyPath]) -> SteadyExamples:
+def examples_of(source: str, paths: Sequence[SteadyPath]) -> SteadyExamples:
+    """Fit the slip rates of every segment, and hold out every fifth command."""
     drive = np.array([(path.command[0], path.command[2]) for path in paths])
     slip = np.array([_slip(path) for path in paths])
     whole = slip_examples(drive, slip)

@@ -11,6 +11,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
+from slipwise.reproduction.bench import Bench
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.grid import Grid
 from slipwise.reproduction.panel import FITTED, MEASURED, RIVAL, Line, Panel, Points, Series
@@ -26,7 +27,6 @@ from slipwise.surfaces import (
 
 BASIS = _core.named_basis("odd-even-10")
 SIZES = (100, 1_000, 10_000)
-LARGEST_PROCESS = 2_000  # the time of a larger Gaussian process follows from this one's
 KINDS: dict[str, Callable[[], UpdatableSurface]] = {
     "least squares": lambda: LeastSquaresSurface(BASIS),
     "Gaussian process": lambda: GaussianProcessSurface(options=GaussianProcessOptions(largest=20_000)),
@@ -44,10 +44,11 @@ class Cost:
     measured: bool = True  # False: from a smaller one by N^3
 
 
-def times_exhibit(seed: int) -> Exhibit:
+def times_exhibit(bench: Bench) -> Exhibit:
     """Make the table of times."""
-    costs = {name: [cost(name, count, seed) for count in SIZES] for name in KINDS}
+    costs = {name: [cost(name, count, bench) for count in SIZES] for name in KINDS}
     process, bayesian = costs["Gaussian process"][-1], costs["Bayesian"]
+    largest = bench.size.largest_process
     growth = costs["Gaussian process"][1].add / max(costs["Gaussian process"][0].add, 1e-9)
     return Exhibit(
         key="table-5-times",
@@ -62,19 +63,20 @@ def times_exhibit(seed: int) -> Exhibit:
         f"about {number_text(process.add, 2)} s.",
         differs="The thesis gives least squares O(N³) too; its cost is O(N d²), as measured. Adding to the "
         "Bayesian regression costs O(d²), not O(d³), since information is added and nothing is inverted. The "
-        f"Gaussian process at 10 000 examples was not run: its time follows from {LARGEST_PROCESS} by N³.",
+        f"Gaussian process at 10 000 examples was not run: its time follows from {largest} by N³.",
         source="examples drawn from a known slip law",
         parts=(_grid(costs), _panel(costs)),
     )
 
 
-def cost(name: str, count: int, seed: int) -> Cost:
+def cost(name: str, count: int, bench: Bench) -> Cost:
     """Measure one surface at one size, or conclude from a smaller one."""
-    if name == "Gaussian process" and count > LARGEST_PROCESS:
-        small = _measured(name, LARGEST_PROCESS, seed)
-        factor = (count / LARGEST_PROCESS) ** 3
+    largest = bench.size.largest_process
+    if name == "Gaussian process" and count > largest:
+        small = _measured(name, largest, bench.seed)
+        factor = (count / largest) ** 3
         return Cost(count, factor * small.add, factor * small.add, measured=False)
-    return _measured(name, count, seed)
+    return _measured(name, count, bench.seed)
 
 
 def _measured(name: str, count: int, seed: int) -> Cost:
@@ -102,17 +104,18 @@ def _seconds(work: Callable[[], object]) -> float:
 def _grid(costs: dict[str, list[Cost]]) -> Grid:
     rows = []
     for name, row in costs.items():
-        fits = [_milliseconds(c.fit, measured=c.measured) for c in row]
-        adds = [_milliseconds(c.add, measured=c.measured) for c in row]
+        fits = [_time_text(c.fit, measured=c.measured) for c in row]
+        adds = [_time_text(c.add, measured=c.measured) for c in row]
         rows.append((name, *fits, *adds))
-    heads = [f"{what}, N = {size} [ms]" for what in ("fit", "add one") for size in SIZES]
+    heads = [f"{what}, N = {size}" for what in ("fit", "add one") for size in SIZES]
     note = "Times depend on the machine and differ from run to run."
     return Grid("Processor time", ("surface", *heads), tuple(rows), note)
 
 
-def _milliseconds(seconds: float, *, measured: bool) -> str:
-    value = float(f"{1e3 * seconds:.2g}")
-    return number_text(value, 2) if measured else f"about {number_text(value, 2)}"
+def _time_text(seconds: float, *, measured: bool) -> str:
+    rounded = float(f"{seconds:.2g}")
+    text = f"{number_text(rounded, 2)} s" if seconds >= 1.0 else f"{number_text(1e3 * rounded, 2)} ms"
+    return text if measured else f"about {text}"
 
 
 def _panel(costs: dict[str, list[Cost]]) -> Panel:

@@ -27,6 +27,11 @@ HELD = (
 )  # v, omega, s
 DRAWS = 20  # perturbed drives
 GROUND = "tyre-force"
+LOOKS: dict[str, tuple[str, Dash, float]] = {
+    "perturbed drive": (FITTED, "solid", 0.8),
+    "rigid-body physics": (MEASURED, "solid", 1.6),
+    "mean surfaces": (INK, "dot", 2.0),
+}
 NAMES = ("forward [m/s]", "sideways [m/s]", "angular [rad/s]")
 
 
@@ -47,6 +52,7 @@ class SimplePath:
         self.mean = simulate(replace(plain, perturbation=Perturbation(surface, spread=0.0)), seed=0).truth
         self.draws = [simulate(drawn, seed=bench.seed + place).truth for place in range(DRAWS)]
         self.physics = simulate(plain, seed=bench.seed).truth
+        self.driven = dict(zip(LOOKS, (self.draws[0], self.physics, self.mean), strict=True))
 
 
 def path_exhibit(path: SimplePath) -> Exhibit:
@@ -83,37 +89,7 @@ def path_exhibit(path: SimplePath) -> Exhibit:
 def perturbation_exhibit(path: SimplePath) -> Exhibit:
     """Make figure 6.2."""
     told = _told(path.commands, path.physics.t)
-    slips = {
-        "perturbed drive": _slip(path.draws[0], told),
-        "rigid-body physics": _slip(path.physics, told),
-        "mean surfaces": _slip(path.mean, told),
-    }
-    looks: dict[str, tuple[str, Dash, float]] = {
-        "perturbed drive": (FITTED, "solid", 0.8),
-        "rigid-body physics": (MEASURED, "solid", 1.6),
-        "mean surfaces": (INK, "dot", 2.0),
-    }
-    panels = [
-        Panel(
-            name,
-            "time [s]",
-            f"slip rate, {name}",
-            tuple(
-                Line(
-                    path.physics.t, slip[:, channel], label, looks[label][0], looks[label][1], looks[label][2]
-                )
-                for label, slip in slips.items()
-            ),
-        )
-        for channel, name in enumerate(NAMES)
-    ]
-    v, omega = told[:, 0], told[:, 2]
-    commands = Panel(
-        "commands",
-        "time [s]",
-        "V [m/s], κ [1/m]",
-        (Line(path.physics.t, v, "V"), Line(path.physics.t, omega / v, "κ")),
-    )
+    slips = {name: _slip(truth, told) for name, truth in path.driven.items()}
     settled = _settled(path.physics.t)
     away = np.sqrt(np.mean(np.square(slips["rigid-body physics"] - slips["mean surfaces"])[settled], axis=0))
     size = np.sqrt(np.mean(np.square(slips["mean surfaces"])[settled], axis=0))
@@ -131,8 +107,27 @@ def perturbation_exhibit(path: SimplePath) -> Exhibit:
         "deviation, so it does not depend on the sampling time (the thesis states none). In physics the "
         "transients of the drive show as large slip for two seconds.",
         source=path.source,
-        parts=(commands, *panels),
+        parts=(_command_panel(path.physics.t, told), *_slip_panels(path.physics.t, slips)),
     )
+
+
+def _command_panel(times: Floats, told: Floats) -> Panel:
+    v, omega = told[:, 0], told[:, 2]
+    lines = (Line(times, v, "V"), Line(times, omega / v, "κ"))
+    return Panel("commands", "time [s]", "V [m/s], κ [1/m]", lines)
+
+
+def _slip_panels(times: Floats, slips: dict[str, Floats]) -> list[Panel]:
+    """A panel per channel, with the slip rates [N, 3] of every drive."""
+    return [
+        Panel(
+            name,
+            "time [s]",
+            f"slip rate, {name}",
+            tuple(Line(times, slip[:, channel], label, *LOOKS[label]) for label, slip in slips.items()),
+        )
+        for channel, name in enumerate(NAMES)
+    ]
 
 
 def _commands() -> Inputs:

@@ -49,7 +49,7 @@ def _exhibit(exhibit: Exhibit) -> str:
     told = (("Agrees", exhibit.agrees), ("Differs, and why", exhibit.differs), ("Data", exhibit.source))
     sentences = "".join(f"<p><strong>{name}.</strong> {escape(text)}</p>" for name, text in told)
     grids = "".join(_grid(grid) for grid in exhibit.grids)
-    kind = "wide-grid" if len(exhibit.panels) < 3 else "grid"
+    kind = "wide-grid" if len(exhibit.panels) in (1, 2, 4) else "grid"
     return (
         f"{head}{paragraph(exhibit.shows, kind='explanation')}"
         f'<div class="{kind}">{figures}</div>{grids}{sentences}</section>'

@@ -121,7 +121,7 @@ def _bars(input_name: str, ratios: dict[str, MeanRatios | None]) -> Panel:
         for error in ("position", "heading")
     )
     title = f"Mean error as a ratio to none, {input_name} input"
-    return Panel(title, "", "ratio [1]", series, log_y=True)
+    return Panel(title, "", "ratio [1]", series)
 
 
 def _one_log(log: LogScores) -> Grid:
@@ -200,7 +200,7 @@ def _cell(log: LogScores, method: str) -> str:
 
 def _agrees(means: Means) -> str:
     """What the thesis says of its surfaces and filters, in this run's numbers."""
-    said = ["Of the plain model's position error,"]
+    said = []
     for input_name, ratios in means.items():
         names = {
             "the surfaces": SURFACES,
@@ -211,8 +211,8 @@ def _agrees(means: Means) -> str:
             f"{what} leave{'s' * (len(methods) == 1)} {', '.join(_position(ratios[m]) for m in methods)}"
             for what, methods in names.items()
         ]
-        said.append(f"from the {input_name} input, {'; '.join(parts)}.")
-    return " ".join(said) + (
+        said.append(f"from the {input_name} input, {', '.join(parts)}")
+    return f"Of the plain model's position error, {'; '.join(said)}." + (
         " Surfaces: least squares, Gaussian process, Bayesian. The thesis finds the three similar, and its "
         "filter about twice as good as gradient descent: 0.23 and 0.45 in Table 6.2, in-sample."
     )
@@ -228,9 +228,10 @@ def _differs(means: Means) -> str:
     for input_name, ratios in means.items():
         known = {m: r for m, r in ratios.items() if r is not None and m not in ("none", "batch")}
         best = min(known, key=lambda m: known[m].position)
+        default = "the default" if best == "auto" else f"auto, the default, {_position(known['auto'])}"
         said.append(
-            f"From the {input_name} input, {SHORT[best]} leaves least of the position error: "
-            f"{_position(known[best])} (auto, the default: {_position(known['auto'])})."
+            f"From the {input_name} input, {SHORT[best]} leaves least of the position error, "
+            f"{_position(known[best])} ({default})."
         )
     said.append(
         "Gradient descent and the thesis's filter have no lag, no delay and no gate for outliers. Surfaces "
