@@ -73,7 +73,7 @@ def integration() -> Exhibit:
         agrees=f"Fourth-order Runge-Kutta, which the thesis uses, converges with order {order:.1f}; with "
         f"steps of 0.1 s its error of {number_text(at_tenth)} m does not matter beside slip.",
         differs=f"The exact step of SE(2) has no error but rounding, {number_text(float(exact.max()), 2)} m "
-        "at the most, at any step, and costs less; it is the default. The thesis gives no errors of its "
+        "at the most, at any step; it is the default. The thesis gives no errors of its "
         "integration.",
         source="a held twist, no simulation",
         parts=(panel,),

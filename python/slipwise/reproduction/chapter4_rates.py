@@ -78,7 +78,7 @@ def angular_rates(bench: Bench) -> Exhibit:
     for ground, name in GROUNDS.items():
         rates = circle_rates(bench, ground)
         panels.append(rate_panel(name, rates, ANGULAR))
-        linear.append(f"{_least_linear(rates):.3f} on {name}")
+        linear.append(f"{_least_linear(rates, ANGULAR):.3f} on {name}")
         share = np.array([-row.slip[ANGULAR] / row.omega for row in rates.rows])
         shares.append(
             f"{100 * share.min():.0f} to {100 * share.max():.0f} % of the commanded yaw rate on {name}"
@@ -102,7 +102,7 @@ def angular_rates(bench: Bench) -> Exhibit:
 
 def translational_rates(bench: Bench) -> Exhibit:
     """Make figure 4.10."""
-    panels, forward, side, worst = [], [], [], np.zeros(2)
+    panels, forward, side, linear, worst = [], [], [], [], np.zeros(2)
     for ground, name in GROUNDS.items():
         rates = circle_rates(bench, ground)
         panels += [rate_panel(name, rates, channel) for channel in (0, 1)]
@@ -112,6 +112,7 @@ def translational_rates(bench: Bench) -> Exhibit:
             f"{number_text(np.abs(slip[:, 1]).max())} m/s ({100 * np.abs(slip[:, 1] / v).max():.1f} % of "
             f"the speed) on {name}"
         )
+        linear.append(f"{' and '.join(f'{_least_linear(rates, k):.2f}' for k in (0, 1))} on {name}")
         off = np.abs(slip - rates.truth)[:, :2]
         sigma = np.array([row.sigma for row in rates.rows])[:, :2]
         worst = np.maximum(worst, (off.max(), (off / sigma).max()))
@@ -121,8 +122,9 @@ def translational_rates(bench: Bench) -> Exhibit:
         title="Optimised translational slip rates for multiple curvatures",
         shows="The fitted forward and side slip rates against speed, per curvature, with 1-sigma bars of "
         "one segment's mean slip; rings: what the simulated robot truly did.",
-        agrees=f"Forward slip is small, at most {' and '.join(forward)}, and neither channel is linear in "
-        f"the speed. All fits are within {number_text(1000 * worst[0], 2)} mm/s of the truth, "
+        agrees=f"Forward slip is at most {' and '.join(forward)}. Of the squares of forward and side slip "
+        f"at one curvature, a line through the origin explains as little as {' and '.join(linear)}: they are "
+        f"not linear in the speed. All fits are within {number_text(1000 * worst[0], 2)} mm/s of the truth, "
         f"{worst[1]:.1f} of their standard deviations at the most.",
         differs="The thesis finds side slip insignificant and close to constant. Here it grows with speed "
         f"times yaw rate, as a centripetal force asks for, to {' and '.join(side)}: this is the term V ω "
@@ -132,14 +134,14 @@ def translational_rates(bench: Bench) -> Exhibit:
     )
 
 
-def _least_linear(rates: Rates) -> float:
+def _least_linear(rates: Rates, channel: int) -> float:
     """The least share of squares, over the curvatures, that slip proportional to speed explains."""
     shares = []
     for curvature in CURVATURES:
         v, slip, _, _ = rates.of(curvature)
-        angular = slip[:, ANGULAR]
-        slope = float(v @ angular / (v @ v))
-        shares.append(1.0 - float(np.sum((angular - slope * v) ** 2) / np.sum(angular**2)))
+        rate = slip[:, channel]
+        slope = float(v @ rate / (v @ v))
+        shares.append(1.0 - float(np.sum((rate - slope * v) ** 2) / np.sum(rate**2)))
     return min(shares)
 
 

@@ -28,7 +28,7 @@ def spread_exhibit(bench: Bench) -> Exhibit:
     )
     return Exhibit(
         key="equation-5-6",
-        thesis="Equation (5.6)",
+        thesis="Equations 5.6 to 5.8",
         title="Two surfaces of standard deviations",
         shows="The standard deviation of a segment's slip rate over speed at one curvature, and the rms "
         "residuals there to either side.",

@@ -40,7 +40,7 @@ def jacobian_exhibit(filtered: Recording, log: Log, source: str) -> Exhibit:
     )
     return Exhibit(
         key="equation-6-7",
-        thesis="Equation (6.7)",
+        thesis="Equation 6.7",
         title="The Jacobian of the thesis and the exact one",
         shows="How far the position rows of (6.7) are from the exact derivative, as a share of it (Frobenius "
         "norm, each parameter in units of its prior), over the length of the segment; and the thesis's "

@@ -59,7 +59,7 @@ class SteadyGroup:
             key = (path.start, path.times.tobytes(), path.poses.tobytes())
             if key in seen:
                 raise LogError(
-                    f"segments are duplicates of others, such as that at {path.start:.3f} s of run {path.run}",
+                    f"segments are duplicates, such as that at {path.start:.3f} s of run {path.run}",
                     where=self.name,
                     advice="give each log once",
                 )
