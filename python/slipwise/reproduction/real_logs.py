@@ -212,9 +212,10 @@ def _agrees(means: Means) -> str:
             for what, methods in names.items()
         ]
         said.append(f"from the {input_name} input, {', '.join(parts)}")
-    return f"Of the plain model's position error, {'; '.join(said)}." + (
-        " Surfaces: least squares, Gaussian process, Bayesian. The thesis finds the three similar, and its "
-        "filter about twice as good as gradient descent: 0.23 and 0.45 in Table 6.2, in-sample."
+    return (
+        f"Of the plain model's position error, {'; '.join(said)}. Surfaces: least squares, Gaussian process, "
+        "Bayesian. The thesis finds the three similar, and its filter about twice as good as gradient "
+        "descent: 0.23 and 0.45 in Table 6.2, in-sample."
     )
 
 
