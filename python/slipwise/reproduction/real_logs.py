@@ -238,7 +238,7 @@ def _differs(means: Means) -> str:
     said.append(
         "Gradient descent and the thesis's filter have no lag, no delay and no gate for outliers. Surfaces "
         "take lag, delay and clock offset from the filter of edd-2 and see each window as one pair of speed "
-        f"and yaw rate; the Gaussian process takes at most {LARGEST_PROCESS} examples. Slip ratios are defined "
-        "for wheel speeds alone."
+        f"and yaw rate; the Gaussian process takes at most {LARGEST_PROCESS} examples. Slip ratios are "
+        "defined for wheel speeds alone."
     )
     return " ".join(said)
