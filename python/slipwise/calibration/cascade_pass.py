@@ -20,7 +20,7 @@ CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
 class CascadePass:
     """Wheel speeds are the output of the chain and the input of the slip: each is learned from much more.
 
-    Once `count` windows of the commands have passed, all that the wheels and poses said until then is learned.
+    Once `count` windows of the commands have passed, all that wheels and poses said until then is learned.
     """
 
     def __init__(self, windows: WindowSet, settings: Settings) -> None:

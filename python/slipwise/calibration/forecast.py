@@ -92,7 +92,7 @@ def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> N
     )
     draft.pose[i] = at.predicted.vector()
     draft.covariance[i] = _core.prediction_covariance(
-        at, belief.covariance, forecaster.noise, belief.noise_scale
+        at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
     )
 
 

@@ -85,11 +85,15 @@ def ratio_of_means(errors: Floats, reference: Floats) -> tuple[float, float, flo
 
 
 def nis_band(count: int) -> tuple[float, float]:
-    """Where the mean NIS of `count` independent windows lies with 95 % (chi-square, Wilson-Hilferty)."""
-    degrees = 3.0 * count
-    spread = 2.0 / (9.0 * degrees)
+    """Where the mean NIS of `count` independent windows lies with 95 %."""
+    return chi_square_band(count, 3)
+
+
+def chi_square_band(count: int, degrees: int) -> tuple[float, float]:
+    """Where the mean of `count` independent chi-squares of `degrees` lies with 95 % (Wilson-Hilferty)."""
+    spread = 2.0 / (9.0 * degrees * count)
     low, high = (
-        (1.0 - spread + z * np.sqrt(spread)) ** 3 * 3.0 for z in (-1.959963984540054, 1.959963984540054)
+        (1.0 - spread + z * np.sqrt(spread)) ** 3 * degrees for z in (-1.959963984540054, 1.959963984540054)
     )
     return (float(low), float(high))
 

@@ -20,6 +20,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.structure_choice import learning_pass
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
+from slipwise.evaluation.slip_surfaces import surface_forecaster
 from slipwise.models.model import Model
 
 BATCH_BASIS = "odd-even-10"
@@ -80,6 +81,11 @@ def method_info(name: str) -> MethodInfo:
             lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows),
             "the same by a sliding-mode observer; its covariance is the noise shape alone",
         ),
+        "surface-least-squares": MethodInfo(_surface, "slip surface by least squares (thesis 5.5)"),
+        "surface-gaussian-process": MethodInfo(
+            _surface, "slip surface by a Gaussian process (thesis Table 5.1), as terms of the settings' basis"
+        ),
+        "surface-bayesian": MethodInfo(_surface, "slip surface by Bayesian linear regression (thesis 5.13)"),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in special:
@@ -106,6 +112,10 @@ def _estimator(name: str, contest: Contest) -> Forecaster:
     passing = EstimatorPass(name, motion, contest.settings, contest.windows)
     shape = contest.settings.filter_settings().noise.shape
     return Forecaster(name, motion, shape, passing.belief, motion.dynamics)
+
+
+def _surface(name: str, contest: Contest) -> Forecaster:
+    return surface_forecaster(name, contest.input_name, contest.settings, contest.windows)
 
 
 def _vendor(name: str, contest: Contest) -> Forecaster:

@@ -38,6 +38,7 @@ class BenchSize:
     long_time: float = 540.0  # [s] of the drive with changing commands
     drawn_groups: int = 60  # of segments with known slip and noise
     largest_process: int = 2_000  # examples of the largest Gaussian process that is timed
+    seeds: int = 100  # drives of known slip and noise
 
 
 FULL = BenchSize()
@@ -48,6 +49,7 @@ SMALL = BenchSize(
     long_time=60.0,
     drawn_groups=4,
     largest_process=200,
+    seeds=2,
 )
 
 

@@ -20,7 +20,9 @@ from slipwise.reproduction.chapter3 import chapter3_exhibits
 from slipwise.reproduction.chapter4 import chapter4_exhibits
 from slipwise.reproduction.chapter5 import chapter5_exhibits
 from slipwise.reproduction.chapter6 import chapter6_exhibits
+from slipwise.reproduction.consistency import consistency_exhibits
 from slipwise.reproduction.exhibit import Exhibit
+from slipwise.reproduction.real_logs import real_log_exhibits
 
 if TYPE_CHECKING:
     from multiprocessing.queues import Queue
@@ -55,6 +57,8 @@ CHAPTERS = (
     Chapter("chapter-4", "Chapter 4: steady state", chapter4_exhibits),
     Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_exhibits),
     Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_exhibits),
+    Chapter("real-logs", "Beyond: all methods on real logs", real_log_exhibits),
+    Chapter("consistency", "Beyond: is the stated uncertainty true?", consistency_exhibits),
 )
 
 

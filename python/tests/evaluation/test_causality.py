@@ -19,7 +19,8 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.logs import Inputs, Log, Poses, Run, open_log
 
-OPTIONS = EvaluationOptions(methods=("none", "edd-2", "auto"))
+METHODS = ("none", "edd-2", "auto", "surface-least-squares", "surface-bayesian")
+OPTIONS = EvaluationOptions(methods=METHODS)
 REAL = "warthog/grass_7_29_14h46s15.csv.gz"
 SLIP = _core.named_basis("full-linear-6")
 
