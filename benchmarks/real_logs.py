@@ -73,7 +73,8 @@ def print_all(scores: Sequence[LogScore], comparisons: tuple[list[Comparison], l
     for name in (*TARGETS, "both"):
         group = [s for s in scores if name in (s.input, "both")]
         if group:
-            print(f"\n== is the uncertainty true? {name} input, all held-out windows of all logs ==\n")
+            inputs = f"{name} input" if name in TARGETS else "both inputs"
+            print(f"\n== is the uncertainty true? {inputs}, all held-out windows of all logs ==\n")
             print_coverage(group, method_names(group))
             print_chances(group)
     if comparisons is not None:

@@ -74,8 +74,8 @@ def print_chances(scores: Sequence[LogScore]) -> None:
         heavy = 100 * np.mean([m.nis_chance for m in autos])
         print(
             f"auto, {name} ({len(autos)}): mean NIS in 2.5-3.5 on {_share([m.nis for m in autos])} %\n"
-            f"  a perfect filter: {normal:.0f} % with normal errors, {heavy:.0f} % with the predicted tails;"
-            f" with errors stretched to normal ones by the predicted t: "
+            f"  a perfect filter: {normal:.0f} % with normal errors, {heavy:.0f} % with the predicted tails\n"
+            f"  mean NIS of errors stretched to normal ones by their t in 2.5-3.5 on "
             f"{_share([m.normal_nis for m in autos])} %"
         )
 
