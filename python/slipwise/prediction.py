@@ -12,6 +12,8 @@ from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
+from slipwise.models.schema import Tail
+from slipwise.student import LEAST_DOF, MOST_DOF
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +28,7 @@ class Path:
     t: Floats  # s, in the time of the inputs
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
     covariance: Floats  # [N, 3, 3] parameters, slip noise and the noise of two measured poses
+    dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
 
 
 def predict(
@@ -67,7 +70,8 @@ def predict(
         at = _core.linearize_segment(model.motion, model.mean, track, segment)
         poses.append(at.predicted.vector())
         covariance.append(prediction_covariance(model, at, seconds))
-    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance))
+    dof = np.array([tail_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
+    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
 
 
 def _segment(begin: float, seconds: float, initial: tuple[float, float] | None) -> _core.Segment:
@@ -85,16 +89,24 @@ def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon:
     """Covariance of one predicted pose, grown as held-out predictions of this horizon [s] needed."""
     scale = np.array(model.content.noise.scale)
     covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
-    return np.asarray(covariance * growth_at(model, horizon), dtype=np.float64)
+    return np.asarray(covariance * tail_at(model, horizon).growth, dtype=np.float64)
 
 
-def growth_at(model: Model, horizon: float) -> float:
-    """Factor of the covariance at a horizon [s], interpolated between those judged; 1 without any."""
-    growth = model.content.noise.growth
-    if not growth:
-        return 1.0
-    seconds = sorted(growth)
-    return float(np.exp(np.interp(horizon, seconds, [np.log(growth[s]) for s in seconds])))
+def tail_at(model: Model, horizon: float) -> Tail:
+    """Growth of the covariance and degrees of freedom at a horizon [s].
+
+    Their logarithms are interpolated between the horizons judged, and kept beyond them; without any, the
+    covariance is taken as stated and nearly normal.
+    """
+    tails = model.content.noise.tails
+    if not tails:
+        return Tail(growth=1.0, dof=MOST_DOF)
+    seconds = sorted(tails)
+    growth, dof = (
+        np.exp(np.interp(horizon, seconds, [np.log(getattr(tails[s], name)) for s in seconds]))
+        for name in ("growth", "dof")
+    )
+    return Tail(growth=float(growth), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
 
 
 def _inputs(commands: ArrayLike) -> Inputs:

@@ -18,7 +18,7 @@ from slipwise.calibration.drive import (
     collect_windows,
     prepare_drive,
 )
-from slipwise.calibration.forecast import Forecaster, final_growth, forecast, forecast_all
+from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
 from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, History, Verdict
@@ -39,7 +39,7 @@ class _Learned:
 
     motion: _core.MotionModel
     belief: Belief
-    growth: dict[float, float]
+    tails: dict[float, schema.Tail]
     judgement: Judgement
     verdict: Verdict
 
@@ -118,7 +118,7 @@ def _judged(
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    growth = {p.horizon: final_growth(p) for p in predictions} if judged else {}
+    tails = {p.horizon: final_tail(p) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
@@ -126,7 +126,7 @@ def _judged(
     belief = passing.finish()
     motion = belief.motion or forecaster.model
     names = tuple(info.name for info in motion.parameters)
-    return _Learned(motion, belief, growth, judgement, give_verdict(judgement, names, belief))
+    return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))
 
 
 def fit_batch_over(
@@ -135,7 +135,7 @@ def fit_batch_over(
     """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
     noise = learner.settings.filter_settings().noise.shape
     belief = fit_batch(learned.motion, windows, learner.settings, (noise, learned.belief.noise_scale), speeds)
-    return _Learned(learned.motion, belief, learned.growth, learned.judgement, learned.verdict)
+    return _Learned(learned.motion, belief, learned.tails, learned.judgement, learned.verdict)
 
 
 def _content(
@@ -196,7 +196,7 @@ def _noise(learned: _Learned, settings: Settings) -> schema.Noise:
         pose_std_xy=shape.pose_std_xy,
         pose_std_yaw=shape.pose_std_yaw,
         scale=learned.belief.noise_scale.tolist(),
-        growth=learned.growth,
+        tails=learned.tails,
     )
 
 

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Shares = tuple[float, float, float]  # within the 50, 90 and 95 % ellipsoids
 
 RESAMPLES = 1000
 LARGEST_CHUNK = 1_000_000  # starts of blocks drawn at a time, so that memory does not grow with the log
@@ -98,7 +100,16 @@ def chi_square_band(count: int, degrees: int) -> tuple[float, float]:
     return (float(low), float(high))
 
 
-def coverage(nis: Floats) -> tuple[float, float, float]:
-    """Share of windows inside the 50, 90 and 95 % ellipsoids."""
-    inside = [float(np.mean(nis <= quantile)) for quantile in ELLIPSOIDS.values()]
-    return (inside[0], inside[1], inside[2])
+def coverage(inside: Floats) -> Shares:
+    """Share of windows inside the 50, 90 and 95 % ellipsoids of their t, from `Predictions.inside`."""
+    return _shares(inside, ELLIPSOIDS)
+
+
+def normal_coverage(nis: Floats) -> Shares:
+    """Share of windows inside the 50, 90 and 95 % ellipsoids of a normal distribution."""
+    return _shares(nis, ELLIPSOIDS.values())
+
+
+def _shares(values: Floats, limits: Iterable[float]) -> Shares:
+    half, nine_tenths, most = (float(np.mean(values <= limit)) for limit in limits)
+    return (half, nine_tenths, most)

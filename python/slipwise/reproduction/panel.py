@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.reporting.ellipse import ellipse
+from slipwise.reporting.ellipse import outline_of
 
 Floats = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot", "dashdot"]
@@ -154,7 +154,7 @@ def outline(centre: Floats, covariance: Floats, *, label: str = "", colour: str 
     Raises:
         ValueError: the covariance [2, 2] is none.
     """
-    points = ellipse(centre, covariance, radius=1.0)
+    points = outline_of(centre, covariance, 1.0)
     if points is None:
         raise ValueError("this is no covariance: an ellipse needs finite, non-negative variances")
     return Line(points[:, 0], points[:, 1], label, colour)

@@ -15,6 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.models.schema import (
     LARGEST,
+    SCHEMA_VERSION,
     ModelFile,
     Noise,
     Parameter,
@@ -89,7 +90,7 @@ def as_basis_model(
     basis = slip.basis
     return Model(
         ModelFile(
-            slipwise_model=1,
+            slipwise_model=SCHEMA_VERSION,
             input=segments.input_name,
             slip=Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
             dynamics=False,

@@ -91,7 +91,7 @@ def chosen(predictions: Predictions) -> list[int]:
 
 def same(one: Predictions, i: int, other: Predictions, j: int) -> None:
     """Both hold the same prediction, to the last bit."""
-    for name in ("t_start", "t_end", "pose", "covariance", "growth", "learned_until"):
+    for name in ("t_start", "t_end", "pose", "covariance", "growth", "dof", "learned_until"):
         a, b = np.asarray(getattr(one, name)[i]), np.asarray(getattr(other, name)[j])
         assert a.tobytes() == b.tobytes(), (one.method, name, float(one.t_start[i]))
 
