@@ -46,6 +46,7 @@ def c_header(model: Model, origin: list[str]) -> str:
         "INPUT": inputs,
         "CONSTANTS": _constants(model),
         "RANGE": _range(model),
+        "LIBRARY": _library(model),
         "SLIP": "\n".join(f"  {line}" for line in _slip(model)),
     }
     for name, text in parts.items():
@@ -80,6 +81,17 @@ def _range(model: Model) -> str:
         ("YAW_RATE_MAX", span.yaw_rate[1], "[rad/s]"),
     )
     return "\n".join(_define(*row) for row in rows)
+
+
+def _library(model: Model) -> str:
+    """Return what slipwise::MotionModel is made from; the lists go between braces."""
+    basis, motion = model.motion.basis, model.motion
+    channels = (("LON", basis.lon), ("LAT", basis.lat), ("ANG", basis.ang))
+    lists = [(f"TERMS_{name}", ", ".join(f'"{term}"' for term in terms)) for name, terms in channels]
+    lists.append(("PARAMETERS", ", ".join(map(repr, model.mean.tolist()))))
+    flags = [("HAS_DYNAMICS", motion.dynamics), ("HAS_CLOCK_OFFSET", motion.clock_offset)]
+    lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
+    return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(flag)}" for name, flag in flags)])
 
 
 def _slip(model: Model) -> list[str]:

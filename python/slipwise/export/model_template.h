@@ -34,12 +34,15 @@ typedef float slipwise_real;
 @CONSTANTS@
 /* The range that the log held; beyond it the model is a guess. */
 @RANGE@
+/* The same model for the C++ library: terms of the slip basis, parts of the chain, and the parameter vector. */
+@LIBRARY@
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */
+#define SLIPWISE_LONGEST_WINDOW SLIPWISE_R(1e5) /* [s] */
 #define SLIPWISE_SETTLED_LAGS SLIPWISE_R(8.0)  /* after as many time constants the start of a lag is forgotten */
 
 enum slipwise_status {
   SLIPWISE_OK = 0,
-  SLIPWISE_BAD_WINDOW = 1,  /* an end before the start, or a number that is not finite */
+  SLIPWISE_BAD_WINDOW = 1,  /* an end before the start or far after it, or a number that is not finite */
   SLIPWISE_NO_COMMAND = 2   /* the oldest command that is kept is later than the start */
 };
 
@@ -256,7 +259,7 @@ static inline int slipwise_predict(const slipwise_commands *commands, const slip
   const slipwise_real lag = SLIPWISE_LAG_V > SLIPWISE_LAG_OMEGA ? SLIPWISE_LAG_V : SLIPWISE_LAG_OMEGA;
   const slipwise_real early = window->drive ? start : start - SLIPWISE_SETTLED_LAGS * lag;
   if (!isfinite(window->start) || !isfinite(window->end) || !isfinite(window->gx) || !isfinite(window->gy) ||
-      !(window->end >= window->start)) {
+      !(window->end >= window->start) || !(window->end - window->start <= SLIPWISE_LONGEST_WINDOW)) {
     return SLIPWISE_BAD_WINDOW;
   }
   if (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega))) {

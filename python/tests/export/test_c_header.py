@@ -210,13 +210,14 @@ def test_wrong_windows_and_commands_get_a_status_and_no_pose(compiled: Compile) 
     windows = [
         Window(2.0, 1.0),
         Window(np.nan, 3.0),
+        Window(2.0, 3e7),
         Window(2.0, 3.0, gx=np.inf),
         Window(2.0, 3.0, drive=(np.nan, 0.0)),
         Window(0.5, 3.0),
     ]
     counts, rows = program.run(commands, windows)
     assert counts == [4, 1]
-    assert rows[:, 0].tolist() == [1, 1, 1, 1, 2]
+    assert rows[:, 0].tolist() == [1, 1, 1, 1, 1, 2]
     assert not rows[:, 1:].any()
 
 

@@ -44,6 +44,24 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
     assert lost == pytest.approx(0.9 * written(LATE)["model_delay_vx"], rel=1e-3)
 
 
+def test_the_delay_is_nearer_to_lag_and_delay_than_nothing_is() -> None:
+    rng = np.random.default_rng(2)
+    model, total = make_model(LATE), written(LATE)["model_delay_vx"]
+    late = LATE.values | {"log_lag_v": -20.0, "log_delay_v": float(np.log(total))}
+    at_once = LATE.values | {"log_lag_v": -20.0, "log_delay_v": -20.0}
+    others = [make_model(replace(LATE, values=values)) for values in (late, at_once)]
+    misses = []
+    for _ in range(10):
+        v = rng.uniform(-0.5, 1.5, 9)
+        commands = np.column_stack((np.arange(9) * 0.35 - 0.7, v, np.zeros(9)))
+        true, *stand_ins = (
+            predict(m, commands, horizon=2.8, start=0.0).poses[:, 0] for m in (model, *others)
+        )
+        misses.append([np.abs(path - true).max() for path in stand_ins])
+    delayed, plain = np.mean(misses, axis=0)
+    assert delayed < 0.6 * plain
+
+
 def test_the_ramp_loses_the_distance_that_lag_and_delay_lose() -> None:
     parameters = written(LATE, KILTED)
     fastest = 0.9 * 1.5
