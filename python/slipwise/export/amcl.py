@@ -108,8 +108,9 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
         notes=[
             (
                 "Names of Nav2's nav2_amcl, all versions. For odometry with the multipliers of\n"
-                f"diff_drive_controller.yaml. Noise as the model predicts it {options.horizon:g} s ahead,"
-                f" at {drive.speed:.3g} m/s and {drive.yaw_rate:.3g} rad/s."
+                "diff_drive_controller.yaml; what these leave over is not in the noise.\n"
+                f"Noise as the model predicts it {options.horizon:g} s ahead, at {drive.speed:.3g} m/s and"
+                f" {drive.yaw_rate:.3g} rad/s."
             ),
             _TWO_MODELS + "\n".join(other),
         ],

@@ -101,7 +101,7 @@ def _accelerations(chain: Chain, model: Model, gains: tuple[float, float]) -> li
     def meaning(unit: str, late: float) -> str:
         return (
             f"[{unit}] the robot answers {late:.3g} s late, delay and lag together. A ramp of this slope\n"
-            "to the fastest speed of the log loses as much distance"
+            "to the fastest of the log loses as much way"
         )
 
     return [

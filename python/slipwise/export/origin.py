@@ -31,7 +31,7 @@ def origin_lines(model: Model, name: str) -> list[str]:
             f" learned by slipwise {learned.slipwise_version}"
         ),
         *logs,
-        f"learned from {content.input}s, basis {content.slip.basis}, {learned.learned_seconds:.0f} s",
+        f"learned from {learned.learned_seconds:.0f} s of {content.input}s, basis {content.slip.basis}",
         f"verdict: {'good' if verdict.good else 'NOT GOOD ENOUGH'}. {verdict.sentence}",
         (
             f"known to hold for speeds {span.speed[0]:.3g} to {span.speed[1]:.3g} m/s"
