@@ -119,7 +119,10 @@ TEST_CASE("drive steps are linearised exactly by every parameter of the chain") 
     const DriveSteps linearized = linearize_drive_steps(inputs, chain_of(c.parameters), c.window);
     CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
     const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
-    CHECK(tests::jacobian_error(totals_jacobian(linearized), numeric, 0.1) < tests::kDerivativeTolerance);
+    // Where there is no slow part, its time constants cannot move: it would appear.
+    const Eigen::Index moving = c.parameters.tail<2>().isZero() ? kChainParameters - 2 : kChainParameters;
+    CHECK(tests::jacobian_error(totals_jacobian(linearized).leftCols(moving), numeric.leftCols(moving), 0.1) <
+          tests::kDerivativeTolerance);
   }
 }
 
@@ -228,7 +231,7 @@ TEST_CASE("a drive that is known throughout is what was measured") {
 }
 
 TEST_CASE("a drive goes on from where it was known, whatever the clock offset") {
-  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
+  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 101);  // until 5.0 s
   const auto wheels =
       std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
   const double now = 3.02;

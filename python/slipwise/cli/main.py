@@ -14,6 +14,7 @@ from slipwise.cli.convert import convert
 from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
+from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.simulate import simulate
@@ -32,6 +33,7 @@ _COMMANDS = (
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
+    (export, "Write a model into files for other tools."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
     (reproduce, "Make the thesis's figures and tables again."),
@@ -66,6 +68,7 @@ def _slipwise(
       slipwise inspect drive.mcap
       slipwise calibrate drive.mcap -o model.yaml
       slipwise evaluate other.mcap --model model.yaml
+      slipwise export model.yaml --to all -o config/
     """  # noqa: D301 - \b keeps the lines below it as they are
 
 
