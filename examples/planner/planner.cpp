@@ -14,7 +14,10 @@
 /// The model as the library has it.
 slipwise::MotionModel learned_model() {
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
-  return {{"learned", lon, lat, ang}, {.dynamics = SLIPWISE_HAS_DYNAMICS, .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET}};
+  const slipwise::ChainParameters chain{.dynamics = SLIPWISE_HAS_DYNAMICS,
+                                        .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
+                                        .response = SLIPWISE_HAS_RESPONSE};
+  return {{"learned", lon, lat, ang}, chain};
 }
 
 int main() {

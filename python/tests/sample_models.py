@@ -23,6 +23,7 @@ class Made:
     values: Mapping[str, float] = field(default_factory=dict)
     std: float = 0.01  # of every parameter
     commands: bool = False
+    response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
     clock_offset: float | None = None
     fraction: float = 0.05
     psd_motion: float = 1e-3
@@ -44,11 +45,20 @@ def named(name: str, **values: float) -> Made:
 
 def make_model(made: Made) -> Model:
     """Return the model."""
-    motion = _core.MotionModel(made.basis, made.commands, made.clock_offset is not None)
-    usual = {"log_lag_v": 0.3, "log_lag_omega": 0.3, "log_delay_v": 0.2, "log_delay_omega": 0.2}
-    defaults = {name: float(np.log(value)) for name, value in usual.items()}
-    defaults["clock_offset"] = made.clock_offset or 0.0
-    values = defaults | dict(made.values)
+    offset = made.clock_offset is not None
+    if made.response:
+        motion = _core.MotionModel.with_response(made.basis, offset)
+    else:
+        motion = _core.MotionModel(made.basis, made.commands, offset)
+    values = {"clock_offset": made.clock_offset or 0.0}
+    for place in ("v", "omega"):
+        values |= {f"log_lag_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
+        values |= {
+            f"gain_{place}": 0.9,
+            f"slow_share_{place}": 0.3,
+            f"log_slow_lag_{place}": float(np.log(1.5)),
+        }
+    values |= dict(made.values)
     names = [info.name for info in motion.parameters]
     assert set(made.values) <= set(names), names
     parameters = [
@@ -64,14 +74,15 @@ def make_model(made: Made) -> Model:
     ]
     content = {
         "slipwise_model": 1,
-        "input": "command" if made.commands else "wheel",
+        "input": "command" if made.commands or made.response else "wheel",
         "slip": {
             "basis": made.basis.name,
             "lon": made.basis.lon,
             "lat": made.basis.lat,
             "ang": made.basis.ang,
         },
-        "dynamics": made.commands,
+        "dynamics": made.commands or made.response,
+        "response": made.response,
         "clock_offset": made.clock_offset is not None,
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),

@@ -60,13 +60,17 @@ def _define(name: str, value: float, comment: str) -> str:
 
 def _constants(model: Model) -> str:
     chain = chain_of(model)
-    lines = [
-        _define("LAG_V", chain.lag_v, "[s] time constant of the speed"),
-        _define("LAG_OMEGA", chain.lag_omega, "[s] time constant of the yaw rate"),
-        _define("DELAY_V", chain.delay_v, "[s] transport delay of the speed"),
-        _define("DELAY_OMEGA", chain.delay_omega, "[s] transport delay of the yaw rate"),
-        _define("CLOCK_OFFSET", chain.clock_offset, "[s] poses are stamped this much later than the inputs"),
-    ]
+    lines = []
+    for place, what, channel in (("V", "speed", chain.v), ("OMEGA", "yaw rate", chain.omega)):
+        lines += [
+            _define(f"DELAY_{place}", channel.delay, f"[s] transport delay of the {what}"),
+            _define(f"GAIN_{place}", channel.gain, f"drive over input, of the {what}"),
+            _define(f"LAG_{place}", channel.lag, f"[s] time constant of the {what}"),
+            _define(f"SLOW_SHARE_{place}", channel.slow_share, f"share of the {what} that follows slowly"),
+            _define(f"SLOW_LAG_{place}", channel.slow_lag, "[s] its time constant; 0 where there is none"),
+        ]
+    offset = "[s] poses are stamped this much later than the inputs"
+    lines.append(_define("CLOCK_OFFSET", chain.clock_offset, offset))
     slip = model.content.parameters[: model.motion.slip_size]
     lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}], +- {p.std:.2g}") for i, p in enumerate(slip)]
     return "\n".join(lines)
@@ -89,7 +93,11 @@ def _library(model: Model) -> str:
     channels = (("LON", basis.lon), ("LAT", basis.lat), ("ANG", basis.ang))
     lists = [(f"TERMS_{name}", ", ".join(f'"{term}"' for term in terms)) for name, terms in channels]
     lists.append(("PARAMETERS", ", ".join(map(repr, model.mean.tolist()))))
-    flags = [("HAS_DYNAMICS", motion.dynamics), ("HAS_CLOCK_OFFSET", motion.clock_offset)]
+    flags = [
+        ("HAS_DYNAMICS", motion.dynamics),
+        ("HAS_RESPONSE", motion.response),
+        ("HAS_CLOCK_OFFSET", motion.clock_offset),
+    ]
     lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
     return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(flag)}" for name, flag in flags)])
 

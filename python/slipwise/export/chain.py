@@ -9,28 +9,41 @@ from dataclasses import dataclass
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
 
-_KNOWN = {"log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega", "clock_offset"}
+_KNOWN = {"clock_offset"} | {
+    f"{name}_{place}"
+    for name in ("log_lag", "log_delay", "gain", "slow_share", "log_slow_lag")
+    for place in ("v", "omega")
+}
+
+
+@dataclass(frozen=True)
+class ChannelResponse:
+    """How one channel answers a command: delay, gain, and two lags side by side."""
+
+    lag: float  # s
+    delay: float  # s
+    gain: float
+    slow_share: float  # of the answer that follows by the slow lag
+    slow_lag: float  # s; zero where there is no slow part
+
+    @property
+    def mean_lag(self) -> float:
+        """The time constant of one lag that loses as much distance [s]."""
+        return (1.0 - self.slow_share) * self.lag + self.slow_share * self.slow_lag
+
+    @property
+    def mean_delay(self) -> float:
+        """How late the channel is in all [s]: a lag loses the distance that a delay of its length does."""
+        return self.delay + self.mean_lag
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Lag, delay and clock offset [s]; zero where the model has none."""
+    """The channels, and how much later than the inputs poses are stamped [s]."""
 
-    lag_v: float
-    lag_omega: float
-    delay_v: float
-    delay_omega: float
+    v: ChannelResponse
+    omega: ChannelResponse
     clock_offset: float
-
-    @property
-    def mean_delay_v(self) -> float:
-        """How late the speed is in all [s]: a lag loses the distance that a delay of its length does."""
-        return self.delay_v + self.lag_v
-
-    @property
-    def mean_delay_omega(self) -> float:
-        """How late the yaw rate is in all [s]."""
-        return self.delay_omega + self.lag_omega
 
 
 def chain_of(model: Model) -> Chain:
@@ -50,10 +63,13 @@ def chain_of(model: Model) -> Chain:
     def seconds(name: str) -> float:
         return math.exp(values[name]) if name in values else 0.0
 
-    return Chain(
-        lag_v=seconds("log_lag_v"),
-        lag_omega=seconds("log_lag_omega"),
-        delay_v=seconds("log_delay_v"),
-        delay_omega=seconds("log_delay_omega"),
-        clock_offset=values.get("clock_offset", 0.0),
-    )
+    def channel(place: str) -> ChannelResponse:
+        return ChannelResponse(
+            lag=seconds(f"log_lag_{place}"),
+            delay=seconds(f"log_delay_{place}"),
+            gain=values.get(f"gain_{place}", 1.0),
+            slow_share=values.get(f"slow_share_{place}", 0.0),
+            slow_lag=seconds(f"log_slow_lag_{place}"),
+        )
+
+    return Chain(channel("v"), channel("omega"), values.get("clock_offset", 0.0))

@@ -169,6 +169,48 @@ static inline slipwise_real slipwise_lag_step(slipwise_real *output, slipwise_re
   return input * duration + gap * lag * gone;
 }
 
+/* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
+typedef struct {
+  slipwise_real lag, gain, slow_share, slow_lag;
+} slipwise_response;
+
+/* What the two lags of a channel put out; their sum is the drive. */
+typedef struct {
+  slipwise_real fast, slow;
+} slipwise_channel;
+
+static inline slipwise_real slipwise_fast_share(const slipwise_response *response) {
+  return response->slow_lag > 0 ? 1 - response->slow_share : SLIPWISE_R(1);
+}
+
+static inline slipwise_channel slipwise_settled(const slipwise_response *response, slipwise_real input) {
+  slipwise_channel channel;
+  channel.fast = slipwise_fast_share(response) * response->gain * input;
+  channel.slow = (1 - slipwise_fast_share(response)) * response->gain * input;
+  return channel;
+}
+
+/* The whole was measured: what the fast part does not explain is the slow part's. */
+static inline void slipwise_measured(slipwise_channel *channel, const slipwise_response *response,
+                                     slipwise_real value) {
+  if (response->slow_lag > 0) {
+    channel->slow = value - channel->fast;
+  } else {
+    channel->fast = value;
+  }
+}
+
+/* Moves a channel over a step; returns its integral. */
+static inline slipwise_real slipwise_channel_step(slipwise_channel *channel, const slipwise_response *response,
+                                                  slipwise_real input, slipwise_real duration) {
+  const slipwise_channel target = slipwise_settled(response, input);
+  slipwise_real integral = slipwise_lag_step(&channel->fast, target.fast, response->lag, duration);
+  if (response->slow_lag > 0) {
+    integral += slipwise_lag_step(&channel->slow, target.slow, response->slow_lag, duration);
+  }
+  return integral;
+}
+
 /* Where the robot is on its way; the heading is carried as cosine and sine. */
 typedef struct {
   slipwise_pose pose;
@@ -203,83 +245,120 @@ static inline void slipwise_move(slipwise_path *path, slipwise_real forward, sli
 
 /* What a prediction carries along. */
 typedef struct {
-  slipwise_cursor speed, yaw_rate;
-  slipwise_drive drive;
+  const slipwise_window *window;
+  slipwise_cursor speed_input, yaw_input;
+  slipwise_response speed_response, yaw_response;
+  slipwise_channel speed, yaw_rate;
   slipwise_path path;
 } slipwise_walk;
 
-/* One step of held inputs. Slip depends on the step's mean drive. */
-static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, const slipwise_window *window,
-                                 int moves) {
+/* Moves the robot by a mean drive and its slip. */
+static inline void slipwise_advance(slipwise_walk *walk, slipwise_drive mean, slipwise_real duration) {
   slipwise_real rate[3];
-  const slipwise_real forward =
-      slipwise_lag_step(&walk->drive.v, slipwise_held(&walk->speed).v, SLIPWISE_LAG_V, duration);
-  const slipwise_real turn =
-      slipwise_lag_step(&walk->drive.omega, slipwise_held(&walk->yaw_rate).omega, SLIPWISE_LAG_OMEGA, duration);
-  if (!moves || !(duration > 0)) {
-    return;
+  slipwise_slip(mean.v, mean.omega, walk->window->gx, walk->window->gy, rate);
+  slipwise_move(&walk->path, (mean.v + rate[0]) * duration, rate[1] * duration, (mean.omega + rate[2]) * duration);
+}
+
+/* One step of held inputs. Slip depends on the step's mean drive. */
+static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, int moves) {
+  const slipwise_real speed = slipwise_held(&walk->speed_input).v, yaw = slipwise_held(&walk->yaw_input).omega;
+  slipwise_drive mean;
+  mean.v = slipwise_channel_step(&walk->speed, &walk->speed_response, speed, duration) / duration;
+  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->yaw_response, yaw, duration) / duration;
+  if (moves) {
+    slipwise_advance(walk, mean, duration);
   }
-  slipwise_slip(forward / duration, turn / duration, window->gx, window->gy, rate);
-  slipwise_move(&walk->path, forward + rate[0] * duration, rate[1] * duration, turn + rate[2] * duration);
 }
 
 /* Steps from `now` to `until`, ending wherever a delayed command changes. */
-static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until,
-                                  const slipwise_window *window, int moves) {
-  const int lagging = SLIPWISE_LAG_V > 0 || SLIPWISE_LAG_OMEGA > 0;
+static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until, int moves) {
+  const int lagging = SLIPWISE_LAG_V > 0 || SLIPWISE_LAG_OMEGA > 0 || SLIPWISE_SLOW_LAG_V > 0 ||
+                      SLIPWISE_SLOW_LAG_OMEGA > 0;
   while (now < until) {
-    slipwise_real next = slipwise_change(&walk->speed, until);
-    const slipwise_real other = slipwise_change(&walk->yaw_rate, until);
+    slipwise_real next = slipwise_change(&walk->speed_input, until);
+    const slipwise_real other = slipwise_change(&walk->yaw_input, until);
     int parts = 1, i;
     next = other < next ? other : next;
     next = next < until ? next : until;
-    if (lagging && next > now) {
+    if (lagging && moves && next > now) { /* a lag that nobody sees needs no short steps */
       parts = (int)SLIPWISE_MATH(ceil)((next - now) / SLIPWISE_LONGEST_STEP);
       parts = parts < 1 ? 1 : parts;
     }
     for (i = 0; next > now && i < parts; ++i) {
-      slipwise_step(walk, (next - now) / (slipwise_real)parts, window, moves);
+      slipwise_step(walk, (next - now) / (slipwise_real)parts, moves);
     }
-    while (walk->speed.next < walk->speed.end && slipwise_change(&walk->speed, next) <= next) {
-      ++walk->speed.next;
+    while (walk->speed_input.next < walk->speed_input.end && slipwise_change(&walk->speed_input, next) <= next) {
+      ++walk->speed_input.next;
     }
-    while (walk->yaw_rate.next < walk->yaw_rate.end && slipwise_change(&walk->yaw_rate, next) <= next) {
-      ++walk->yaw_rate.next;
+    while (walk->yaw_input.next < walk->yaw_input.end && slipwise_change(&walk->yaw_input, next) <= next) {
+      ++walk->yaw_input.next;
     }
     now = next > now ? next : now;
   }
+}
+
+/* The time constant that a channel's drive at the start hangs on: where it was measured, only that of a fast part beside
+ * a slow one. */
+static inline slipwise_real slipwise_start_lag(const slipwise_response *response, int measured) {
+  if (measured) {
+    return response->slow_lag > 0 ? response->lag : SLIPWISE_R(0);
+  }
+  return response->slow_lag > response->lag ? response->slow_lag : response->lag;
+}
+
+static inline int slipwise_is_bad(const slipwise_window *window) {
+  return !isfinite(window->start) || !isfinite(window->end) || !isfinite(window->gx) || !isfinite(window->gy) ||
+         !(window->end >= window->start) || !(window->end - window->start <= SLIPWISE_LONGEST_WINDOW) ||
+         (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega)));
 }
 
 /* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the
  * end, to start the next window with; it may be NULL. Nothing is written unless SLIPWISE_OK is returned. */
 static inline int slipwise_predict(const slipwise_commands *commands, const slipwise_window *window,
                                    slipwise_pose *pose, slipwise_drive *drive) {
+  const slipwise_response speed = {SLIPWISE_LAG_V, SLIPWISE_GAIN_V, SLIPWISE_SLOW_SHARE_V, SLIPWISE_SLOW_LAG_V};
+  const slipwise_response yaw = {SLIPWISE_LAG_OMEGA, SLIPWISE_GAIN_OMEGA, SLIPWISE_SLOW_SHARE_OMEGA,
+                                 SLIPWISE_SLOW_LAG_OMEGA};
+  const slipwise_path nowhere = {{0, 0, 0}, 1, 0};
+  const slipwise_real speed_lag = slipwise_start_lag(&speed, window->drive != 0);
+  const slipwise_real yaw_lag = slipwise_start_lag(&yaw, window->drive != 0);
+  slipwise_real start = window->start - SLIPWISE_CLOCK_OFFSET, known = start, early;
+  const slipwise_real end = window->end - SLIPWISE_CLOCK_OFFSET;
   slipwise_walk walk;
-  const slipwise_real start = window->start - SLIPWISE_CLOCK_OFFSET, end = window->end - SLIPWISE_CLOCK_OFFSET;
-  const slipwise_real lag = SLIPWISE_LAG_V > SLIPWISE_LAG_OMEGA ? SLIPWISE_LAG_V : SLIPWISE_LAG_OMEGA;
-  const slipwise_real early = window->drive ? start : start - SLIPWISE_SETTLED_LAGS * lag;
-  if (!isfinite(window->start) || !isfinite(window->end) || !isfinite(window->gx) || !isfinite(window->gy) ||
-      !(window->end >= window->start) || !(window->end - window->start <= SLIPWISE_LONGEST_WINDOW)) {
-    return SLIPWISE_BAD_WINDOW;
-  }
-  if (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega))) {
+  if (slipwise_is_bad(window)) {
     return SLIPWISE_BAD_WINDOW;
   }
   if (commands->count < 1 || slipwise_command_at(commands, 0)->t > window->start) {
     return SLIPWISE_NO_COMMAND;
   }
-  walk.speed = slipwise_cursor_at(commands, SLIPWISE_DELAY_V, early, window->end);
-  walk.yaw_rate = slipwise_cursor_at(commands, SLIPWISE_DELAY_OMEGA, early, window->end);
-  walk.drive.v = window->drive ? window->drive->v : slipwise_held(&walk.speed).v;
-  walk.drive.omega = window->drive ? window->drive->omega : slipwise_held(&walk.yaw_rate).omega;
-  walk.path.pose.x = walk.path.pose.y = walk.path.pose.yaw = 0;
-  walk.path.cosine = 1;
-  walk.path.sine = 0;
-  slipwise_cover(&walk, early, start, window, 0);
-  slipwise_cover(&walk, start, end, window, 1);
+  if (window->drive) {
+    known = window->start; /* by the clock of the commands, and so by that of the wheels */
+  }
+  early = known - SLIPWISE_SETTLED_LAGS * (speed_lag > yaw_lag ? speed_lag : yaw_lag);
+  walk.window = window;
+  walk.path = nowhere;
+  walk.speed_response = speed;
+  walk.yaw_response = yaw;
+  walk.speed_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_V, early, window->end);
+  walk.yaw_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_OMEGA, early, window->end);
+  walk.speed = slipwise_settled(&speed, slipwise_held(&walk.speed_input).v);
+  walk.yaw_rate = slipwise_settled(&yaw, slipwise_held(&walk.yaw_input).omega);
+  slipwise_cover(&walk, early, known, 0);
+  if (window->drive) {
+    slipwise_measured(&walk.speed, &speed, window->drive->v);
+    slipwise_measured(&walk.yaw_rate, &yaw, window->drive->omega);
+  }
+  if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
+    const slipwise_real until = known < end ? known : end;
+    slipwise_advance(&walk, *window->drive, until - start);
+    start = known;
+  }
+  slipwise_cover(&walk, known, start, 0);
+  slipwise_cover(&walk, start, end, 1);
   *pose = walk.path.pose;
   if (drive) {
-    *drive = walk.drive;
+    drive->v = walk.speed.fast + walk.speed.slow;
+    drive->omega = walk.yaw_rate.fast + walk.yaw_rate.slow;
   }
   return SLIPWISE_OK;
 }

@@ -31,7 +31,8 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
             advice="calibrate with `--input command`",
         )
     chain = chain_of(model)
-    gains = body_gains(body_twists(model))
+    slip = body_gains(body_twists(model))
+    gains = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
     lateness = _delays(chain) if options.nav2 == "rolling" else _accelerations(chain, model, gains)
     entries = [*_kind(options), *_speeds(model, gains), *lateness, *_turning(model, options)]
     return ParameterFile(
@@ -74,25 +75,21 @@ def _speeds(model: Model, gains: tuple[float, float]) -> list[Entry]:
 
 
 def _delays(chain: Chain) -> list[Entry]:
-    rows = (
-        ("vx", chain.delay_v, chain.lag_v, chain.mean_delay_v),
-        ("wz", chain.delay_omega, chain.lag_omega, chain.mean_delay_omega),
-    )
     return [
         Entry(
             (f"model_delay_{name}",),
-            total,
-            f"[s] delay {delay:.3g} and lag {lag:.3g}: MPPI has no lag, and a delay of the same length\n"
-            "loses the same distance",
+            channel.mean_delay,
+            f"[s] delay {channel.delay:.3g} and lag {channel.mean_lag:.3g}: MPPI has no lag, and a delay of\n"
+            "the same length loses the same distance",
         )
-        for name, delay, lag, total in rows
+        for name, channel in (("vx", chain.v), ("wz", chain.omega))
     ]
 
 
 def _accelerations(chain: Chain, model: Model, gains: tuple[float, float]) -> list[Entry]:
     """Return the ramps to the fastest speed that lose as much distance as the robot does by being late."""
     span = model.content.range
-    late_v, late_omega = chain.mean_delay_v, chain.mean_delay_omega
+    late_v, late_omega = chain.v.mean_delay, chain.omega.mean_delay
     if not (late_v > 0.0 and late_omega > 0.0):
         return []
     ax = gains[0] * max(map(abs, span.speed)) / (2.0 * late_v)

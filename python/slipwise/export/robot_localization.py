@@ -73,12 +73,12 @@ def _control(model: Model) -> list[Entry]:
     """Return gains 1/lag, by which the filter multiplies the missing speed, and limits that never bind."""
     chain, span = chain_of(model), model.content.range
     gains, limits = [], []
-    for lag, (low, high) in ((chain.lag_v, span.speed), (chain.lag_omega, span.yaw_rate)):
+    for lag, (low, high) in ((chain.v.mean_lag, span.speed), (chain.omega.mean_lag, span.yaw_rate)):
         gain = min(1.0 / lag, FREQUENCY) if lag > 0.0 else FREQUENCY
         gains.append(gain)
         limits.append(gain * (max(high, 0.0) - min(low, 0.0)))
     axes = [_on_axes(values) for values in (gains, limits)]
-    delays = f"{chain.delay_v:.3g} s and {chain.delay_omega:.3g} s"
+    delays = f"{chain.v.delay:.3g} s and {chain.omega.delay:.3g} s"
     return [
         Entry(("use_control",), True, f"the filter has no delay; this robot's are {delays}"),
         Entry(

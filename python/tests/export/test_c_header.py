@@ -131,8 +131,13 @@ def expected(model: Model, commands: Floats, window: Window) -> Floats:
     t, v, omega = (np.ascontiguousarray(column) for column in commands.T)
     track = _core.InputTrack(t, v, np.zeros_like(v), omega)
     drive = window.drive
-    twist = None if drive is None else _core.BodyTwist(drive[0], 0.0, drive[1])
-    segment = _core.Segment(window.start, window.end, _core.Pose2(0.0, 0.0, 0.0), twist, window.gx, window.gy)
+    segment = _core.Segment(window.start, window.end, _core.Pose2(0.0, 0.0, 0.0), None, window.gx, window.gy)
+    if drive is not None:
+        held = _core.InputTrack(
+            *(np.array([value]) for value in (window.start - 10.0, drive[0], 0.0, drive[1]))
+        )
+        twist = _core.BodyTwist(drive[0], 0.0, drive[1])
+        segment = segment.with_known_drive(held, window.start, twist)
     path = _core.integrate_segment(model.motion, model.mean, track, segment, _core.Integrator.Exact)
     return np.asarray(path.poses[-1])
 
@@ -170,6 +175,19 @@ def test_header_predicts_as_slipwise_does(compiled: Compile, basis: _core.Basis,
     poses = np.array([expected(model, commands, window) for window in windows])
     assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE[number]
     assert np.abs(poses[0]).max() > 0.1
+
+
+@pytest.mark.parametrize("offset", [None, 0.05, -0.05])
+def test_header_has_gain_and_slow_part(compiled: Compile, offset: float | None) -> None:
+    made = replace(named("full-linear-6", lon__V=-0.05, lat__w=0.1, ang__w=-0.4), response=True)
+    commands = commands_of(seed=21)
+    model = make_model(replace(made, clock_offset=offset))
+    windows = [Window(4.0, 9.0), Window(3.0, 8.0, drive=(0.4, -0.3)), Window(5.0, 5.03, drive=(0.4, 0.3))]
+    _, rows = compiled(model, "double").run(commands, windows)
+    poses = np.array([expected(model, commands, window) for window in windows])
+    assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE["double"]
+    plain = make_model(replace(made, response=False, commands=True, clock_offset=offset))
+    assert np.abs(expected(plain, commands, windows[0]) - poses[0]).max() > 0.05
 
 
 @pytest.mark.parametrize("number", ["float", "double"])

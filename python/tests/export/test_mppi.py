@@ -44,6 +44,17 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
     assert lost == pytest.approx(0.9 * written(LATE)["model_delay_vx"], rel=1e-3)
 
 
+def test_gain_and_slow_part_count() -> None:
+    made = replace(named("edd-2", ang__w=-0.4), response=True)
+    model, parameters = make_model(made), written(made)
+    assert parameters["model_delay_vx"] == pytest.approx(0.2 + 0.7 * 0.3 + 0.3 * 1.5)
+    assert parameters["vx_max"] == pytest.approx(0.9 * 1.5)
+    assert parameters["wz_max"] == pytest.approx(0.9 * 0.6 * 1.2)
+    path = predict(model, [(-60.0, 0.0, 0.0), (0.0, 1.0, 0.0)], horizon=20.0, start=0.0)
+    lost = 0.9 * 20.0 - path.poses[-1, 0]
+    assert lost == pytest.approx(0.9 * parameters["model_delay_vx"], rel=1e-3)
+
+
 def test_the_delay_is_nearer_to_lag_and_delay_than_nothing_is() -> None:
     rng = np.random.default_rng(2)
     model, total = make_model(LATE), written(LATE)["model_delay_vx"]
