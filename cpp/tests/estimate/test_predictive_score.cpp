@@ -18,7 +18,8 @@ struct Scores {
   Eigen::Vector3d scale = Eigen::Vector3d::Zero();
 };
 
-/// Mean scores of edd-2 with `slip` over 400 segments, after 100 to settle on the noise, of a robot that slips by (-0.1, -0.3), with this noise.
+/// Mean scores of edd-2 with `slip` over 400 segments, after 100 to settle on the noise, of a robot that slips by
+/// (-0.1, -0.3), with this noise.
 Scores mean_scores(const Eigen::Vector2d& slip, double noise_std) {
   const MotionModel model(named_basis("edd-2"), {});
   const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 11000);
