@@ -1,7 +1,7 @@
 /*
- * slipwise 0.1.0, model model.yaml (sha256 9af2a4c4fce056f4), learned by slipwise 0.1.0
+ * slipwise 0.1.0, model model.yaml (sha256 d2656633034e22ce), learned by slipwise 0.1.0
  * log: drive.mcap (sha256 b6525c9473f54fc9)
- * learned from commands, basis full-linear-6, 300 s
+ * learned from 300 s of commands, basis full-linear-6
  * verdict: good. The learned model misses by 0.0649 m and 0.0169 rad after 5 s, where the plain model misses by 1.65 m and 0.733 rad (30 held-out windows).
  * known to hold for speeds -0.91 to 2 m/s and yaw rates -1 to 1 rad/s
  */

@@ -93,7 +93,7 @@ def make_model(made: Made) -> Model:
             "pose_std_xy": 0.02,
             "pose_std_yaw": 0.01,
             "scale": list(made.scale),
-            "growth": dict(made.growth),
+            "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
         },
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
-from slipwise.prediction import growth_at
+from slipwise.prediction import tail_at
 
 Floats = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def motion_covariance(model: Model, drive: tuple[float, float], seconds: float) 
     noise = model.noise
     slip_only = _core.MotionNoise(noise.psd_time, noise.psd_motion, noise.fraction, 0.0, 0.0)
     covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance)
-    return np.asarray(covariance * growth_at(model, seconds), dtype=np.float64)
+    return np.asarray(covariance * tail_at(model, seconds).growth, dtype=np.float64)
 
 
 def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Floats:
@@ -69,7 +69,7 @@ def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Fl
     at = _settled(model, drive, _BRIEF)
     density = np.diag(_spread(model, at, white, np.zeros_like(model.covariance))) / _BRIEF
     density = density + np.diag(_spread(model, at, lasting, model.covariance)) / _BRIEF**2 * seconds
-    return np.asarray(density * growth_at(model, seconds), dtype=np.float64)
+    return np.asarray(density * tail_at(model, seconds).growth, dtype=np.float64)
 
 
 def _settled(model: Model, drive: tuple[float, float], seconds: float) -> _core.SegmentLinearization:
