@@ -125,7 +125,7 @@ double report(const Case& chosen, bool foreign, int count) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 10000;
+  const int count = argc > 1 ? static_cast<int>(std::strtol(argv[1], nullptr, 10)) : 10000;
   std::printf("Trajectories to %d reachable goals, tolerance 1 mm and 1 mrad, from rest, up to 10 m at 1.2 m/s\n",
               count);
   std::printf("%-34s %-9s %10s %9s %9s %9s %9s %9s\n", "model, end", "goals", "reached", "median us", "95 % us",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "slipwise/actuator/first_order_lag.hpp"
@@ -91,9 +92,9 @@ class GrowingEnd {
 /// Walks over the moments at which a delayed command begins to act in one of the channels.
 class ManoeuvreWalk {
  public:
-  ManoeuvreWalk(const PlanningModel& model, const HeldCommands& held, const DriveStart& start, double settling)
+  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, double settling)
       : chain_(model.chain()),
-        held_(held),
+        held_(std::move(held)),
         settling_(settling),
         v_{start.drive.v, 0.0},
         vy_{start.drive.vy, 0.0},
@@ -104,7 +105,7 @@ class ManoeuvreWalk {
         end_(model) {}
 
   template <bool kSlopes>
-  const GrowingEnd& run() {
+  void run() {
     const auto count = static_cast<double>(held_.commands.size() - 1);
     const Moment end{count * held_.period.value + settling_, count * held_.period.slope};
     Moment now{0.0, 0.0};
@@ -121,8 +122,18 @@ class ManoeuvreWalk {
       }
       now = next;
     }
-    return end_;
   }
+
+  /// The path is recorded into `path` from now on.
+  void record(ManoeuvrePath& path) {
+    path_ = &path;
+    path.t.push_back(0.0);
+    path.poses.push_back(end_.pose());
+  }
+
+  BodyTwist drive() const { return {.v = v_.value, .vy = vy_.value, .omega = omega_.value}; }
+  Pose2 pose() const { return end_.pose(); }
+  ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
   /// A time and its derivative by the manoeuvre's length.
@@ -171,11 +182,15 @@ class ManoeuvreWalk {
                     advance(omega_, told_omega_, decay_omega)},
                    nullptr);
       }
+      if (path_ != nullptr) {
+        path_->t.push_back(from.t + (i + 1) * duration);
+        path_->poses.push_back(end_.pose());
+      }
     }
   }
 
   const CommandChain& chain_;
-  const HeldCommands& held_;
+  HeldCommands held_;
   double settling_;
   Speed v_, vy_;
   YawRate omega_;
@@ -184,6 +199,7 @@ class ManoeuvreWalk {
   std::size_t next_v_ = 0;
   std::size_t next_omega_ = 0;
   GrowingEnd end_;
+  ManoeuvrePath* path_ = nullptr;
 };
 
 }  // namespace
@@ -198,16 +214,26 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
 
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                      const DriveStart& start) {
-  const HeldCommands held = held_commands(frame, parameters);
-  return ManoeuvreWalk(model, held, start, frame.settling).run<false>().pose();
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.run<false>();
+  return walk.pose();
+}
+
+ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                             const DriveStart& start) {
+  ManoeuvrePath path;
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.record(path);
+  walk.run<false>();
+  path.drive = walk.drive();
+  return path;
 }
 
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const DriveStart& start) {
-  const HeldCommands held = held_commands(frame, parameters);
-  ManoeuvreWalk walk(model, held, start, frame.settling);
-  const GrowingEnd& end = walk.run<true>();
-  return {end.pose(), end.jacobian()};
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.run<true>();
+  return {walk.pose(), walk.jacobian()};
 }
 
 }  // namespace slipwise

@@ -114,12 +114,13 @@ bool ManoeuvreTable::inside(const Cell& cell) const {
   return cell.x >= 0 && cell.x < kAcross && cell.y >= 0 && cell.y < kAcross;
 }
 
-std::int32_t& ManoeuvreTable::slot(const Cell& cell) {
-  return slots_[static_cast<std::size_t>((cell.x * kAcross + cell.y) * kAround + cell.turn)];
+std::size_t ManoeuvreTable::place_of(const Cell& cell) {
+  const std::size_t row = static_cast<std::size_t>(cell.x) * kAcross + static_cast<std::size_t>(cell.y);
+  return row * kAround + static_cast<std::size_t>(cell.turn);
 }
 
-std::int32_t ManoeuvreTable::slot(const Cell& cell) const {
-  return slots_[static_cast<std::size_t>((cell.x * kAcross + cell.y) * kAround + cell.turn)];
-}
+std::int32_t& ManoeuvreTable::slot(const Cell& cell) { return slots_[place_of(cell)]; }
+
+std::int32_t ManoeuvreTable::slot(const Cell& cell) const { return slots_[place_of(cell)]; }
 
 }  // namespace slipwise

@@ -24,23 +24,25 @@ void need(bool fine, const char* fault) {
 
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 
-double settling_time(const CommandChain& chain) {
-  return std::max(chain.delay_v, chain.delay_omega) + kSettledLags * std::max(chain.lag_v, chain.lag_omega);
+/// How long the last command is held: until it has come through the delay, and at rest through the lag too. Then the
+/// next plan finds nothing on its way to the drive but that command.
+double settling_time(const CommandChain& chain, double end_speed) {
+  const double lags = end_speed > 0.0 ? 0.0 : kSettledLags;
+  return std::max(chain.delay_v, chain.delay_omega) + lags * std::max(chain.lag_v, chain.lag_omega);
 }
 
 /// Whether attempt `a` came nearer to the goal than `b`.
 bool nearer(const Reach& a, const Reach& b) { return a.gap_xy + a.gap_yaw < b.gap_xy + b.gap_yaw; }
 
-Trajectory trajectory_of(const Reach& reach, const ManoeuvreFrame& frame) {
-  const HeldCommands held = held_commands(frame, reach.parameters);
+Trajectory trajectory_of(const Reach& reach, const ReachProblem& at) {
+  const HeldCommands held = held_commands(at.frame, reach.parameters);
   Trajectory result{.status = reach.reached ? TrajectoryStatus::Reached : TrajectoryStatus::Unreachable};
   for (std::size_t k = 0; k < held.commands.size(); ++k) {
     result.t.push_back(static_cast<double>(k) * held.period.value);
     result.v.push_back(held.commands[k].v);
     result.omega.push_back(held.commands[k].omega);
   }
-  result.duration = result.t.back() + frame.settling;
-  result.end = reach.pose;
+  result.path = manoeuvre_path(at.model, at.frame, reach.parameters, at.start);
   result.gap_xy = reach.gap_xy;
   result.gap_yaw = reach.gap_yaw;
   return result;
@@ -54,7 +56,7 @@ TrajectorySettings checked(const TrajectorySettings& settings, const DriveLimits
 
 }  // namespace
 
-std::string advice(TrajectoryStatus status) {
+std::string_view advice(TrajectoryStatus status) {
   switch (status) {
     case TrajectoryStatus::Reached:
       return "the goal is reached";
@@ -94,7 +96,7 @@ ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) 
                        .acceleration = limits_.acceleration,
                        .direction = direction,
                        .commands = settings_.commands};
-  frame.settling = settings_.end_speed > 0.0 ? 0.0 : settling_time(model_.chain());
+  frame.settling = settling_time(model_.chain(), settings_.end_speed);
   const double curvature = std::min(limits_.curvature, limits_.yaw_rate / fastest);
   const double shortest = SpeedProfile::shortest(frame.speeds, frame.acceleration) + kShortest;
   ManoeuvreBounds bounds{.low = ManoeuvreVector::Constant(-curvature), .high = ManoeuvreVector::Constant(curvature)};
@@ -127,7 +129,7 @@ Trajectory TrajectoryPlanner::to(const Pose2& goal, const DriveStart& start) con
       }
     }
     if (!guesses.empty() && (!any || nearest.reached)) {
-      best = trajectory_of(nearest, at.frame);
+      best = trajectory_of(nearest, at);
       any = true;
     }
     // Slower commands bend more only where the yaw rate is what limits them.

@@ -30,7 +30,7 @@ Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const Dri
   v.insert(v.end(), plan.v.begin(), plan.v.end());
   omega.insert(omega.end(), plan.omega.begin(), plan.omega.end());
   const std::vector<double> vy(t.size(), 0.0);
-  const Segment segment{.start = 0.0, .end = plan.duration, .initial = start.drive};
+  const Segment segment{.start = 0.0, .end = plan.path.t.back(), .initial = start.drive};
   return integrate_segment(sample.motion, sample.parameters, InputTrack(t, v, vy, omega), segment).poses.back();
 }
 
@@ -64,6 +64,7 @@ void check_goals(const tests::SampleModel& sample, double end_speed, const Drive
     const Pose2 end = driven(sample, plan, start);
     CHECK(std::hypot(end.x - goal.x, end.y - goal.y) < 1.1e-3);
     CHECK(std::abs(wrap_angle(end.theta - goal.theta)) < 1.1e-3);
+    CHECK((plan.path.poses.back().vector() - end.vector()).norm() < 1e-9);
     check_limits(plan, start.told.v);
   }
   CHECK(reached >= kGoals - 2);
@@ -74,6 +75,27 @@ TEST_CASE("trajectories reach reachable goals within all limits, with and withou
   check_goals(skidding(true), 0.0, {});
   const BodyTwist moving{.v = 0.8, .vy = 0.0, .omega = 0.3};
   check_goals(skidding(true), 0.6, {.drive = moving, .told = moving});
+}
+
+TEST_CASE("a trajectory goes on from where another one ended, though commands are still on their way then") {
+  const tests::SampleModel sample = skidding(true);
+  const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.6));
+  const Trajectory first = planner.to({3.0, 0.6, 0.4}, {});
+  REQUIRE(first.status == TrajectoryStatus::Reached);
+  const DriveStart between{.drive = first.path.drive, .told = {.v = first.v.back(), .omega = first.omega.back()}};
+  const Pose2 leg{2.5, -0.5, -0.3};
+  const Trajectory second = planner.to(leg, between);
+  REQUIRE(second.status == TrajectoryStatus::Reached);
+  Trajectory both = first;
+  const double join = first.path.t.back();
+  for (std::size_t k = 0; k < second.t.size(); ++k) {
+    both.t.push_back(join + second.t[k]);
+    both.v.push_back(second.v[k]);
+    both.omega.push_back(second.omega[k]);
+  }
+  both.path.t.push_back(join + second.path.t.back());
+  const Pose2 expected = compose(first.path.poses.back(), second.path.poses.back());
+  CHECK((driven(sample, both, {}).vector() - expected.vector()).norm() < 5e-3);
 }
 
 TEST_CASE("trajectories drive backwards where asked to") {

@@ -15,6 +15,7 @@ from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.inspect import inspect
+from slipwise.cli.plan import plan
 from slipwise.cli.simulate import simulate
 
 DEBUG = "--debug"
@@ -31,6 +32,7 @@ _COMMANDS = (
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
+    (plan, "Plan a route through a map with a learned model."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
 )

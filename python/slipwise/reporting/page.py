@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib import resources
 
 from plotly.offline import get_plotlyjs
@@ -15,32 +16,44 @@ from slipwise.reporting.markup import escape
 from slipwise.reporting.section import Section
 
 
+@dataclass(frozen=True)
+class Part:
+    """One heading of a page with what stands below it."""
+
+    title: str
+    explanation: str
+    html: str
+
+
 def page(contents: Contents, sections: Sequence[Section]) -> str:
-    """Return the whole page; only Plotly and the page's own script may run, nothing may be fetched."""
+    """Return the report's whole page."""
+    parts = [Part(section.title, section.explanation, section.html(contents)) for section in sections]
+    return page_of(contents.title, "slipwise motion model report", parts)
+
+
+def page_of(title: str, kind: str, parts: Sequence[Part]) -> str:
+    """Return a whole page; only Plotly and the page's own script may run, nothing may be fetched."""
     plotly, script = get_plotlyjs(), _asset("report.js")
-    bodies = [
-        _section(f"section-{place}", section, contents) for place, section in enumerate(sections, start=1)
-    ]
     links = "".join(
-        f'<a href="#section-{place}">{escape(section.title)}</a>'
-        for place, section in enumerate(sections, start=1)
+        f'<a href="#section-{place}">{escape(part.title)}</a>' for place, part in enumerate(parts, start=1)
     )
+    bodies = "\n".join(_section(f"section-{place}", part) for place, part in enumerate(parts, start=1))
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(plotly, script)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
-        f"<title>{escape(contents.title)}</title>\n<style>{_asset('report.css')}</style>\n</head>\n<body>\n"
-        f"<header><p>slipwise motion model report</p><h1>{escape(contents.title)}</h1></header>\n"
-        f"<nav>{links}</nav>\n<main>\n" + "\n".join(bodies) + "\n</main>\n"
+        f"<title>{escape(title)}</title>\n<style>{_asset('report.css')}</style>\n</head>\n<body>\n"
+        f"<header><p>{escape(kind)}</p><h1>{escape(title)}</h1></header>\n"
+        f"<nav>{links}</nav>\n<main>\n{bodies}\n</main>\n"
         f"<script>{plotly}</script>\n<script>{script}</script>\n</body>\n</html>\n"
     )
 
 
-def _section(name: str, section: Section, contents: Contents) -> str:
+def _section(name: str, part: Part) -> str:
     return (
-        f'<section id="{name}"><h2>{escape(section.title)}</h2>'
-        f'<p class="explanation">{escape(section.explanation)}</p>{section.html(contents)}</section>'
+        f'<section id="{name}"><h2>{escape(part.title)}</h2>'
+        f'<p class="explanation">{escape(part.explanation)}</p>{part.html}</section>'
     )
 
 

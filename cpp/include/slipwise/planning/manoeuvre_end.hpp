@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "slipwise/actuator/command_chain.hpp"
 #include "slipwise/actuator/input_track.hpp"
@@ -18,6 +19,13 @@ using ManoeuvreJacobian = Eigen::Matrix<double, 3, kManoeuvreParameters>;
 struct ManoeuvreEnd {
   Pose2 pose;                                        ///< seen from the start
   ManoeuvreJacobian by = ManoeuvreJacobian::Zero();  ///< derivative of its chart (x, y, theta)
+};
+
+/// The robot on its way: poses seen from the start, and what the drive does at the end.
+struct ManoeuvrePath {
+  std::vector<double> t = {};     ///< [steps + 1], from 0 on [s]
+  std::vector<Pose2> poses = {};  ///< [steps + 1]
+  BodyTwist drive = {};
 };
 
 /// A motion model as a planner uses it, on flat ground. A clock offset is one of measured poses; plans have none.
@@ -39,7 +47,10 @@ class PlanningModel {
 /// Where the robot is when all commands and the settling are over.
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                      const DriveStart& start);
-/// The same with its derivative (derivations.md, section 14).
+/// The way there.
+ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                             const DriveStart& start);
+/// Its end with the derivative (derivations.md, section 14).
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const DriveStart& start);
 

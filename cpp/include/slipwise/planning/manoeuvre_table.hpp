@@ -30,6 +30,7 @@ class ManoeuvreTable {
     int x, y, turn;
   };
   Cell cell_of(const Pose2& pose) const;
+  static std::size_t place_of(const Cell& cell);
   std::int32_t& slot(const Cell& cell);
   std::int32_t slot(const Cell& cell) const;
   bool inside(const Cell& cell) const;

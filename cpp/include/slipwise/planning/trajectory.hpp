@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "slipwise/planning/manoeuvre_table.hpp"
@@ -16,8 +16,8 @@ struct TrajectorySettings {
   double longest = 10.0;     ///< of commanded paths [m]
   bool backwards = false;    ///< drive backwards all the way
   int commands = 32;         ///< each held for the same time
-  int samples = 40000;       ///< of the table of first guesses
-  int guesses = 16;          ///< tried at most
+  int samples = 10000;       ///< of the table of first guesses
+  int guesses = 12;          ///< tried at most
   ReachSettings reach = {};  ///< tolerances
 
   /// \throws std::invalid_argument unless all are positive, finite, and within the limits.
@@ -26,16 +26,15 @@ struct TrajectorySettings {
 
 enum class TrajectoryStatus : std::uint8_t { Reached, TooFar, Unreachable };
 /// What the status means and what to do about it; ends without a full stop.
-std::string advice(TrajectoryStatus status);
+std::string_view advice(TrajectoryStatus status);
 
-/// Commands from the start on; the last one holds on.
+/// Commands from the start on, each held until the next and the last one on; the path that they cause.
 struct Trajectory {
   TrajectoryStatus status = TrajectoryStatus::Unreachable;
   std::vector<double> t = {};      ///< [commands + 1], when each is given [s]
   std::vector<double> v = {};      ///< [m/s]
   std::vector<double> omega = {};  ///< [rad/s]
-  double duration = 0.0;           ///< until the robot is where `end` says [s]
-  Pose2 end = {};                  ///< seen from the start
+  ManoeuvrePath path = {};         ///< seen from the start; it ends when the robot is at the goal
   double gap_xy = 0.0;             ///< how far the end is from the goal [m]
   double gap_yaw = 0.0;            ///< [rad]
   int linearizations = 0;          ///< how often the model was linearised

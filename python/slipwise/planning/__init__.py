@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Planning with a learned model: trajectories to a goal pose, and routes through a map."""
+
+from slipwise.planning.grid_map import GridMap, load_map
+from slipwise.planning.limits import DriveState, Limits, limits_of
+from slipwise.planning.route import Route, RouteOptions, RoutePlanner
+from slipwise.planning.trajectory import (
+    Planner,
+    Trajectory,
+    TrajectoryOptions,
+    trajectory_to,
+    uncertain_path,
+)
+
+__all__ = [
+    "DriveState",
+    "GridMap",
+    "Limits",
+    "Planner",
+    "Route",
+    "RouteOptions",
+    "RoutePlanner",
+    "Trajectory",
+    "TrajectoryOptions",
+    "limits_of",
+    "load_map",
+    "trajectory_to",
+    "uncertain_path",
+]
