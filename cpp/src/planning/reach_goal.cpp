@@ -48,9 +48,10 @@ ManoeuvreVector bounded_step(const ManoeuvreVector& at, const ManoeuvreBounds& b
     step = held + spread * system.ldlt().solve(residual - jacobian * held);
     bool inside = true;
     for (int i = 0; i < kManoeuvreParameters; ++i) {
-      const double stop = std::clamp(at[i] + step[i], bounds.low[i], bounds.high[i]) - at[i];
-      if (stop != step[i] && metric(i, i) > 0.0) {
-        held[i] = stop;
+      const double wanted = at[i] + step[i];
+      const bool leaves = wanted < bounds.low[i] || wanted > bounds.high[i];
+      if (leaves && metric(i, i) > 0.0) {
+        held[i] = std::clamp(wanted, bounds.low[i], bounds.high[i]) - at[i];
         metric.row(i).setZero();
         metric.col(i).setZero();
         inside = false;
