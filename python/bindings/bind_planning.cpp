@@ -2,10 +2,13 @@
 // Bindings of cpp/include/slipwise/planning.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "slipwise/planning/distance_field.hpp"
+#include "slipwise/planning/mppi.hpp"
 #include "slipwise/planning/trajectory.hpp"
 
 namespace nb = nanobind;
@@ -13,6 +16,12 @@ using namespace nb::literals;
 
 namespace slipwise::bindings {
 namespace {
+
+/// A costmap with its cells.
+struct CostGrid {
+  std::vector<float> cells;
+  Costmap map;
+};
 
 Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -76,12 +85,122 @@ void bind_trajectory(nb::module_& m) {
       .def("to", &TrajectoryPlanner::to, "goal"_a, "start"_a);
 }
 
+void bind_mppi_settings(nb::module_& m) {
+  nb::class_<MppiLimits>(m, "MppiLimits", "Limits of sampled commands.")
+      .def(nb::init<>())
+      .def_rw("lowest_speed", &MppiLimits::lowest_speed)
+      .def_rw("highest_speed", &MppiLimits::highest_speed)
+      .def_rw("yaw_rate", &MppiLimits::yaw_rate)
+      .def_rw("acceleration", &MppiLimits::acceleration)
+      .def_rw("yaw_acceleration", &MppiLimits::yaw_acceleration);
+  nb::class_<MppiCosts>(m, "MppiCosts", "What costs how much.")
+      .def(nb::init<>())
+      .def_rw("across", &MppiCosts::across)
+      .def_rw("along", &MppiCosts::along)
+      .def_rw("heading", &MppiCosts::heading)
+      .def_rw("smoothness", &MppiCosts::smoothness)
+      .def_rw("obstacle", &MppiCosts::obstacle)
+      .def_rw("collision", &MppiCosts::collision)
+      .def_rw("lethal", &MppiCosts::lethal);
+  nb::class_<MppiSettings>(m, "MppiSettings", "Settings of the MPPI controller.")
+      .def(nb::init<>())
+      .def_rw("rollouts", &MppiSettings::rollouts)
+      .def_rw("periods", &MppiSettings::periods)
+      .def_rw("period", &MppiSettings::period)
+      .def_rw("speed_std", &MppiSettings::speed_std)
+      .def_rw("yaw_rate_std", &MppiSettings::yaw_rate_std)
+      .def_rw("colour", &MppiSettings::colour)
+      .def_rw("temperature", &MppiSettings::temperature)
+      .def_rw("risk", &MppiSettings::risk)
+      .def_rw("seed", &MppiSettings::seed)
+      .def_rw("limits", &MppiSettings::limits)
+      .def_rw("costs", &MppiSettings::costs);
+}
+
+using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using CostCells = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+std::vector<DriveCommand> commands_of(const Rows& rows) {
+  std::vector<DriveCommand> commands;
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    commands.push_back({.v = rows(i, 0), .omega = rows(i, 1)});
+  }
+  return commands;
+}
+
+MppiReference reference_of(const Rows& rows) {
+  MppiReference reference;
+  for (std::size_t i = 0; i < rows.shape(0); ++i) {
+    reference.x.push_back(static_cast<float>(rows(i, 0)));
+    reference.y.push_back(static_cast<float>(rows(i, 1)));
+    reference.theta.push_back(static_cast<float>(rows(i, 2)));
+  }
+  return reference;
+}
+
+void bind_mppi(nb::module_& m) {
+  nb::class_<MppiResult>(m, "MppiResult", "The next command and the plan that it begins.")
+      .def_prop_ro("v", [](const MppiResult& result) { return result.command.v; })
+      .def_prop_ro("omega", [](const MppiResult& result) { return result.command.omega; })
+      .def_prop_ro("plan",
+                   [](const MppiResult& result) {
+                     Eigen::MatrixX2d plan(static_cast<Eigen::Index>(result.plan.size()), 2);
+                     for (std::size_t k = 0; k < result.plan.size(); ++k) {
+                       plan.row(static_cast<Eigen::Index>(k)) << result.plan[k].v, result.plan[k].omega;
+                     }
+                     return plan;
+                   })
+      .def_ro("best_cost", &MppiResult::best_cost)
+      .def_ro("effective", &MppiResult::effective)
+      .def_ro("collides", &MppiResult::collides);
+  nb::class_<CostGrid>(m, "CostGrid", "A costmap: cells [rows, columns], side of a cell [m], corner [m].")
+      .def(
+          "__init__",
+          [](CostGrid* self, const CostCells& cells, double resolution, double origin_x, double origin_y,
+             float outside) {
+            new (self) CostGrid{.cells = {cells.data(), cells.data() + cells.size()},
+                                .map = {.rows = cells.shape(0),
+                                        .columns = cells.shape(1),
+                                        .resolution = resolution,
+                                        .origin_x = origin_x,
+                                        .origin_y = origin_y,
+                                        .outside = outside}};
+            self->map.cells = self->cells;
+            check_costmap(self->map);
+          },
+          "cells"_a, "resolution"_a, "origin_x"_a, "origin_y"_a, "outside"_a);
+  nb::class_<Mppi>(m, "Mppi", "Model predictive path integral control through learned models.")
+      .def(
+          "__init__",
+          [](Mppi* self, const std::vector<std::pair<MotionModel, Eigen::VectorXd>>& models,
+             const MppiSettings& settings) {
+            std::vector<RolloutProgram> programs;
+            for (const auto& [model, parameters] : models) {
+              programs.emplace_back(model, parameters, RolloutSetting{.period = settings.period});
+            }
+            new (self) Mppi(std::move(programs), settings);
+          },
+          "models"_a, "settings"_a)
+      .def(
+          "step",
+          [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows& past, const Rows& reference,
+             const CostGrid* map) {
+            const MppiState state{.start = {.pose = pose, .drive = {.v = drive.first, .omega = drive.second}},
+                                  .past = commands_of(past)};
+            return self.step(state, reference_of(reference), map == nullptr ? nullptr : &map->map);
+          },
+          "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
+      .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);
+}
+
 }  // namespace
 
 void bind_planning(nb::module_& m) {
   using Cells = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
   bind_settings(m);
   bind_trajectory(m);
+  bind_mppi_settings(m);
+  bind_mppi(m);
   m.def(
       "distance_field",
       [](const Cells& occupied, double resolution, float nothing) {

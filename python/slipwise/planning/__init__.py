@@ -1,9 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Planning with a learned model: trajectories to a goal pose, and routes through a map."""
+"""Planning with a learned model: trajectories to a goal, routes through a map, and the MPPI controller."""
 
 from slipwise.planning.grid_map import GridMap, load_map
 from slipwise.planning.limits import DriveState, Limits, limits_of
+from slipwise.planning.mppi import (
+    Controller,
+    Motion,
+    MppiOptions,
+    costmap,
+    learned_motions,
+    plain_motion,
+    vendor_motion,
+)
 from slipwise.planning.route import Route, RouteOptions, RoutePlanner
+from slipwise.planning.track import Track
 from slipwise.planning.trajectory import (
     Planner,
     Trajectory,
@@ -13,6 +23,14 @@ from slipwise.planning.trajectory import (
 )
 
 __all__ = [
+    "Controller",
+    "Motion",
+    "MppiOptions",
+    "Track",
+    "costmap",
+    "learned_motions",
+    "plain_motion",
+    "vendor_motion",
     "DriveState",
     "GridMap",
     "Limits",

@@ -16,7 +16,7 @@ struct ManoeuvreBounds {
 struct ReachSettings {
   double tolerance_xy = 1e-3;   ///< [m]
   double tolerance_yaw = 1e-3;  ///< [rad]
-  int iterations = 8;          ///< at most, for one guess
+  int iterations = 8;           ///< at most, for one guess
   double turn_length = 1.0;     ///< a heading error of 1 rad weighs like this distance [m]
 };
 
