@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drives the simulated robot round a slalom by MPPI: plain model, vendor multiplier and learned model, tuned alike."""
+"""Drives the simulated robot round a slalom by MPPI: plain, vendor and learned model, tuned alike."""
 
 from __future__ import annotations
 
@@ -27,7 +27,11 @@ SPEED = 1.2  # m/s
 LENGTH, WAVE, SIDE = 30.0, 12.0, 1.5  # m along x, of one period, to each side
 LONGEST = 60.0  # s, after which a drive is given up
 LEARNED_FROM = 240.0  # s of another drive, with pose noise
-ACROSS, SMOOTHNESS, NOISE = (1.0, 5.0, 20.0, 80.0), (0.005, 0.05, 0.5), (0.4,)  # every method tries all of these
+ACROSS, SMOOTHNESS, NOISE = (
+    (1.0, 5.0, 20.0, 80.0),
+    (0.005, 0.05, 0.5),
+    (0.4,),
+)  # every method tries all of these
 
 
 @dataclass(frozen=True)
@@ -71,7 +75,7 @@ def drive(method: str, motions: list[Motion], options: MppiOptions) -> Drive:
 
 
 def methods() -> dict[str, list[Motion]]:
-    """Return what each method believes; the vendor's multiplier is the best constant for this robot and ground."""
+    """Return what each method believes; the vendor's multiplier is the best constant for this ground."""
     log = simulate(Scenario(duration=LEARNED_FROM), seed=5).log
     constant = sw.calibrate(log, input_name="command", basis="edd-2").model
     turn = {p.name: p.value for p in constant.content.parameters}["ang.w"]
@@ -99,15 +103,15 @@ def main() -> int:
             done = drive(method, motions, options)
             drives.append(done)
             end = f"{done.seconds:7.1f}" if done.finished else "  never"
-            print(
-                f"{method:8} {across:7g} {smoothness:7g} {noise:6g} {done.rms:7.3f} {done.worst:7.3f} {end}",
-                flush=True,
-            )
+            setting = f"{method:8} {across:7g} {smoothness:7g} {noise:6g}"
+            print(f"{setting} {done.rms:7.3f} {done.worst:7.3f} {end}", flush=True)
     print("\nBest of each method")
     for method in dict.fromkeys(done.method for done in drives):
         best = min((d for d in drives if d.method == method), key=lambda d: (not d.finished, d.rms))
         finished = sum(d.finished for d in drives if d.method == method)
-        print(f"{method:8} rms {best.rms:.3f} m, worst {best.worst:.3f} m; finished {finished} of {len(grid)}")
+        print(
+            f"{method:8} rms {best.rms:.3f} m, worst {best.worst:.3f} m; finished {finished} of {len(grid)}"
+        )
     if arguments.json:
         arguments.json.write_text(json.dumps([d.__dict__ for d in drives], indent=1), encoding="utf-8")
     return 0

@@ -26,7 +26,9 @@ model = sw.calibrate(log, input_name="command").model
 # %%
 goal = (6.0, 2.0, 0.8)
 trajectory = planning.trajectory_to(model, goal)
-print(f"{len(trajectory.commands)} commands, {trajectory.duration:.1f} s, predicted end {trajectory.poses[-1]}")
+print(
+    f"{len(trajectory.commands)} commands, {trajectory.duration:.1f} s, predicted end {trajectory.poses[-1]}"
+)
 assert math.dist(trajectory.poses[-1][:2], goal[:2]) < 0.01
 
 # %% [markdown]

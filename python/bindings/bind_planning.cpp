@@ -47,6 +47,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("end_speed", &TrajectorySettings::end_speed)
       .def_rw("longest", &TrajectorySettings::longest)
       .def_rw("backwards", &TrajectorySettings::backwards)
+      .def_rw("straight_end", &TrajectorySettings::straight_end)
       .def_rw("commands", &TrajectorySettings::commands)
       .def_rw("guesses", &TrajectorySettings::guesses)
       .def_rw("samples", &TrajectorySettings::samples)

@@ -105,6 +105,9 @@ ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) 
   if (speed > kAtRest) {  // a moving robot begins with the curvature that it is told to have
     bounds.low[0] = bounds.high[0] = std::clamp(start.told.omega / start.told.v, -curvature, curvature);
   }
+  if (settings_.straight_end) {
+    bounds.low[kCurvaturePoints - 1] = bounds.high[kCurvaturePoints - 1] = 0.0;
+  }
   return {.model = model_, .frame = frame, .start = start, .bounds = bounds};
 }
 

@@ -109,6 +109,17 @@ TEST_CASE("trajectories drive backwards where asked to") {
   CHECK(driven(sample, plan, {}).x == doctest::Approx(-3.0).epsilon(1e-3));
 }
 
+TEST_CASE("trajectories end straight where asked to") {
+  TrajectorySettings settings = quick_settings(0.6);
+  settings.straight_end = true;
+  const tests::SampleModel sample = skidding(false);
+  const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, settings);
+  const Trajectory plan = planner.to({3.5, 1.0, 0.5}, {});
+  REQUIRE(plan.status == TrajectoryStatus::Reached);
+  CHECK(plan.omega.back() == 0.0);
+  CHECK((driven(sample, plan, {}).vector() - Eigen::Vector3d(3.5, 1.0, 0.5)).norm() < 2e-3);
+}
+
 TEST_CASE("goals out of reach get a status with advice and the nearest attempt, never a made-up plan") {
   const tests::SampleModel sample = skidding(false);
   const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.0));

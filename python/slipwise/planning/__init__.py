@@ -2,6 +2,8 @@
 """Planning with a learned model: trajectories to a goal, routes through a map, and the MPPI controller."""
 
 from slipwise.planning.grid_map import GridMap, load_map
+from slipwise.planning.holdable import CurvatureMap, curvature_map
+from slipwise.planning.lattice import LatticeOptions, Primitive, lattice_primitives, write_lattice
 from slipwise.planning.limits import DriveState, Limits, limits_of
 from slipwise.planning.mppi import (
     Controller,
@@ -24,24 +26,30 @@ from slipwise.planning.trajectory import (
 
 __all__ = [
     "Controller",
-    "Motion",
-    "MppiOptions",
-    "Track",
-    "costmap",
-    "learned_motions",
-    "plain_motion",
-    "vendor_motion",
+    "CurvatureMap",
     "DriveState",
     "GridMap",
+    "LatticeOptions",
     "Limits",
+    "Motion",
+    "MppiOptions",
     "Planner",
+    "Primitive",
     "Route",
     "RouteOptions",
     "RoutePlanner",
+    "Track",
     "Trajectory",
     "TrajectoryOptions",
+    "costmap",
+    "curvature_map",
+    "lattice_primitives",
+    "learned_motions",
     "limits_of",
     "load_map",
+    "plain_motion",
     "trajectory_to",
     "uncertain_path",
+    "vendor_motion",
+    "write_lattice",
 ]

@@ -62,7 +62,7 @@ class MppiOptions:
     speed_std: float = 0.3  # m/s of the samples
     yaw_rate_std: float = 0.4  # rad/s of the samples
     colour: float = 0.3  # s over which the noise changes
-    temperature: float = 0.3  # share of the best quarter's excess cost at which a rollout weighs e^-1
+    temperature: float = 0.3  # of the excess cost of the best quarter, where a rollout weighs e^-1
     risk: float = 0.0  # 0 counts the mean cost over the motions, 1 the worst
     across: float = 20.0  # cost per squared metre beside the track and second
     along: float = 2.0  # per squared metre ahead or behind and second
@@ -90,7 +90,7 @@ USUAL = MppiOptions()
 
 
 def costmap(grid: GridMap, radius: float, *, inflation: float = 0.5) -> _core.CostGrid:
-    """Return the cost of every place of a map for a robot's disc: lethal in obstacles, falling to 0 beside them.
+    """Return the cost of every place for a robot's disc: lethal in obstacles, falling to 0 beside them.
 
     Args:
         grid: what is free.

@@ -20,7 +20,7 @@ class Track:
     """Points that are joined by straight lines; it remembers how far along the robot has come.
 
     Raises:
-        SettingsError: fewer than two different points, values that are not finite, or a speed that is not positive.
+        SettingsError: fewer than two different points, or points or a speed that make no sense.
     """
 
     points: Floats  # [N, 2] x, y [m]
@@ -32,11 +32,15 @@ class Track:
     def __post_init__(self) -> None:
         points = np.asarray(self.points, dtype=np.float64)
         if points.ndim != 2 or points.shape[1] != 2 or not np.isfinite(points).all():
-            raise SettingsError("a path is rows of finite x, y", where="points", advice="give [N, 2] in metres")
+            raise SettingsError(
+                "a path is rows of finite x, y", where="points", advice="give [N, 2] in metres"
+            )
         steps = np.hypot(*np.diff(points, axis=0).T)
         points = points[np.append(steps > 0.0, True)]
         if len(points) < 2:
-            raise SettingsError("a path needs two different points", where="points", advice="give more points")
+            raise SettingsError(
+                "a path needs two different points", where="points", advice="give more points"
+            )
         if not (np.isfinite(self.speed) and self.speed > 0.0):
             raise SettingsError(f"the speed is {self.speed}", where="speed", advice="give metres per second")
         self.points = points
@@ -50,7 +54,7 @@ class Track:
         return float(self._along[-1])
 
     def nearest(self, point: ArrayLike) -> tuple[float, float]:
-        """Return the place along the path nearest to a point, and the signed distance from it, left positive [m].
+        """Return the place along the path nearest to a point, and how far left of it that is [m].
 
         It is looked for near the last `progress`, so that a path may cross itself.
         """

@@ -88,7 +88,7 @@ def wheel_targets(vehicle: LandTamer, commands: Inputs, sampling: Sampling) -> N
 
 @dataclass(frozen=True)
 class Physics:
-    """A vehicle that stands on its ground; `advance` moves it on by one step under the wheel rates in `data.ctrl`."""
+    """A vehicle on its ground; `advance` takes one step under the wheel rates in `data.ctrl`."""
 
     model: Any
     data: Any
