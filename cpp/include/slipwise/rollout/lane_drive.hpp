@@ -63,7 +63,7 @@ SLIPWISE_LANES void advance_lag(const Vector& input, Scalar mean_gap, Scalar end
     mean = input + gap * mean_gap;
     output = input + gap * end_gap;
   } else {
-    mean = input;
+    copy(input, mean);
   }
 }
 

@@ -29,22 +29,22 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::V
   Vector one;
   fill(static_cast<Scalar>(1), one);
   const auto at = [&factors](SlipFactor factor) -> Vector& { return factors.value[static_cast<std::size_t>(factor)]; };
-  at(SlipFactor::V) = v;
-  at(SlipFactor::Omega) = omega;
+  copy(v, at(SlipFactor::V));
+  copy(omega, at(SlipFactor::Omega));
   if ((used & bit(SlipFactor::AbsV)) != 0) {
-    at(SlipFactor::AbsV) = magnitude(v);
+    copy(magnitude(v), at(SlipFactor::AbsV));
   }
   if ((used & bit(SlipFactor::AbsOmega)) != 0) {
-    at(SlipFactor::AbsOmega) = magnitude(omega);
+    copy(magnitude(omega), at(SlipFactor::AbsOmega));
   }
   if ((used & bit(SlipFactor::SignV)) != 0) {
-    at(SlipFactor::SignV) = sign(v, one);
+    copy(sign(v, one), at(SlipFactor::SignV));
   }
   if ((used & bit(SlipFactor::Curvature)) != 0) {
-    at(SlipFactor::Curvature) = (omega * v) / (v * v + job.squared_curvature_speed);
+    copy((omega * v) / (v * v + job.squared_curvature_speed), at(SlipFactor::Curvature));
   }
   if ((used & bit(SlipFactor::Moving)) != 0) {
-    at(SlipFactor::Moving) = any_nonzero(v, omega, one);
+    copy(any_nonzero(v, omega, one), at(SlipFactor::Moving));
   }
 }
 
@@ -108,8 +108,8 @@ SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* share
   FactorLanes<L> factors;
   find_factors<L>(job, v, omega, factors);
   typename L::Vector products[kMostProducts];
-  products[kProductV] = v;
-  products[kProductOmega] = omega;
+  copy(v, products[kProductV]);
+  copy(omega, products[kProductOmega]);
   fill(static_cast<Scalar>(1), products[kProductOne]);
   tangent.forward = v * shares[3 * kProductV] + omega * shares[3 * kProductOmega];
   tangent.left = v * shares[3 * kProductV + 1] + omega * shares[3 * kProductOmega + 1];
@@ -117,7 +117,7 @@ SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* share
   for (std::size_t i = kFirstProduct; i < job.product_count; ++i) {
     const LaneProduct code = job.products[i];
     const typename L::Vector product = products[code.parent] * factors.value[code.factor];
-    products[i] = product;
+    copy(product, products[i]);
     add_shares<L>(code.channels, product, shares + 3 * i, tangent);
   }
 }

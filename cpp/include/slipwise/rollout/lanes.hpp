@@ -58,6 +58,17 @@ SLIPWISE_LANES void store(const Pair<Half>& pair, Scalar* to) {
   store(pair.high, to + sizeof(Half) / sizeof(Scalar));
 }
 
+/// Vector by vector. An assignment may copy a pair as bytes, in pieces that stall the vectors that are read next.
+template <class Vector>
+SLIPWISE_LANES void copy(const Vector& from, Vector& to) {
+  to = from;
+}
+template <class Half>
+SLIPWISE_LANES void copy(const Pair<Half>& from, Pair<Half>& to) {
+  copy(from.low, to.low);
+  copy(from.high, to.high);
+}
+
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void fill(Scalar value, Vector& vector) {
   vector = Vector{} + value;
@@ -128,7 +139,7 @@ SLIPWISE_LANES Pair<Half> sign(const Pair<Half>& a, const Pair<Half>& one) {
 /// 1, and 0 where both are zero.
 template <class Vector>
 SLIPWISE_LANES Vector any_nonzero(const Vector& a, const Vector& b, const Vector& one) {
-  return a != Vector{} ? one : (b != Vector{} ? one : Vector{});
+  return magnitude(a) + magnitude(b) > Vector{} ? one : Vector{};
 }
 template <class Half>
 SLIPWISE_LANES Pair<Half> any_nonzero(const Pair<Half>& a, const Pair<Half>& b, const Pair<Half>& one) {
