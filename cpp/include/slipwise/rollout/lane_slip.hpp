@@ -98,7 +98,8 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
   const Scalar* e = shares + 3 * kProductV;
   tangent.forward = kappa * (kappa * a[0] + (v * b[0] + c[0])) + v * (v * d[0] + e[0]);
   tangent.left = kappa * (kappa * a[1] + (v * b[1] + c[1])) + v * (v * d[1] + e[1]);
-  tangent.turn = kappa * (kappa * a[2] + (v * b[2] + c[2])) + (v * (v * d[2] + e[2]) + omega * shares[3 * kProductOmega + 2]);
+  tangent.turn =
+      kappa * (kappa * a[2] + (v * b[2] + c[2])) + (v * (v * d[2] + e[2]) + omega * shares[3 * kProductOmega + 2]);
 }
 
 /// Runs the program: each product is an earlier one times a factor, and has its shares in the tangent.
