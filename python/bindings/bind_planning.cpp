@@ -17,12 +17,6 @@ using namespace nb::literals;
 namespace slipwise::bindings {
 namespace {
 
-/// A costmap with its cells.
-struct CostGrid {
-  std::vector<float> cells;
-  Costmap map;
-};
-
 Eigen::VectorXd vector_of(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
@@ -119,7 +113,6 @@ void bind_mppi_settings(nb::module_& m) {
 }
 
 using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
-using CostCells = nb::ndarray<const float, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
 
 std::vector<DriveCommand> commands_of(const Rows& rows) {
   std::vector<DriveCommand> commands;
@@ -154,22 +147,6 @@ void bind_mppi(nb::module_& m) {
       .def_ro("best_cost", &MppiResult::best_cost)
       .def_ro("effective", &MppiResult::effective)
       .def_ro("collides", &MppiResult::collides);
-  nb::class_<CostGrid>(m, "CostGrid", "A costmap: cells [rows, columns], side of a cell [m], corner [m].")
-      .def(
-          "__init__",
-          [](CostGrid* self, const CostCells& cells, double resolution, double origin_x, double origin_y,
-             float outside) {
-            new (self) CostGrid{.cells = {cells.data(), cells.data() + cells.size()},
-                                .map = {.rows = cells.shape(0),
-                                        .columns = cells.shape(1),
-                                        .resolution = resolution,
-                                        .origin_x = origin_x,
-                                        .origin_y = origin_y,
-                                        .outside = outside}};
-            self->map.cells = self->cells;
-            check_costmap(self->map);
-          },
-          "cells"_a, "resolution"_a, "origin_x"_a, "origin_y"_a, "outside"_a);
   nb::class_<Mppi>(m, "Mppi", "Model predictive path integral control through learned models.")
       .def(
           "__init__",
@@ -185,10 +162,10 @@ void bind_mppi(nb::module_& m) {
       .def(
           "step",
           [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows& past, const Rows& reference,
-             const CostGrid* map) {
+             const Costmap* map) {
             const MppiState state{.start = {.pose = pose, .drive = {.v = drive.first, .omega = drive.second}},
                                   .past = commands_of(past)};
-            return self.step(state, reference_of(reference), map == nullptr ? nullptr : &map->map);
+            return self.step(state, reference_of(reference), map);
           },
           "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
       .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);

@@ -42,16 +42,19 @@ LagShare share_of(double time_constant, double duration) {
   return {time_constant > 0.0 ? time_constant * decay.gone / duration : 0.0, decay.left};
 }
 
-/// Cuts a stretch so that no part with lag is longer than the chain's own steps are.
-void append_parts(const CommandChain& chain, PeriodPart part, bool lags, std::vector<PeriodPart>& parts) {
-  const int count = lags ? std::max(1, static_cast<int>(std::ceil(part.duration / DriveWindow{}.longest_step))) : 1;
-  part.duration /= count;
-  part.lag_v = share_of(chain.lag_v, part.duration);
-  part.lag_omega = share_of(chain.lag_omega, part.duration);
-  for (int i = 0; i < count; ++i) {
-    parts.push_back(part);
-    part.next_v = part.next_omega = false;
+/// A stretch of constant delayed commands, cut so that no part with lag is longer than the chain's own steps are.
+std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool next_v, bool next_omega) {
+  if (!(duration > 0.0)) {
+    return {};
   }
+  const bool lags = chain.lag_v > 0.0 || chain.lag_omega > 0.0;
+  const int count = lags ? std::max(1, static_cast<int>(std::ceil(duration / DriveWindow{}.longest_step))) : 1;
+  const double part = duration / count;
+  std::vector<PeriodPart> parts(static_cast<std::size_t>(count),
+                                {part, false, false, share_of(chain.lag_v, part), share_of(chain.lag_omega, part)});
+  parts.front().next_v = next_v;
+  parts.front().next_omega = next_omega;
+  return parts;
 }
 
 }  // namespace
@@ -63,14 +66,21 @@ ChainSchedule schedule_chain(const CommandChain& chain, double period) {
   }
   const Delay v = split_delay(chain.delay_v + chain.clock_offset, period);
   const Delay omega = split_delay(chain.delay_omega + chain.clock_offset, period);
-  ChainSchedule schedule{period, v.periods, omega.periods, chain.lag_v > 0.0 || chain.lag_omega > 0.0, {}};
-  std::vector<double> cuts{0.0, v.rest, omega.rest, period};
-  std::ranges::sort(cuts);
-  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    if (cuts[i + 1] > cuts[i]) {
-      const PeriodPart part{cuts[i + 1] - cuts[i], v.rest == cuts[i], omega.rest == cuts[i], {}, {}};
-      append_parts(chain, part, schedule.lags, schedule.parts);
-    }
+  const double first = std::min(v.rest, omega.rest);
+  const double second = std::max(v.rest, omega.rest);
+  const bool together = first == second;
+  ChainSchedule schedule{period, v.periods, omega.periods, chain.lag_v > 0.0 || chain.lag_omega > 0.0, {}, {}, 0, {}};
+  schedule.lead_in = cut(chain, first, false, false);
+  if (!together) {
+    schedule.cycle = cut(chain, second - first, v.rest == first, omega.rest == first);
+  }
+  schedule.branch = schedule.cycle.size();
+  const std::vector<PeriodPart> last = cut(chain, first + period - second, v.rest == second, omega.rest == second);
+  schedule.cycle.insert(schedule.cycle.end(), last.begin(), last.end());
+  if (first > 0.0) {
+    schedule.tail = cut(chain, period - second, v.rest == second, omega.rest == second);
+  } else {
+    schedule.branch = schedule.cycle.size();
   }
   return schedule;
 }

@@ -28,7 +28,7 @@ namespace {
 /// Its name is known in this file alone: what is compiled for it is used by it alone.
 struct Level {
   static constexpr std::size_t kBytes = 32;
-  static constexpr std::size_t kVectors = 4;
+  static constexpr std::size_t kPairs = 1;
 };
 
 template <typename Scalar>

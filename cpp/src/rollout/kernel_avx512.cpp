@@ -28,7 +28,7 @@ namespace {
 /// Its name is known in this file alone: what is compiled for it is used by it alone.
 struct Level {
   static constexpr std::size_t kBytes = 64;
-  static constexpr std::size_t kVectors = 2;
+  static constexpr std::size_t kPairs = 1;
 };
 
 template <typename Scalar>

@@ -12,7 +12,7 @@ namespace {
 
 struct Level {
   static constexpr std::size_t kBytes = 16;
-  static constexpr std::size_t kVectors = 4;
+  static constexpr std::size_t kPairs = 1;
 };
 
 }  // namespace

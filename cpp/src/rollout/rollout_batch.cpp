@@ -96,11 +96,17 @@ template <typename Scalar>
 LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                        const RolloutOutputs<Scalar>& outputs) {
   const LaneConstants<Scalar>& constants = program.constants<Scalar>();
+  const ChainSchedule& chain = program.chain();
   return {.parts = constants.parts.data(),
           .shares = constants.shares.data(),
-          .part_count = constants.parts.size(),
+          .cycle = chain.lead_in.size(),
+          .branch = chain.lead_in.size() + chain.branch,
+          .tail = chain.lead_in.size() + chain.cycle.size(),
+          .part_end = constants.parts.size(),
           .products = program.products().data(),
           .product_count = program.products().size(),
+          .is_quadratic = program.quadratic().has_value(),
+          .quadratic = program.quadratic().value_or(LaneQuadratic{}),
           .factors = program.slip().factors,
           .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
           .shift_v = program.chain().shift_v,
@@ -153,6 +159,7 @@ class BlockOfBatch {
   const LaneBlock<Scalar>& at(std::size_t block) {
     block_.first = block * lanes_;
     block_.count = std::min(lanes_, batch_.rollouts - block_.first);
+    block_.side_by_side = batch_.commands.rollout_stride == 1 && block_.count == lanes_;
     block_.past = batch_.past.data() + (many_ ? block_.first * block_.past_count : 0);
     for (std::size_t lane = 0; many_ && lane < block_.count; ++lane) {
       set_lane(block_, lane, batch_.starts[block_.first + lane], map_);
@@ -171,7 +178,7 @@ class BlockOfBatch {
 [[noreturn]] void refuse(unsigned fault) {
   if ((fault & kTurnsTooFar) != 0) {
     throw std::invalid_argument(
-        "a rollout turns by more than a whole turn within one period; use shorter periods, or "
+        "a rollout turns thousands of times within one period; use shorter periods, or "
         "commands in rad/s");
   }
   throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands in m/s and rad/s?");

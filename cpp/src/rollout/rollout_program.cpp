@@ -36,7 +36,10 @@ template <typename Scalar>
 LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain) {
   LaneConstants<Scalar> constants;
   const auto number = [](double value) { return static_cast<Scalar>(value); };
-  for (const PeriodPart& part : chain.parts) {
+  std::vector<PeriodPart> parts = chain.lead_in;
+  parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
+  parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
+  for (const PeriodPart& part : parts) {
     constants.parts.push_back({.first_share = constants.shares.size(),
                                .duration = number(part.duration),
                                .mean_gap_v = number(part.lag_v.mean_gap),
@@ -61,6 +64,7 @@ RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const 
     : setting_(setting),
       slip_(slip_of(model, parameters, setting)),
       chain_(schedule_chain(model.chain(parameters), setting.period)),
+      quadratic_(find_quadratic(slip_)),
       products_(lane_products(slip_)),
       float_(lane_constants<float>(slip_, chain_)),
       double_(lane_constants<double>(slip_, chain_)) {}

@@ -74,6 +74,29 @@ class Compiler {
 
 }  // namespace
 
+std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program) {
+  const auto& products = program.products;
+  if (products[kProductOmega].share[0] != 0.0 || products[kProductOmega].share[1] != 0.0) {
+    return std::nullopt;
+  }
+  LaneQuadratic found{kProductOne, kProductOne, kProductOne, kProductOne};
+  for (std::size_t i = kFirstProduct; i < products.size(); ++i) {
+    const auto& [parent, factor, share] = products[i];
+    if (factor == SlipFactor::Curvature && parent == kProductOne) {
+      found.curvature = i;
+    } else if (factor == SlipFactor::Curvature && parent == kProductV) {
+      found.speed_by_curvature = i;
+    } else if (factor == SlipFactor::Curvature && parent == found.curvature && found.curvature != kProductOne) {
+      found.curvature_squared = i;
+    } else if (factor == SlipFactor::V && parent == kProductV) {
+      found.speed_squared = i;
+    } else {
+      return std::nullopt;
+    }
+  }
+  return found;
+}
+
 SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha, double gx, double gy) {
   Compiler compiler;
   for (std::size_t i = 0; i < basis.size(); ++i) {

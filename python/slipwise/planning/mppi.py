@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.models.model import Model
+from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.track import Track
 from slipwise.planning.trajectory import Pose, to_core_pose
@@ -89,7 +90,7 @@ class MppiOptions:
 USUAL = MppiOptions()
 
 
-def costmap(grid: GridMap, radius: float, *, inflation: float = 0.5) -> _core.CostGrid:
+def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap:
     """Return the cost of every place for a robot's disc: lethal in obstacles, falling to 0 beside them.
 
     Args:
@@ -101,10 +102,10 @@ def costmap(grid: GridMap, radius: float, *, inflation: float = 0.5) -> _core.Co
         SettingsError: radius or inflation are not positive.
     """
     if not (np.isfinite([radius, inflation]).all() and radius > 0.0 and inflation > 0.0):
-        raise SettingsError("radius and inflation must be positive", where="costmap", advice="give metres")
+        raise SettingsError("radius and inflation must be positive", where="inflation", advice="give metres")
     near = np.clip(1.0 - (grid.clearance - radius) / inflation, 0.0, 1.0)
     cells = np.where(grid.clearance < radius, LETHAL, 0.5 * LETHAL * near**2).astype(np.float32)
-    return _core.CostGrid(np.ascontiguousarray(cells), grid.resolution, *grid.origin, LETHAL)
+    return Costmap(cells, grid.resolution, grid.origin, LETHAL)
 
 
 class Controller:
@@ -114,7 +115,7 @@ class Controller:
         motions: through which sampled commands are driven; several where risk counts.
         track: what to follow.
         options: settings.
-        obstacles: what `costmap` returned.
+        obstacles: costs of places, `LETHAL` where a collision is; see `inflated`.
 
     Raises:
         SettingsError: there is no motion, or an option makes no sense.
@@ -126,9 +127,10 @@ class Controller:
         track: Track,
         *,
         options: MppiOptions = USUAL,
-        obstacles: _core.CostGrid | None = None,
+        obstacles: Costmap | None = None,
     ) -> None:
-        self.track, self.options, self._obstacles = track, options, obstacles
+        self.track, self.options = track, options
+        self._obstacles = obstacles  # keeps the cells
         try:
             models = [(motion.model, motion.parameters) for motion in motions]
             self._core = _core.Mppi(models, options.to_core())
@@ -148,9 +150,10 @@ class Controller:
             PlanningError: the robot is inside an obstacle.
         """
         at = to_core_pose(pose, "robot's pose")
+        obstacles = None if self._obstacles is None else self._obstacles.in_core
         wanted = self.track.ahead(pose, self.options.periods, self.options.period)
         try:
-            result = self._core.step(at, drive, self._past, wanted, self._obstacles)
+            result = self._core.step(at, drive, self._past, wanted, obstacles)
         except ValueError as problem:
             kind = PlanningError if "obstacle" in str(problem) else SettingsError
             raise kind(str(problem), where="controller") from problem

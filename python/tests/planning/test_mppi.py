@@ -14,7 +14,7 @@ from slipwise.planning import (
     Controller,
     MppiOptions,
     Track,
-    costmap,
+    inflated,
     learned_motions,
     plain_motion,
     vendor_motion,
@@ -48,7 +48,7 @@ def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> 
 
 
 def test_a_start_in_an_obstacle_is_refused() -> None:
-    obstacles = costmap(walled_map(), 0.3)
+    obstacles = inflated(walled_map(), 0.3)
     track = Track(np.array([[1.0, 2.0], [11.0, 2.0]]), 0.8)
     controller = Controller([plain_motion()], track, options=QUICK, obstacles=obstacles)
     controller.command((2.0, 2.0, 0.0), (0.0, 0.0))
@@ -64,7 +64,7 @@ def test_what_makes_no_sense_is_refused() -> None:
     with pytest.raises(SettingsError, match="2 rollouts"):
         Controller([plain_motion()], straight(), options=MppiOptions(rollouts=0))
     with pytest.raises(SettingsError, match="radius and inflation"):
-        costmap(walled_map(), math.nan)
+        inflated(walled_map(), math.nan)
     controller = Controller([plain_motion()], straight(), options=QUICK)
     with pytest.raises(SettingsError, match="the robot's pose is no pose"):
         controller.command((math.nan, 0.0, 0.0), (0.0, 0.0))

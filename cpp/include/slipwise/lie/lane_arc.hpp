@@ -7,10 +7,8 @@
 
 namespace slipwise {
 
-/// Turns up to this one [rad] take the plain series, and up to `kWidestLaneTurn` their doubling.
-inline constexpr double kLaneTurn = 0.4;
-inline constexpr int kLaneDoublings = 4;
-inline constexpr double kWidestLaneTurn = kLaneTurn * (1 << kLaneDoublings);  ///< more than a whole turn
+inline constexpr double kLaneTurn = 0.4;        ///< turns up to this one take the plain series [rad]
+inline constexpr double kWidestLaneTurn = 1e5;  ///< beyond it, whole turns cannot be taken off exactly [rad]
 
 namespace lane_series {
 
@@ -25,6 +23,27 @@ inline constexpr double kDoubleA[] = {1.0,           -1.0 / 6,        1.0 / 120,
                                       1.0 / 362880., -1.0 / 39916800, 1.0 / 6227020800.};
 inline constexpr double kDoubleB[] = {1.0 / 2,        -1.0 / 24,         1.0 / 720,         -1.0 / 40320,
                                       1.0 / 3628800., -1.0 / 479001600., 1.0 / 87178291200.};
+
+/// A whole turn in three parts of few digits, so that multiples of the first two are exact (Cody and Waite 1980), and
+/// the number whose addition rounds to an integer.
+template <typename Scalar>
+struct WholeTurn;
+template <>
+struct WholeTurn<float> {
+  float inverse = 0.15915494F;
+  float rounding = 12582912.0F;
+  float high = 6.28125F;
+  float middle = 0.0019350051879882812F;
+  float low = 3.01991598e-07F;
+};
+template <>
+struct WholeTurn<double> {
+  double inverse = 0.15915494309189535;
+  double rounding = 6755399441055744.0;
+  double high = 6.2831853069365025;
+  double middle = 2.4308402025215864e-10;
+  double low = 8.089064995183803e-21;
+};
 
 }  // namespace lane_series
 
@@ -59,21 +78,24 @@ template <typename Scalar, typename Vector>
 template <typename Scalar, typename Vector>
 [[gnu::always_inline]] inline void wide_lane_arc(const Vector& f, LaneArc<Vector>& arc) {
   lane_arc<Scalar>(f, arc);
-  const Vector part = f * static_cast<Scalar>(1.0 / (1 << kLaneDoublings));
-  LaneArc<Vector> doubled;
-  lane_arc<Scalar>(part, doubled);
-  Vector s = part * doubled.a;
-  Vector c = static_cast<Scalar>(1) - part * doubled.b;
-  for (int i = 0; i < kLaneDoublings; ++i) {  // A(2f) = A(f) cos f and B(2f) = A(f) sin f
-    doubled.b = doubled.a * s;
-    doubled.a = doubled.a * c;
-    const Vector twice = static_cast<Scalar>(2) * s;
+  constexpr lane_series::WholeTurn<Scalar> kTurn;
+  const Vector whole = (f * kTurn.inverse + kTurn.rounding) - kTurn.rounding;
+  const Vector rest = ((f - whole * kTurn.high) - whole * kTurn.middle) - whole * kTurn.low;
+  constexpr int kDoublings = 3;  // from a sixteenth of the rest, at most 0.2 rad, to its half
+  const Vector part = rest * static_cast<Scalar>(1.0 / 16.0);
+  LaneArc<Vector> of_part;
+  lane_arc<Scalar>(part, of_part);
+  Vector s = part * of_part.a;
+  Vector c = static_cast<Scalar>(1) - part * of_part.b;
+  for (int i = 0; i < kDoublings; ++i) {
+    const Vector twice = s + s;
+    const Vector cosine = static_cast<Scalar>(1) - twice * s;
     s = twice * c;
-    c = static_cast<Scalar>(1) - twice * (twice * static_cast<Scalar>(0.5));
+    c = cosine;
   }
   const auto wide = f * f > static_cast<Scalar>(kLaneTurn * kLaneTurn);
-  arc.a = wide ? doubled.a : arc.a;
-  arc.b = wide ? doubled.b : arc.b;
+  arc.a = wide ? (s + s) * c / f : arc.a;
+  arc.b = wide ? (s + s) * s / f : arc.b;
 }
 
 }  // namespace slipwise

@@ -2,102 +2,85 @@
 // The command chain in lanes: which command acts now, and what the drive makes of it.
 #pragma once
 
+#include "slipwise/rollout/drive_command.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
 namespace slipwise {
 
-/// Reads the commands of one channel for a block, period after period.
-template <class L, typename Scalar>
-struct CommandLanes {
-  const LaneJob<Scalar>& job;
-  const LaneBlock<Scalar>& block;
-  const Scalar* commands;          ///< of all rollouts
+inline constexpr std::size_t kLineBytes = 64;  ///< of the processor's cache
+
+/// Where a block's commands of one channel are read from.
+template <typename Scalar>
+struct CommandSource {
+  const Scalar* commands;          ///< the block's first one
   const Scalar* drive;             ///< the drive's twist at the start, for when no command was sent yet
   double DriveCommand::* channel;  ///< of a command sent before the start
-  bool side_by_side;               ///< a period's commands can be read as they lie
-
-  SLIPWISE_LANES void read(std::ptrdiff_t period, typename L::Row& row) const {
-    const auto last = static_cast<std::ptrdiff_t>(job.periods) - 1;
-    const std::ptrdiff_t at = period < last ? period : last;
-    if (at < 0) {
-      read_past(at, row);
-      return;
-    }
-    const Scalar* from =
-        commands + static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride + at * job.period_stride;
-    if (side_by_side) {
-#pragma GCC unroll 8
-      for (std::size_t u = 0; u < L::kVectors; ++u) {
-        load(from + u * L::kWidth, row.part[u]);
-        __builtin_prefetch(from + 8 * job.period_stride + u * L::kWidth);
-      }
-      return;
-    }
-    alignas(64) Scalar gathered[L::kLanes] = {};
-    for (std::size_t i = 0; i < block.count; ++i) {
-      gathered[i] = from[static_cast<std::ptrdiff_t>(i) * job.rollout_stride];
-    }
-    load_row(gathered, row);
-  }
-
- private:
-  /// Commands from before the start: `period` is negative.
-  SLIPWISE_LANES void read_past(std::ptrdiff_t period, typename L::Row& row) const {
-    if (block.past_count == 0) {
-      load_row(drive, row);
-      return;
-    }
-    const std::ptrdiff_t back = static_cast<std::ptrdiff_t>(block.past_count) + period;
-    const std::size_t at = static_cast<std::size_t>(back > 0 ? back : 0);
-    alignas(64) Scalar gathered[L::kLanes] = {};
-    for (std::size_t i = 0; i < block.count; ++i) {
-      gathered[i] = static_cast<Scalar>(block.past[i * block.past_stride + at].*channel);
-    }
-    load_row(gathered, row);
-  }
-
- public:
-  SLIPWISE_LANES static void load_row(const Scalar* from, typename L::Row& row) {
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      load(from + u * L::kWidth, row.part[u]);
-    }
-  }
 };
+
+/// Gathers commands one by one: those that do not lie side by side, and those that were sent before the start.
+template <class L, typename Scalar = typename L::Scalar>
+[[gnu::noinline]] void gather_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                       const CommandSource<Scalar>& source, std::ptrdiff_t period, Scalar* gathered) {
+  const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(block.past_count) + period;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    if (period >= 0) {
+      gathered[i] = source.commands[static_cast<std::ptrdiff_t>(i) * job.rollout_stride + period * job.period_stride];
+    } else if (block.past_count == 0) {
+      gathered[i] = source.drive[i];
+    } else {
+      const DriveCommand* past = block.past + i * block.past_stride + (place > 0 ? place : 0);
+      gathered[i] = static_cast<Scalar>(past->*source.channel);
+    }
+  }
+}
+
+/// Reads the commands that a period brings; those before the first period were sent before the start.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                  const CommandSource<Scalar>& source, std::ptrdiff_t period,
+                                  typename L::Vector& command) {
+  const auto last = static_cast<std::ptrdiff_t>(job.periods) - 1;
+  const std::ptrdiff_t at = period < last ? period : last;
+  if (at >= 0 && block.side_by_side) {
+    const Scalar* from = source.commands + at * job.period_stride;
+    load(from, command);
+    for (std::size_t i = 0; i < L::kLanes; i += kLineBytes / sizeof(Scalar)) {
+      __builtin_prefetch(from + 8 * job.period_stride + i);
+    }
+  } else {
+    alignas(64) Scalar gathered[L::kLanes] = {};
+    gather_commands<L>(job, block, source, at, gathered);
+    load(gathered, command);
+  }
+}
+
+/// A drive channel's lag over a part: the mean over the part, and the output moved on to its end.
+template <bool kLags, typename Scalar, class Vector>
+SLIPWISE_LANES void advance_lag(const Vector& input, Scalar mean_gap, Scalar end_gap, Vector& output, Vector& mean) {
+  if constexpr (kLags) {
+    const Vector gap = output - input;
+    mean = input + gap * mean_gap;
+    output = input + gap * end_gap;
+  } else {
+    copy(input, mean);
+  }
+}
 
 /// One channel of the drive: the command that acts, and the lag's output.
-template <class L, typename Scalar>
+template <class L>
 struct ChannelLanes {
-  CommandLanes<L, Scalar> commands;
+  typename L::Vector input;
+  typename L::Vector output;
   std::ptrdiff_t next;  ///< the period whose command acts next
-  typename L::Row input;
-  typename L::Row output;
-
-  SLIPWISE_LANES ChannelLanes(const CommandLanes<L, Scalar>& from, std::ptrdiff_t shift)
-      : commands(from), next(-shift) {
-    commands.read(next - 1, input);
-    CommandLanes<L, Scalar>::load_row(commands.drive, output);
-  }
-
-  /// The channel's mean over a part of the period, which ends with the lag's output moved on.
-  template <bool kLags>
-  SLIPWISE_LANES void advance(bool takes_next, Scalar mean_gap, Scalar end_gap, typename L::Row& mean) {
-    if (takes_next) {
-      commands.read(next, input);
-      ++next;
-    }
-    if constexpr (!kLags) {
-      mean = input;
-      return;
-    }
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      const auto gap = output.part[u] - input.part[u];
-      mean.part[u] = input.part[u] + gap * mean_gap;
-      output.part[u] = input.part[u] + gap * end_gap;
-    }
-  }
 };
+
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                  const CommandSource<Scalar>& source, std::ptrdiff_t shift, ChannelLanes<L>& channel) {
+  channel.next = -shift;
+  load(source.drive, channel.output);
+  read_commands<L>(job, block, source, channel.next - 1, channel.input);
+}
 
 }  // namespace slipwise

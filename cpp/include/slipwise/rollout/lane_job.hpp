@@ -18,6 +18,11 @@ struct LaneProduct {
   std::uint8_t channels;
 };
 
+/// Where the products of a quadratic program stand; kProductOne, which has no share, where there is none.
+struct LaneQuadratic {
+  std::size_t curvature, curvature_squared, speed_by_curvature, speed_squared;
+};
+
 /// A part of the control period (chain_schedule.hpp) in the kernel's numbers.
 template <typename Scalar>
 struct LanePart {
@@ -40,11 +45,13 @@ struct LaneMap {
 
 template <typename Scalar>
 struct LaneJob {
-  const LanePart<Scalar>* parts;
-  const Scalar* shares;  ///< [parts][products * 3], times the part's duration: from products to a tangent
-  std::size_t part_count;
+  const LanePart<Scalar>* parts;  ///< those of the lead-in, the cycle and the tail (chain_schedule.hpp)
+  const Scalar* shares;           ///< [parts][products * 3], times the part's duration: from products to a tangent
+  std::size_t cycle, branch, tail, part_end;  ///< where these begin in the parts
   const LaneProduct* products;
   std::size_t product_count;
+  bool is_quadratic;  ///< of second degree in speed and curvature, as the thesis's basis is
+  LaneQuadratic quadratic;
   unsigned factors;  ///< bits of the slip factors in use
   Scalar squared_curvature_speed;
   std::ptrdiff_t shift_v, shift_omega;
@@ -68,6 +75,7 @@ template <typename Scalar>
 struct LaneBlock {
   std::size_t first;
   std::size_t count;
+  bool side_by_side;  ///< a period's commands can be read as they lie
   alignas(64) Scalar x[kMostLanes];
   alignas(64) Scalar y[kMostLanes];
   alignas(64) Scalar theta[kMostLanes];

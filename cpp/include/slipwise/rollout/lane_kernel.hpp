@@ -11,10 +11,19 @@
 
 namespace slipwise {
 
-template <class L, typename Scalar>
-SLIPWISE_LANES bool any_above(const typename L::Row& row, Scalar limit, std::size_t count) {
+/// A robot in every lane: its drive and where it is.
+template <class L>
+struct RobotLanes {
+  ChannelLanes<L> v;
+  ChannelLanes<L> omega;
+  PathLanes<L> path;
+};
+
+/// Whether some lane is above the limit.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES bool any_above(const typename L::Vector& lanes, Scalar limit, std::size_t count) {
   alignas(64) Scalar values[L::kLanes];
-  store_row<L>(row, values);
+  store(lanes, values);
   bool above = false;
   for (std::size_t i = 0; i < count; ++i) {
     above |= values[i] > limit;
@@ -22,45 +31,84 @@ SLIPWISE_LANES bool any_above(const typename L::Row& row, Scalar limit, std::siz
   return above;
 }
 
-/// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn.
-template <class L, typename Scalar, bool kLags, bool kWide>
+/// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
+/// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
+/// it to the period's end, and it goes on from where it was put aside.
+template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
 [[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const bool side_by_side = job.rollout_stride == 1 && block.count == L::kLanes;
-  ChannelLanes<L, Scalar> v({job, block, job.v, block.v, &DriveCommand::v, side_by_side}, job.shift_v);
-  ChannelLanes<L, Scalar> omega({job, block, job.omega, block.omega, &DriveCommand::omega, side_by_side},
-                                job.shift_omega);
-  PathLanes<L, Scalar> path(block);
-  OutputLanes<L, Scalar> output(job, block);
-  for (std::size_t period = 0; period < job.periods; ++period) {
-    for (std::size_t i = 0; i < job.part_count; ++i) {
-      const LanePart<Scalar>& part = job.parts[i];
-      typename L::Row mean_v;
-      typename L::Row mean_omega;
-      v.template advance<kLags>(part.next_v, part.mean_gap_v, part.end_gap_v, mean_v);
-      omega.template advance<kLags>(part.next_omega, part.mean_gap_omega, part.end_gap_omega, mean_omega);
-      TangentLanes<L> tangent;
-      slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
-      path.template step<kWide>(tangent);
+  const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
+  const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
+  const CommandSource<Scalar> source_omega{job.omega + first, block.omega, &DriveCommand::omega};
+  RobotLanes<L> robot;
+  start_channel<L>(job, block, source_v, job.shift_v, robot.v);
+  start_channel<L>(job, block, source_omega, job.shift_omega, robot.omega);
+  start_path<L>(block, robot.path);
+  OutputLanes<L> output(job, block);
+  RobotLanes<L> aside = robot;
+  const bool has_tail = job.tail != job.part_end;
+  std::size_t period = 0;
+  for (std::size_t i = 0; period < job.periods;) {
+    const LanePart<Scalar>& part = job.parts[i];
+    if (part.next_v) {
+      read_commands<L>(job, block, source_v, robot.v.next, robot.v.input);
+      ++robot.v.next;
     }
-    output.write_period(path, period);
+    if (part.next_omega) {
+      read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
+      ++robot.omega.next;
+    }
+    typename L::Vector mean_v;
+    typename L::Vector mean_omega;
+    advance_lag<kLags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
+    advance_lag<kLags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output, mean_omega);
+    TangentLanes<L> tangent;
+    if constexpr (kQuadratic) {
+      quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    } else {
+      slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    }
+    step<L, kWide>(tangent, robot.path);
+    ++i;
+    if (i == job.part_end) {
+      output.write_period(robot.path, period);
+      ++period;
+      if (has_tail && period < job.periods) {
+        robot = aside;
+        i = job.branch;
+        continue;
+      }
+      i = job.cycle;
+    } else if (i == job.tail) {
+      i = job.cycle;
+    }
+    if (has_tail && i == job.branch) {
+      if (output.wants_periods() || period + 1 == job.periods) {
+        aside = robot;
+        i = job.tail;
+      } else {
+        ++period;
+      }
+    }
   }
-  output.write_end(path);
+  output.write_end(robot.path);
   constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
-  const unsigned turns =
-      any_above<L>(path.widest_squared, static_cast<Scalar>(kWidest * kWidest), block.count) ? kTurnsTooFar : kNoFault;
-  return turns | (output.all_finite(path) ? kNoFault : kNotFinite);
+  const bool too_far = any_above<L>(robot.path.widest_squared, static_cast<Scalar>(kWidest * kWidest), block.count);
+  return (too_far ? kTurnsTooFar : kNoFault) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, typename Scalar, bool kLags>
+template <class L, bool kLags, bool kQuadratic, typename Scalar = typename L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const unsigned fault = roll_block_as<L, Scalar, kLags, false>(job, block);
-  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, Scalar, kLags, true>(job, block);
+  const unsigned fault = roll_block_as<L, kLags, kQuadratic, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kLags, kQuadratic, true>(job, block);
 }
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Level, Scalar>;
-  return job.lags ? roll_block_with<L, Scalar, true>(job, block) : roll_block_with<L, Scalar, false>(job, block);
+  if (job.is_quadratic) {
+    return job.lags ? roll_block_with<L, true, true>(job, block) : roll_block_with<L, false, true>(job, block);
+  }
+  return job.lags ? roll_block_with<L, true, false>(job, block) : roll_block_with<L, false, false>(job, block);
 }
 
 }  // namespace slipwise

@@ -8,17 +8,11 @@
 
 namespace slipwise {
 
-template <class L, typename Scalar>
-SLIPWISE_LANES void store_row(const typename L::Row& row, Scalar* to) {
-#pragma GCC unroll 8
-  for (std::size_t u = 0; u < L::kVectors; ++u) {
-    store(row.part[u], to + u * L::kWidth);
-  }
-}
-
-template <class L, typename Scalar>
+template <class L>
 class OutputLanes {
  public:
+  using Scalar = typename L::Scalar;
+
   SLIPWISE_LANES OutputLanes(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) : job_(job), block_(block) {
     for (std::size_t i = 0; i < L::kLanes; ++i) {
       sum_[i] = 0;
@@ -27,7 +21,12 @@ class OutputLanes {
     }
   }
 
-  SLIPWISE_LANES void write_period(const PathLanes<L, Scalar>& path, std::size_t period) {
+  /// Whether the poses on the way matter, beside the last ones.
+  SLIPWISE_LANES bool wants_periods() const {
+    return job_.path[0] != nullptr || job_.path[1] != nullptr || job_.path[2] != nullptr || job_.map.cells != nullptr;
+  }
+
+  SLIPWISE_LANES void write_period(const PathLanes<L>& path, std::size_t period) {
     const std::size_t at = period * job_.rollouts + block_.first;
     write(path.x, block_.x, job_.path[0], at);
     write(path.y, block_.y, job_.path[1], at);
@@ -37,7 +36,7 @@ class OutputLanes {
     }
   }
 
-  SLIPWISE_LANES void write_end(const PathLanes<L, Scalar>& path) const {
+  SLIPWISE_LANES void write_end(const PathLanes<L>& path) const {
     write(path.x, block_.x, job_.end[0], block_.first);
     write(path.y, block_.y, job_.end[1], block_.first);
     write(path.turned, block_.theta, job_.end[2], block_.first);
@@ -47,14 +46,9 @@ class OutputLanes {
   }
 
   /// A command that is not finite makes the last pose so too.
-  SLIPWISE_LANES bool all_finite(const PathLanes<L, Scalar>& path) const {
+  SLIPWISE_LANES bool all_finite(const PathLanes<L>& path) const {
     alignas(64) Scalar difference[L::kLanes];
-    typename L::Row zero;
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      zero.part[u] = (path.x.part[u] - path.x.part[u]) + (path.y.part[u] - path.y.part[u]);
-    }
-    store_row<L>(zero, difference);
+    store((path.x - path.x) + (path.y - path.y), difference);
     bool finite = true;
     for (std::size_t i = 0; i < block_.count; ++i) {
       finite &= difference[i] == 0;
@@ -64,22 +58,19 @@ class OutputLanes {
 
  private:
   /// Writes a row that is counted from the start.
-  SLIPWISE_LANES void write(const typename L::Row& row, const Scalar* start, Scalar* to, std::size_t at) const {
+  SLIPWISE_LANES void write(const typename L::Vector& row, const Scalar* start, Scalar* to, std::size_t at) const {
     if (to == nullptr) {
       return;
     }
-    typename L::Row whole;
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      load(start + u * L::kWidth, whole.part[u]);
-      whole.part[u] = whole.part[u] + row.part[u];
-    }
+    typename L::Vector whole;
+    load(start, whole);
+    whole = whole + row;
     if (block_.count == L::kLanes) {
-      store_row<L>(whole, to + at);
+      store(whole, to + at);
       return;
     }
     alignas(64) Scalar values[L::kLanes];
-    store_row<L>(whole, values);
+    store(whole, values);
     for (std::size_t i = 0; i < block_.count; ++i) {
       to[at + i] = values[i];
     }
@@ -94,11 +85,11 @@ class OutputLanes {
   }
 
   /// Looks up the cell of every lane; a pose that is not finite lies outside.
-  SLIPWISE_LANES void sample(const PathLanes<L, Scalar>& path) {
+  SLIPWISE_LANES void sample(const PathLanes<L>& path) {
     alignas(64) Scalar column[L::kLanes];
     alignas(64) Scalar row[L::kLanes];
-    store_row<L>(path.x, column);
-    store_row<L>(path.y, row);
+    store(path.x, column);
+    store(path.y, row);
     const LaneMap<Scalar>& map = job_.map;
     for (std::size_t i = 0; i < L::kLanes; ++i) {
       const Scalar x = block_.cell_x[i] + column[i] * map.per_metre;

@@ -10,48 +10,55 @@
 namespace slipwise {
 
 /// Displacements from the start, so that far from the map's origin no digits are lost.
-template <class L, typename Scalar>
+template <class L>
 struct PathLanes {
-  typename L::Row x, y;
-  typename L::Row turned;
-  typename L::Row cosine, sine;    ///< of the heading
-  typename L::Row widest_squared;  ///< largest squared turn of a step
-
-  SLIPWISE_LANES explicit PathLanes(const LaneBlock<Scalar>& block) {
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      x.part[u] = y.part[u] = turned.part[u] = widest_squared.part[u] = typename L::Vector{};
-      load(block.cosine + u * L::kWidth, cosine.part[u]);
-      load(block.sine + u * L::kWidth, sine.part[u]);
-    }
-  }
-
-  /// The exponential of the tangent (derivations.md, section 2). With E = A + iB and the heading as a complex number h,
-  /// the step moves by (h E) times the tangent and turns h by i f (h E).
-  template <bool kWide>
-  SLIPWISE_LANES void step(const TangentLanes<L>& tangent) {
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      const auto f = tangent.turn.part[u];
-      const auto squared = f * f;
-      widest_squared.part[u] = squared > widest_squared.part[u] ? squared : widest_squared.part[u];
-      LaneArc<typename L::Vector> arc;
-      if constexpr (kWide) {
-        wide_lane_arc<Scalar>(f, arc);
-      } else {
-        lane_arc<Scalar>(f, arc);
-      }
-      const auto along = arc.a * cosine.part[u] - arc.b * sine.part[u];
-      const auto across = arc.a * sine.part[u] + arc.b * cosine.part[u];
-      const auto& forward = tangent.forward.part[u];
-      const auto& left = tangent.left.part[u];
-      x.part[u] = x.part[u] + along * forward - across * left;
-      y.part[u] = y.part[u] + across * forward + along * left;
-      cosine.part[u] = cosine.part[u] - f * across;
-      sine.part[u] = sine.part[u] + f * along;
-      turned.part[u] = turned.part[u] + f;
-    }
-  }
+  typename L::Vector x, y;
+  typename L::Vector turned;
+  typename L::Vector cosine, sine;    ///< of the heading
+  typename L::Vector widest_squared;  ///< largest squared turn of a step
 };
+
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void start_path(const LaneBlock<Scalar>& block, PathLanes<L>& path) {
+  fill(typename L::Scalar{}, path.x);
+  path.y = path.turned = path.widest_squared = path.x;
+  load(block.cosine, path.cosine);
+  load(block.sine, path.sine);
+}
+
+template <typename Scalar, bool kWide, class Vector>
+SLIPWISE_LANES void find_arc(const Vector& f, LaneArc<Vector>& arc) {
+  if constexpr (kWide) {
+    wide_lane_arc<Scalar>(f, arc);
+  } else {
+    lane_arc<Scalar>(f, arc);
+  }
+}
+template <typename Scalar, bool kWide, class Half>
+SLIPWISE_LANES void find_arc(const Pair<Half>& f, LaneArc<Pair<Half>>& arc) {
+  LaneArc<Half> low;
+  LaneArc<Half> high;
+  find_arc<Scalar, kWide>(f.low, low);
+  find_arc<Scalar, kWide>(f.high, high);
+  arc = {{low.a, high.a}, {low.b, high.b}};
+}
+
+/// The exponential of the tangent (derivations.md, section 2). With E = A + iB and the heading as a complex number h,
+/// the step moves by (h E) times the tangent and turns h by i f (h E).
+template <class L, bool kWide>
+SLIPWISE_LANES void step(const TangentLanes<L>& tangent, PathLanes<L>& path) {
+  const auto& f = tangent.turn;
+  const auto squared = f * f;
+  path.widest_squared = larger(squared, path.widest_squared);
+  LaneArc<typename L::Vector> arc;
+  find_arc<typename L::Scalar, kWide>(f, arc);
+  const auto along = arc.a * path.cosine - arc.b * path.sine;
+  const auto across = arc.a * path.sine + arc.b * path.cosine;
+  path.x = path.x + along * tangent.forward - across * tangent.left;
+  path.y = path.y + across * tangent.forward + along * tangent.left;
+  path.cosine = path.cosine - f * across;
+  path.sine = path.sine + f * along;
+  path.turned = path.turned + f;
+}
 
 }  // namespace slipwise

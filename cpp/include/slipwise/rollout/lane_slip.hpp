@@ -10,119 +10,115 @@ namespace slipwise {
 
 template <class L>
 struct TangentLanes {
-  typename L::Row forward;  ///< [m]
-  typename L::Row left;     ///< [m]
-  typename L::Row turn;     ///< [rad]
+  typename L::Vector forward;  ///< [m]
+  typename L::Vector left;     ///< [m]
+  typename L::Vector turn;     ///< [rad]
 };
 
 /// The factors of one state in every lane.
-template <class L, typename Scalar>
+template <class L>
 struct FactorLanes {
-  typename L::Row value[kSlipFactors];
-
-  SLIPWISE_LANES FactorLanes(const LaneJob<Scalar>& job, const typename L::Row& v, const typename L::Row& omega) {
-    const unsigned used = job.factors;
-    constexpr auto kOne = static_cast<Scalar>(1);
-    const typename L::Vector zero{};
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      const auto& x = v.part[u];
-      const auto& w = omega.part[u];
-      at(SlipFactor::V, u) = x;
-      at(SlipFactor::Omega, u) = w;
-      if ((used & bit(SlipFactor::AbsV)) != 0) {
-        at(SlipFactor::AbsV, u) = x < zero ? -x : x;
-      }
-      if ((used & bit(SlipFactor::AbsOmega)) != 0) {
-        at(SlipFactor::AbsOmega, u) = w < zero ? -w : w;
-      }
-      if ((used & bit(SlipFactor::SignV)) != 0) {
-        at(SlipFactor::SignV, u) = x < zero ? zero - kOne : (x > zero ? zero + kOne : zero);
-      }
-      if ((used & bit(SlipFactor::Curvature)) != 0) {
-        at(SlipFactor::Curvature, u) = (w * x) / (x * x + job.squared_curvature_speed);
-      }
-      if ((used & bit(SlipFactor::Moving)) != 0) {
-        at(SlipFactor::Moving, u) = x != zero ? zero + kOne : (w != zero ? zero + kOne : zero);
-      }
-    }
-  }
-
- private:
-  SLIPWISE_LANES typename L::Vector& at(SlipFactor factor, std::size_t u) {
-    return value[static_cast<std::size_t>(factor)].part[u];
-  }
+  typename L::Vector value[kSlipFactors];
 };
 
-template <class L, typename Scalar>
-SLIPWISE_LANES void add_product(const typename L::Row& product, const Scalar share, typename L::Row& sum) {
-#pragma GCC unroll 8
-  for (std::size_t u = 0; u < L::kVectors; ++u) {
-    sum.part[u] = sum.part[u] + product.part[u] * share;
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
+                                 const typename L::Vector& omega, FactorLanes<L>& factors) {
+  using Vector = typename L::Vector;
+  const unsigned used = job.factors;
+  Vector one;
+  fill(static_cast<Scalar>(1), one);
+  const auto at = [&factors](SlipFactor factor) -> Vector& { return factors.value[static_cast<std::size_t>(factor)]; };
+  copy(v, at(SlipFactor::V));
+  copy(omega, at(SlipFactor::Omega));
+  if ((used & bit(SlipFactor::AbsV)) != 0) {
+    copy(magnitude(v), at(SlipFactor::AbsV));
+  }
+  if ((used & bit(SlipFactor::AbsOmega)) != 0) {
+    copy(magnitude(omega), at(SlipFactor::AbsOmega));
+  }
+  if ((used & bit(SlipFactor::SignV)) != 0) {
+    copy(sign(v, one), at(SlipFactor::SignV));
+  }
+  if ((used & bit(SlipFactor::Curvature)) != 0) {
+    copy((omega * v) / (v * v + job.squared_curvature_speed), at(SlipFactor::Curvature));
+  }
+  if ((used & bit(SlipFactor::Moving)) != 0) {
+    copy(any_nonzero(v, omega, one), at(SlipFactor::Moving));
   }
 }
 
 /// Adds a product to the channels that it has a share in: bits 1, 2 and 4.
-template <class L, typename Scalar>
-SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Row& product, const Scalar* share,
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& product, const Scalar* share,
                                TangentLanes<L>& tangent) {
   switch (channels) {  // the same way in every period: one well-predicted jump
     case 1:
-      add_product<L>(product, share[0], tangent.forward);
+      tangent.forward = tangent.forward + product * share[0];
       break;
     case 2:
-      add_product<L>(product, share[1], tangent.left);
+      tangent.left = tangent.left + product * share[1];
       break;
     case 3:
-      add_product<L>(product, share[0], tangent.forward);
-      add_product<L>(product, share[1], tangent.left);
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.left = tangent.left + product * share[1];
       break;
     case 4:
-      add_product<L>(product, share[2], tangent.turn);
+      tangent.turn = tangent.turn + product * share[2];
       break;
     case 5:
-      add_product<L>(product, share[0], tangent.forward);
-      add_product<L>(product, share[2], tangent.turn);
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.turn = tangent.turn + product * share[2];
       break;
     case 6:
-      add_product<L>(product, share[1], tangent.left);
-      add_product<L>(product, share[2], tangent.turn);
+      tangent.left = tangent.left + product * share[1];
+      tangent.turn = tangent.turn + product * share[2];
       break;
     case 7:
-      add_product<L>(product, share[0], tangent.forward);
-      add_product<L>(product, share[1], tangent.left);
-      add_product<L>(product, share[2], tangent.turn);
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.left = tangent.left + product * share[1];
+      tangent.turn = tangent.turn + product * share[2];
       break;
     default:
       break;
   }
 }
 
+/// A program of second degree in speed and curvature (thesis 5.1), nested so that no product is needed by itself:
+/// kappa (kappa a + (V b + c)) + V (V d + e), with the yaw rate in the turn.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
+                                      const typename L::Vector& omega, TangentLanes<L>& tangent) {
+  using Vector = typename L::Vector;
+  const Vector kappa = (omega * v) / (v * v + job.squared_curvature_speed);
+  const Scalar* a = shares + 3 * job.quadratic.curvature_squared;
+  const Scalar* b = shares + 3 * job.quadratic.speed_by_curvature;
+  const Scalar* c = shares + 3 * job.quadratic.curvature;
+  const Scalar* d = shares + 3 * job.quadratic.speed_squared;
+  const Scalar* e = shares + 3 * kProductV;
+  tangent.forward = kappa * (kappa * a[0] + (v * b[0] + c[0])) + v * (v * d[0] + e[0]);
+  tangent.left = kappa * (kappa * a[1] + (v * b[1] + c[1])) + v * (v * d[1] + e[1]);
+  tangent.turn =
+      kappa * (kappa * a[2] + (v * b[2] + c[2])) + (v * (v * d[2] + e[2]) + omega * shares[3 * kProductOmega + 2]);
+}
+
 /// Runs the program: each product is an earlier one times a factor, and has its shares in the tangent.
-template <class L, typename Scalar>
-SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Row& v,
-                                 const typename L::Row& omega, TangentLanes<L>& tangent) {
-  const FactorLanes<L, Scalar> factors(job, v, omega);
-  typename L::Row products[kMostProducts];
-  products[kProductV] = v;
-  products[kProductOmega] = omega;
-#pragma GCC unroll 8
-  for (std::size_t u = 0; u < L::kVectors; ++u) {
-    products[kProductOne].part[u] = typename L::Vector{} + static_cast<Scalar>(1);
-    tangent.forward.part[u] = v.part[u] * shares[3 * kProductV];
-    tangent.left.part[u] = v.part[u] * shares[3 * kProductV + 1];
-    tangent.turn.part[u] = omega.part[u] * shares[3 * kProductOmega + 2];
-  }
-  add_shares<L>(job.products[kProductV].channels & 4U, v, shares + 3 * kProductV, tangent);
-  add_shares<L>(job.products[kProductOmega].channels & 3U, omega, shares + 3 * kProductOmega, tangent);
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
+                                 const typename L::Vector& omega, TangentLanes<L>& tangent) {
+  FactorLanes<L> factors;
+  find_factors<L>(job, v, omega, factors);
+  typename L::Vector products[kMostProducts];
+  copy(v, products[kProductV]);
+  copy(omega, products[kProductOmega]);
+  fill(static_cast<Scalar>(1), products[kProductOne]);
+  tangent.forward = v * shares[3 * kProductV] + omega * shares[3 * kProductOmega];
+  tangent.left = v * shares[3 * kProductV + 1] + omega * shares[3 * kProductOmega + 1];
+  tangent.turn = v * shares[3 * kProductV + 2] + omega * shares[3 * kProductOmega + 2];
   for (std::size_t i = kFirstProduct; i < job.product_count; ++i) {
     const LaneProduct code = job.products[i];
-    typename L::Row product;
-#pragma GCC unroll 8
-    for (std::size_t u = 0; u < L::kVectors; ++u) {
-      product.part[u] = products[code.parent].part[u] * factors.value[code.factor].part[u];
-    }
-    products[i] = product;
+    const typename L::Vector product = products[code.parent] * factors.value[code.factor];
+    copy(product, products[i]);
     add_shares<L>(code.channels, product, shares + 3 * i, tangent);
   }
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "slipwise/motion/motion_model.hpp"
@@ -22,7 +23,7 @@ struct RolloutSetting {
 /// The program in the numbers of a kernel.
 template <typename Scalar>
 struct LaneConstants {
-  std::vector<LanePart<Scalar>> parts;
+  std::vector<LanePart<Scalar>> parts;  ///< lead-in, cycle, tail
   std::vector<Scalar> shares;
 };
 
@@ -37,6 +38,7 @@ class RolloutProgram {
   const SlipProgram& slip() const { return slip_; }
   const ChainSchedule& chain() const { return chain_; }
 
+  const std::optional<LaneQuadratic>& quadratic() const { return quadratic_; }
   const std::vector<LaneProduct>& products() const { return products_; }
   template <typename Scalar>
   const LaneConstants<Scalar>& constants() const;
@@ -45,6 +47,7 @@ class RolloutProgram {
   RolloutSetting setting_;
   SlipProgram slip_;
   ChainSchedule chain_;
+  std::optional<LaneQuadratic> quadratic_;
   std::vector<LaneProduct> products_;
   LaneConstants<float> float_;
   LaneConstants<double> double_;

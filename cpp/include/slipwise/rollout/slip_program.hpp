@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/slip_factor.hpp"
 
 namespace slipwise {
@@ -25,6 +27,9 @@ struct SlipProgram {
   std::vector<SlipProduct> products;
   unsigned factors = 0;  ///< bits of those in use
 };
+
+/// Where the program's products stand if it is of second degree in speed and curvature (thesis 5.1), beside the drive.
+std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program);
 
 /// Products that several terms share are computed once.
 /// \param alpha the slip parameters in basis order. \param gx, gy body-frame gravity [m/s^2].
