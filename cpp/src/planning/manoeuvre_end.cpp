@@ -70,8 +70,7 @@ class GrowingEnd {
     const Eigen::Vector2d moved = heading_ * (arc_matrix(arc) * tangent.head<2>());
     pose_ = {pose_.x + moved.x(), pose_.y + moved.y(), pose_.theta + tangent.z()};
     if (jacobian != nullptr) {
-      sums_.noalias() += start_by_tangent(heading_, tangent, arc, pose_) *
-                         tangent_by<kManoeuvreParameters>(step, *jacobian, along_, slip);
+      sums_.noalias() += start_by_tangent(heading_, tangent, arc, pose_) * tangent_by(step, *jacobian, along_, slip);
     }
     const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
     heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();

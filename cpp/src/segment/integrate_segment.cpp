@@ -10,8 +10,7 @@
 namespace slipwise {
 namespace {
 
-constexpr int kChainColumns = static_cast<int>(kChainParameters);
-using ChainColumns = Eigen::Matrix<double, 3, kChainColumns>;
+using ChainColumns = Eigen::Matrix<double, 3, kChainParameters>;
 
 DriveWindow window_of(const Segment& segment) {
   return {.start = segment.start, .end = segment.end, .initial = segment.initial};
@@ -144,7 +143,7 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
     const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
     sums.add_slip(model.basis(), by_tangent, features, step.duration);
     if (chain_learned && !drive.jacobians[k].isZero(0.0)) {
-      sums.chain += by_tangent * tangent_by<kChainColumns>(step, drive.jacobians[k], along, slip);
+      sums.chain += by_tangent * tangent_by(step, drive.jacobians[k], along, slip);
     }
   }
   const Pose2 predicted = path.pose();

@@ -32,8 +32,8 @@ inline SlipState slip_state(const DriveStep& step, const BodyGravity& gravity) {
 
 /// The same for a step that has no duration yet gains some with the parameters: its integrals grow with its twist.
 /// The rows of `jacobian` are duration, forward, left and turn.
-template <int kColumns>
-SlipState slip_state(const Eigen::Matrix<double, 4, kColumns>& jacobian, const BodyGravity& gravity) {
+template <typename Jacobian>
+SlipState slip_state_gained(const Jacobian& jacobian, const BodyGravity& gravity) {
   const double squared = jacobian.row(0).squaredNorm();
   const double per_duration = squared > 0.0 ? 1.0 / squared : 0.0;
   return {.v = jacobian.row(1).dot(jacobian.row(0)) * per_duration,
@@ -47,14 +47,19 @@ inline Eigen::Vector3d tangent_of(const DriveStep& step, const Eigen::Vector3d& 
   return Eigen::Vector3d(step.forward, step.left, step.turn) + slip * step.duration;
 }
 
+/// Three rows with as many columns as a step's Jacobian has.
+template <typename Jacobian>
+using TangentColumns =
+    Eigen::Matrix<double, 3, Jacobian::ColsAtCompileTime, Eigen::ColMajor, 3, Jacobian::MaxColsAtCompileTime>;
+
 /// Derivative of a step's tangent by parameters that move its duration and integrals, and through these its slip, which
 /// is `slip` at the step's mean drive.
-template <int kColumns>
-Eigen::Matrix<double, 3, kColumns> tangent_by(const DriveStep& step, const Eigen::Matrix<double, 4, kColumns>& jacobian,
-                                              const PathSlip& at, const Eigen::Vector3d& slip) {
-  Eigen::Matrix<double, 3, kColumns> result = jacobian.template bottomRows<3>();
+template <typename Jacobian>
+TangentColumns<Jacobian> tangent_by(const DriveStep& step, const Jacobian& jacobian, const PathSlip& at,
+                                    const Eigen::Vector3d& slip) {
+  TangentColumns<Jacobian> result = jacobian.template bottomRows<3>();
   if (!(step.duration > 0.0)) {
-    return result + slip_rate(at.basis, at.alpha, slip_state(jacobian, at.gravity)) * jacobian.row(0);
+    return result + slip_rate(at.basis, at.alpha, slip_state_gained(jacobian, at.gravity)) * jacobian.row(0);
   }
   const SlipState state = slip_state(step, at.gravity);
   const auto by_drive = slip_rate_by_drive(at.basis, at.alpha, state);
