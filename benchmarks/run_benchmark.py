@@ -38,6 +38,7 @@ BENCHMARKS = (
     Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
     Benchmark("real_logs", "The score on real logs", needs_data=True),
     Benchmark("surfaces", "Slip surfaces: time and held-out scores", quick=("--quick",)),
+    Benchmark("slalom", "A slalom by MPPI: plain, vendor and learned model", quick=("--quick",)),
     Benchmark("scaling", "Cost against log length", quick=("--quick",)),
 )
 

@@ -18,7 +18,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("vehicle", "slip", "actuator"),
     ("motion",),
     ("segment", "rollout"),
-    ("estimate",),
+    ("estimate", "planning"),
     ("online",),
 )
 LEVEL = {folder: level for level, row in enumerate(LAYERS) for folder in row}

@@ -7,13 +7,15 @@ NB_MODULE(_core, m) {
   // Objects in tracebacks and caches outlive the module at exit; nanobind would call that a leak on the user's
   // terminal.
   nanobind::set_leak_warnings(false);
-  m.doc() = "The mathematics of slipwise: lie, vehicle, slip, actuator, motion, segment, estimate.";
+  m.doc() = "The mathematics of slipwise: lie, vehicle, slip, actuator, motion, segment, rollout, planning, estimate.";
   bind_lie(m);
   bind_vehicle(m);
   bind_slip(m);
   bind_actuator(m);
   bind_motion(m);
   bind_segment(m);
+  bind_rollout(m);
+  bind_planning(m);
   bind_estimate(m);
   bind_regression(m);
   bind_estimators(m);

@@ -12,6 +12,8 @@ void bind_slip(nanobind::module_& m);
 void bind_actuator(nanobind::module_& m);
 void bind_motion(nanobind::module_& m);
 void bind_segment(nanobind::module_& m);
+void bind_planning(nanobind::module_& m);
+void bind_rollout(nanobind::module_& m);
 void bind_estimate(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
 void bind_estimators(nanobind::module_& m);

@@ -37,5 +37,9 @@ class ModelError(SlipwiseError):
     """A model file is not valid, or does not fit what it is used for."""
 
 
+class PlanningError(SlipwiseError):
+    """There is no plan: the map, the start or the goal does not allow one."""
+
+
 class OutputError(SlipwiseError):
     """A result cannot be written."""

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "slipwise/slip/slip_surface.hpp"
+#include "slipwise/segment/path_step.hpp"
 
 namespace slipwise {
 namespace {
@@ -18,27 +18,7 @@ DriveWindow window_of(const Segment& segment) {
   return {.start = segment.start, .end = segment.end, .initial = segment.initial, .known = segment.known};
 }
 
-/// The mean drive over a step, which its slip depends on.
-SlipState slip_state(const DriveStep& step, const Segment& segment) {
-  const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
-  return {.v = step.forward * rate, .omega = step.turn * rate, .gx = segment.gx, .gy = segment.gy};
-}
-
-/// The same for a step that has no duration yet gains some with the chain's parameters: its integrals grow with its
-/// twist.
-SlipState slip_state(const LearnedColumns& jacobian, const Segment& segment) {
-  const double squared = jacobian.row(0).squaredNorm();
-  const double per_duration = squared > 0.0 ? 1.0 / squared : 0.0;
-  return {.v = jacobian.row(1).dot(jacobian.row(0)) * per_duration,
-          .omega = jacobian.row(3).dot(jacobian.row(0)) * per_duration,
-          .gx = segment.gx,
-          .gy = segment.gy};
-}
-
-/// (u_body + du) dt of derivations.md, section 1.
-Eigen::Vector3d tangent_of(const DriveStep& step, const Eigen::Vector3d& slip) {
-  return Eigen::Vector3d(step.forward, step.left, step.turn) + slip * step.duration;
-}
+BodyGravity gravity_of(const Segment& segment) { return {.gx = segment.gx, .gy = segment.gy}; }
 
 /// Runge-Kutta of fourth order on a constant twist: Simpson's rule over the heading (thesis 3.1).
 Eigen::Vector2d rk4_displacement(const Eigen::Vector3d& tangent) {
@@ -87,29 +67,9 @@ class GrowingPath {
 /// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations.md, section 3.
 Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
   const auto arc = arc_functions(tangent.z());
-  Eigen::Matrix3d world = chart_jacobian(tangent, arc);
-  world.topRows<2>() = (path.heading() * world.topRows<2>()).eval();
+  const Eigen::Matrix2d heading = path.heading();
   path.append(duration, tangent, arc_matrix(arc) * tangent.head<2>(), arc);
-  const Pose2& next = path.pose();
-  world(0, 2) += next.y;
-  world(1, 2) -= next.x;
-  return world;
-}
-
-/// Derivative of a step's tangent by the chain's parameters: through duration and integrals, and through the slip they
-/// cause.
-ChainColumns tangent_by_chain(const DriveStep& step, const LearnedColumns& jacobian, const Basis& basis,
-                              const Eigen::VectorXd& alpha, const Segment& segment) {
-  ChainColumns result = jacobian.bottomRows<3>();
-  if (!(step.duration > 0.0)) {
-    return result + slip_rate(basis, alpha, slip_state(jacobian, segment)) * jacobian.row(0);
-  }
-  const SlipState state = slip_state(step, segment);
-  const auto by_drive = slip_rate_by_drive(basis, alpha, state);
-  result += slip_rate(basis, alpha, state) * jacobian.row(0);
-  result += by_drive.col(0) * (jacobian.row(1) - state.v * jacobian.row(0));
-  result += by_drive.col(1) * (jacobian.row(3) - state.omega * jacobian.row(0));
-  return result;
+  return start_by_tangent(heading, tangent, arc, path.pose());
 }
 
 /// Sums of derivations.md, section 3: the steps' derivatives carried back to the path's start, one column per
@@ -158,7 +118,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const DriveStep& step : drive.steps) {
-    model.basis().features(slip_state(step, segment), features);
+    model.basis().features(slip_state(step, gravity_of(segment)), features);
     const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
     const auto arc = arc_functions(tangent.z());
     const Eigen::Vector2d displacement = integrator == Integrator::Exact
@@ -177,19 +137,21 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
   const auto alpha = parameters.head(model.slip_size());
   DriveSteps drive = chain_learned ? linearize_drive_steps(inputs, chain, window_of(segment))
                                    : drive_steps(inputs, chain, window_of(segment));
+  const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
   std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const DriveStep& step = drive.steps[k];
-    model.basis().features(slip_state(step, segment), features);
-    const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    model.basis().features(slip_state(step, gravity_of(segment)), features);
+    const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
+    const Eigen::Vector3d tangent = tangent_of(step, slip);
     const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
     sums.add_slip(model.basis(), by_tangent, features, step.duration);
     if (chain_learned) {
       const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
       if (!learned.isZero(0.0)) {
-        sums.chain += by_tangent * tangent_by_chain(step, learned, model.basis(), alpha, segment);
+        sums.chain += by_tangent * tangent_by(step, learned, along, slip);
       }
     }
   }

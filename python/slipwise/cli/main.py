@@ -16,6 +16,7 @@ from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
+from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.simulate import simulate
 
@@ -34,6 +35,7 @@ _COMMANDS = (
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
     (export, "Write a model into files for other tools."),
+    (plan, "Plan a route through a map with a learned model."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
     (reproduce, "Make the thesis's figures and tables again."),

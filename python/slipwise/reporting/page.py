@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections.abc import Sequence
+from dataclasses import dataclass
 from importlib import resources
 
 from plotly.offline import get_plotlyjs
@@ -15,21 +16,32 @@ from slipwise.reporting.markup import escape
 from slipwise.reporting.section import Section
 
 
+@dataclass(frozen=True)
+class Part:
+    """One heading of a page with what stands below it."""
+
+    title: str
+    explanation: str
+    html: str
+
+
 def page(contents: Contents, sections: Sequence[Section]) -> str:
-    """Return the report's page; only Plotly and the page's own script may run, nothing may be fetched."""
-    bodies = [
-        _section(f"section-{place}", section, contents) for place, section in enumerate(sections, start=1)
-    ]
+    """Return the report's whole page."""
+    parts = [Part(section.title, section.explanation, section.html(contents)) for section in sections]
+    return page_of(contents.title, "slipwise motion model report", parts)
+
+
+def page_of(title: str, kicker: str, parts: Sequence[Part]) -> str:
+    """Return a whole page of parts under links to them; see `document`."""
     links = "".join(
-        f'<a href="#section-{place}">{escape(section.title)}</a>'
-        for place, section in enumerate(sections, start=1)
+        f'<a href="#section-{place}">{escape(part.title)}</a>' for place, part in enumerate(parts, start=1)
     )
-    body = f"<nav>{links}</nav>\n<main>\n" + "\n".join(bodies) + "\n</main>"
-    return document(contents.title, "slipwise motion model report", body)
+    bodies = "\n".join(_section(f"section-{place}", part) for place, part in enumerate(parts, start=1))
+    return document(title, kicker, f"<nav>{links}</nav>\n<main>\n{bodies}\n</main>")
 
 
 def document(title: str, kicker: str, body: str) -> str:
-    """Return a whole document around HTML with figures.
+    """Return a whole document around HTML with figures; only its own scripts may run, nothing may be fetched.
 
     Args:
         title: heading of the page, any text.
@@ -49,10 +61,10 @@ def document(title: str, kicker: str, body: str) -> str:
     )
 
 
-def _section(name: str, section: Section, contents: Contents) -> str:
+def _section(name: str, part: Part) -> str:
     return (
-        f'<section id="{name}"><h2>{escape(section.title)}</h2>'
-        f'<p class="explanation">{escape(section.explanation)}</p>{section.html(contents)}</section>'
+        f'<section id="{name}"><h2>{escape(part.title)}</h2>'
+        f'<p class="explanation">{escape(part.explanation)}</p>{part.html}</section>'
     )
 
 

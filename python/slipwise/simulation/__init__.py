@@ -3,7 +3,9 @@
 
 from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.live_robot import LiveRobot, LiveState
 from slipwise.simulation.perturbation import Perturbation
+from slipwise.simulation.physics import World
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
@@ -12,12 +14,15 @@ from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 __all__ = [
     "DRIVES",
     "LandTamer",
+    "LiveRobot",
+    "LiveState",
     "Perturbation",
     "Scenario",
     "Simulation",
     "TractionLaw",
     "Truth",
     "TyreLaw",
+    "World",
     "dull_drive",
     "hold",
     "simulate",

@@ -86,6 +86,39 @@ def wheel_targets(vehicle: LandTamer, commands: Inputs, sampling: Sampling) -> N
     return targets
 
 
+@dataclass(frozen=True)
+class Physics:
+    """A vehicle on its ground; `advance` takes one step under the wheel rates in `data.ctrl`."""
+
+    model: Any
+    data: Any
+    advance: Callable[[], None]
+
+
+def start_physics(world: World, time_step: float) -> Physics:
+    """Put the vehicle at the world's origin, facing along x, and let its suspension find its balance.
+
+    Raises:
+        SettingsError: the vehicle is impossible.
+        SlipwiseError: MuJoCo is not installed.
+    """
+    mujoco = load_mujoco()
+    force_law = world.force_law
+    friction = world.law.friction if force_law is None else None
+    xml = mjcf(world.vehicle, time_step=time_step, friction=friction)
+    try:
+        model = mujoco.MjModel.from_xml_string(xml)
+    except ValueError as error:
+        advice = "use values nearer the defaults"
+        raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
+    data = mujoco.MjData(model)
+    tyres = None if force_law is None else TyreForceGround(force_law, world.vehicle, model)
+    advance = _stepper(mujoco, model, data, tyres)
+    for _ in range(math.ceil(SETTLING_TIME / time_step)):
+        advance()
+    return Physics(model, data, advance)
+
+
 def run_physics(
     world: World, commands: Inputs, sampling: Sampling, *, progress: Progress | None = None
 ) -> Truth:
@@ -101,21 +134,9 @@ def run_physics(
         SettingsError: the vehicle is impossible.
         SlipwiseError: MuJoCo is not installed, or the physics became unstable.
     """
-    mujoco = load_mujoco()
+    physics = start_physics(world, sampling.time_step)
+    model, data = physics.model, physics.data
     names = wheel_names(world.vehicle)
-    force_law = world.force_law
-    friction = world.law.friction if force_law is None else None
-    xml = mjcf(world.vehicle, time_step=sampling.time_step, friction=friction)
-    try:
-        model = mujoco.MjModel.from_xml_string(xml)
-    except ValueError as error:
-        advice = "use values nearer the defaults"
-        raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
-    data = mujoco.MjData(model)
-    tyres = None if force_law is None else TyreForceGround(force_law, world.vehicle, model)
-    advance = _stepper(mujoco, model, data, tyres)
-    for _ in range(math.ceil(SETTLING_TIME / sampling.time_step)):
-        advance()
     targets = wheel_targets(world.vehicle, commands, sampling)[:, np.arange(len(names)) % 2]
     position = np.empty((sampling.count, model.nq))
     velocity = np.empty((sampling.count, model.nv))
@@ -123,11 +144,11 @@ def run_physics(
         position[sample], velocity[sample] = data.qpos, data.qvel
         for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
             data.ctrl = target
-            advance()
+            physics.advance()
         if progress is not None and (sample % 100 == 99 or sample == sampling.count - 1):
             progress((sample + 1) / sampling.count)
     spins = np.array([model.joint(f"spin_{name}").dofadr[0] for name in names])
-    return _truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
+    return planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
 
 
 def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceGround | None) -> Callable[[], None]:
@@ -144,7 +165,7 @@ def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceGround | None) 
     return advance
 
 
-def _truth(
+def planar_truth(
     t: NDArray[np.float64],
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],

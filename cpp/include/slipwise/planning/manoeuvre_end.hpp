@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a manoeuvre leads through the motion model, and the exact derivative by its parameters.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/lie/se2.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/planning/drive_limits.hpp"
+#include "slipwise/planning/manoeuvre.hpp"
+
+namespace slipwise {
+
+using ManoeuvreJacobian = Eigen::Matrix<double, 3, kManoeuvreParameters>;
+
+struct ManoeuvreEnd {
+  Pose2 pose;                                        ///< seen from the start
+  ManoeuvreJacobian by = ManoeuvreJacobian::Zero();  ///< derivative of its chart (x, y, theta)
+};
+
+/// The robot on its way: poses seen from the start, and what the drive does at the end.
+struct ManoeuvrePath {
+  std::vector<double> t = {};     ///< [steps + 1], from 0 on [s]
+  std::vector<Pose2> poses = {};  ///< [steps + 1]
+  BodyTwist drive = {};
+};
+
+/// A motion model as a planner uses it, on flat ground. A clock offset is one of measured poses; plans have none.
+class PlanningModel {
+ public:
+  /// \throws std::invalid_argument when the parameters do not fit the model.
+  PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters);
+
+  const Basis& basis() const { return basis_; }
+  const Eigen::VectorXd& alpha() const { return alpha_; }
+  const CommandChain& chain() const { return chain_; }
+
+ private:
+  Basis basis_;
+  Eigen::VectorXd alpha_;
+  CommandChain chain_;
+};
+
+/// Where the robot is when all commands and the settling are over.
+Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                     const DriveStart& start);
+/// The way there.
+ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                             const DriveStart& start);
+/// Its end with the derivative (derivations.md, section 14).
+ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
+                                 const ManoeuvreVector& parameters, const DriveStart& start);
+
+}  // namespace slipwise

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command chain over one control period: when the next command begins to act, and how the lags close meanwhile.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace slipwise {
+
+struct CommandChain;
+
+/// How one channel's lag moves over a part: with gap = output - input, the mean output is input + gap * mean_gap, and
+/// the output at the end is input + gap * end_gap. Both are 0 without lag.
+struct LagShare {
+  double mean_gap;
+  double end_gap;
+};
+
+/// A stretch of time over which the delayed commands are constant.
+struct PeriodPart {
+  double duration;  ///< [s]
+  bool next_v;      ///< the next command's speed begins to act where this part begins
+  bool next_omega;  ///< the same for the yaw rate
+  LagShare lag_v;
+  LagShare lag_omega;
+};
+
+/// What every control period of a rollout looks like. Command i is sent at i * period and held. Delayed, it begins to
+/// act within period i + shift. Steps end where commands begin to act, as those of drive_steps do, so a cycle runs from
+/// such a moment to the same one a period later; the pose at the period's end lies within its last stretch.
+struct ChainSchedule {
+  double period;               ///< [s]
+  std::ptrdiff_t shift_v;      ///< whole periods of delay; negative where the clock offset makes commands act early
+  std::ptrdiff_t shift_omega;  ///< the same for the yaw rate
+  bool lags;                   ///< some channel lags
+  std::vector<PeriodPart> lead_in;  ///< from the start to the first cycle
+  std::vector<PeriodPart> cycle;
+  std::size_t branch;            ///< the part of the cycle in place of which the tail leads to the period's end
+  std::vector<PeriodPart> tail;  ///< empty where the cycle ends with the period
+};
+
+/// The same steps that drive_steps takes for commands sent every `period` seconds.
+/// \throws std::invalid_argument when the period is not positive and finite or the chain is longer than 1e6 periods.
+ChainSchedule schedule_chain(const CommandChain& chain, double period);
+
+}  // namespace slipwise

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a robot is told to drive.
+#pragma once
+
+namespace slipwise {
+
+struct DriveCommand {
+  double v = 0.0;      ///< speed [m/s]
+  double omega = 0.0;  ///< yaw rate [rad/s]
+};
+
+}  // namespace slipwise

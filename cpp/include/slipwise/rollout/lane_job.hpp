@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the kernels are handed: plain pointers and numbers, so that nothing compiled for one processor reaches another.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "slipwise/rollout/drive_command.hpp"
+
+namespace slipwise {
+
+inline constexpr std::size_t kMostLanes = 64;  ///< rollouts of one block at any instruction level
+
+/// A product of the slip program; its parent is an earlier one, its channels are bits.
+struct LaneProduct {
+  std::uint8_t parent;
+  std::uint8_t factor;
+  std::uint8_t channels;
+};
+
+/// Where the products of a quadratic program stand; kProductOne, which has no share, where there is none.
+struct LaneQuadratic {
+  std::size_t curvature, curvature_squared, speed_by_curvature, speed_squared;
+};
+
+/// A part of the control period (chain_schedule.hpp) in the kernel's numbers.
+template <typename Scalar>
+struct LanePart {
+  std::size_t first_share;  ///< its shares stand from here on in the job's
+  Scalar duration;
+  Scalar mean_gap_v, end_gap_v;
+  Scalar mean_gap_omega, end_gap_omega;
+  bool next_v, next_omega;
+};
+
+/// A costmap in the kernel's numbers; null cells where none is sampled.
+template <typename Scalar>
+struct LaneMap {
+  const float* cells;
+  std::size_t columns;
+  Scalar width, height;  ///< in cells
+  Scalar per_metre;      ///< cells per metre
+  float outside;
+};
+
+template <typename Scalar>
+struct LaneJob {
+  const LanePart<Scalar>* parts;  ///< those of the lead-in, the cycle and the tail (chain_schedule.hpp)
+  const Scalar* shares;           ///< [parts][products * 3], times the part's duration: from products to a tangent
+  std::size_t cycle, branch, tail, part_end;  ///< where these begin in the parts
+  const LaneProduct* products;
+  std::size_t product_count;
+  bool is_quadratic;  ///< of second degree in speed and curvature, as the thesis's basis is
+  LaneQuadratic quadratic;
+  unsigned factors;  ///< bits of the slip factors in use
+  Scalar squared_curvature_speed;
+  std::ptrdiff_t shift_v, shift_omega;
+  bool lags;
+
+  std::size_t rollouts, periods;
+  const Scalar* v;
+  const Scalar* omega;
+  std::ptrdiff_t rollout_stride, period_stride;
+
+  Scalar* path[3];  ///< x, y, theta: null or [periods * rollouts]
+  Scalar* end[3];   ///< null or [rollouts]
+  LaneMap<Scalar> map;
+  Scalar* cost_sum;
+  Scalar* cost_highest;
+  Scalar* cost_lowest;
+};
+
+/// Some neighbouring rollouts and where they start, one a lane.
+template <typename Scalar>
+struct LaneBlock {
+  std::size_t first;
+  std::size_t count;
+  bool side_by_side;  ///< a period's commands can be read as they lie
+  alignas(64) Scalar x[kMostLanes];
+  alignas(64) Scalar y[kMostLanes];
+  alignas(64) Scalar theta[kMostLanes];
+  alignas(64) Scalar cosine[kMostLanes];
+  alignas(64) Scalar sine[kMostLanes];
+  alignas(64) Scalar v[kMostLanes];  ///< the drive's twist
+  alignas(64) Scalar omega[kMostLanes];
+  alignas(64) Scalar cell_x[kMostLanes];  ///< the start in cells of the map
+  alignas(64) Scalar cell_y[kMostLanes];
+  const DriveCommand* past;  ///< the commands sent before the start, the oldest first
+  std::size_t past_count;    ///< of one start
+  std::size_t past_stride;   ///< from one rollout's to the next one's
+};
+
+/// What went wrong in a block, as bits.
+enum LaneFault : unsigned { kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2 };
+
+/// Rolls one block out; one function per instruction level.
+template <typename Scalar>
+using LaneKernel = unsigned (*)(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block);
+
+template <typename Scalar>
+struct LaneKernelOfLevel {
+  LaneKernel<Scalar> roll;
+  std::size_t lanes;  ///< rollouts per block
+};
+
+/// Each is defined where it is compiled for its processors; null where the build has none of them.
+LaneKernelOfLevel<float> portable_kernel(float);
+LaneKernelOfLevel<double> portable_kernel(double);
+LaneKernelOfLevel<float> avx2_kernel(float);
+LaneKernelOfLevel<double> avx2_kernel(double);
+LaneKernelOfLevel<float> avx512_kernel(float);
+LaneKernelOfLevel<double> avx512_kernel(double);
+
+}  // namespace slipwise

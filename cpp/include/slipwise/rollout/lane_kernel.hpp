@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rollout of one block of lanes: command chain, slip, exact steps, outputs. Compiled once per instruction level.
+#pragma once
+
+#include "slipwise/rollout/lane_drive.hpp"
+#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/lane_output.hpp"
+#include "slipwise/rollout/lane_path.hpp"
+#include "slipwise/rollout/lane_slip.hpp"
+#include "slipwise/rollout/lanes.hpp"
+
+namespace slipwise {
+
+/// A robot in every lane: its drive and where it is.
+template <class L>
+struct RobotLanes {
+  ChannelLanes<L> v;
+  ChannelLanes<L> omega;
+  PathLanes<L> path;
+};
+
+/// Whether some lane is above the limit.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES bool any_above(const typename L::Vector& lanes, Scalar limit, std::size_t count) {
+  alignas(64) Scalar values[L::kLanes];
+  store(lanes, values);
+  bool above = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    above |= values[i] > limit;
+  }
+  return above;
+}
+
+/// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
+/// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
+/// it to the period's end, and it goes on from where it was put aside.
+template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
+[[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
+  const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
+  const CommandSource<Scalar> source_omega{job.omega + first, block.omega, &DriveCommand::omega};
+  RobotLanes<L> robot;
+  start_channel<L>(job, block, source_v, job.shift_v, robot.v);
+  start_channel<L>(job, block, source_omega, job.shift_omega, robot.omega);
+  start_path<L>(block, robot.path);
+  OutputLanes<L> output(job, block);
+  RobotLanes<L> aside = robot;
+  const bool has_tail = job.tail != job.part_end;
+  std::size_t period = 0;
+  for (std::size_t i = 0; period < job.periods;) {
+    const LanePart<Scalar>& part = job.parts[i];
+    if (part.next_v) {
+      read_commands<L>(job, block, source_v, robot.v.next, robot.v.input);
+      ++robot.v.next;
+    }
+    if (part.next_omega) {
+      read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
+      ++robot.omega.next;
+    }
+    typename L::Vector mean_v;
+    typename L::Vector mean_omega;
+    advance_lag<kLags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
+    advance_lag<kLags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output, mean_omega);
+    TangentLanes<L> tangent;
+    if constexpr (kQuadratic) {
+      quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    } else {
+      slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    }
+    step<L, kWide>(tangent, robot.path);
+    ++i;
+    if (i == job.part_end) {
+      output.write_period(robot.path, period);
+      ++period;
+      if (has_tail && period < job.periods) {
+        robot = aside;
+        i = job.branch;
+        continue;
+      }
+      i = job.cycle;
+    } else if (i == job.tail) {
+      i = job.cycle;
+    }
+    if (has_tail && i == job.branch) {
+      if (output.wants_periods() || period + 1 == job.periods) {
+        aside = robot;
+        i = job.tail;
+      } else {
+        ++period;
+      }
+    }
+  }
+  output.write_end(robot.path);
+  constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
+  const bool too_far = any_above<L>(robot.path.widest_squared, static_cast<Scalar>(kWidest * kWidest), block.count);
+  return (too_far ? kTurnsTooFar : kNoFault) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
+}
+
+template <class L, bool kLags, bool kQuadratic, typename Scalar = typename L::Scalar>
+unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  const unsigned fault = roll_block_as<L, kLags, kQuadratic, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kLags, kQuadratic, true>(job, block);
+}
+
+template <class Level, typename Scalar>
+unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  using L = Lanes<Level, Scalar>;
+  if (job.is_quadratic) {
+    return job.lags ? roll_block_with<L, true, true>(job, block) : roll_block_with<L, false, true>(job, block);
+  }
+  return job.lags ? roll_block_with<L, true, false>(job, block) : roll_block_with<L, false, false>(job, block);
+}
+
+}  // namespace slipwise

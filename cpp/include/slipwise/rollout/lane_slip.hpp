@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// The slip program in lanes: from the drive's mean twist to the tangent of a step.
+#pragma once
+
+#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/lanes.hpp"
+#include "slipwise/rollout/slip_factor.hpp"
+
+namespace slipwise {
+
+template <class L>
+struct TangentLanes {
+  typename L::Vector forward;  ///< [m]
+  typename L::Vector left;     ///< [m]
+  typename L::Vector turn;     ///< [rad]
+};
+
+/// The factors of one state in every lane.
+template <class L>
+struct FactorLanes {
+  typename L::Vector value[kSlipFactors];
+};
+
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
+                                 const typename L::Vector& omega, FactorLanes<L>& factors) {
+  using Vector = typename L::Vector;
+  const unsigned used = job.factors;
+  Vector one;
+  fill(static_cast<Scalar>(1), one);
+  const auto at = [&factors](SlipFactor factor) -> Vector& { return factors.value[static_cast<std::size_t>(factor)]; };
+  copy(v, at(SlipFactor::V));
+  copy(omega, at(SlipFactor::Omega));
+  if ((used & bit(SlipFactor::AbsV)) != 0) {
+    copy(magnitude(v), at(SlipFactor::AbsV));
+  }
+  if ((used & bit(SlipFactor::AbsOmega)) != 0) {
+    copy(magnitude(omega), at(SlipFactor::AbsOmega));
+  }
+  if ((used & bit(SlipFactor::SignV)) != 0) {
+    copy(sign(v, one), at(SlipFactor::SignV));
+  }
+  if ((used & bit(SlipFactor::Curvature)) != 0) {
+    copy((omega * v) / (v * v + job.squared_curvature_speed), at(SlipFactor::Curvature));
+  }
+  if ((used & bit(SlipFactor::Moving)) != 0) {
+    copy(any_nonzero(v, omega, one), at(SlipFactor::Moving));
+  }
+}
+
+/// Adds a product to the channels that it has a share in: bits 1, 2 and 4.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& product, const Scalar* share,
+                               TangentLanes<L>& tangent) {
+  switch (channels) {  // the same way in every period: one well-predicted jump
+    case 1:
+      tangent.forward = tangent.forward + product * share[0];
+      break;
+    case 2:
+      tangent.left = tangent.left + product * share[1];
+      break;
+    case 3:
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.left = tangent.left + product * share[1];
+      break;
+    case 4:
+      tangent.turn = tangent.turn + product * share[2];
+      break;
+    case 5:
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.turn = tangent.turn + product * share[2];
+      break;
+    case 6:
+      tangent.left = tangent.left + product * share[1];
+      tangent.turn = tangent.turn + product * share[2];
+      break;
+    case 7:
+      tangent.forward = tangent.forward + product * share[0];
+      tangent.left = tangent.left + product * share[1];
+      tangent.turn = tangent.turn + product * share[2];
+      break;
+    default:
+      break;
+  }
+}
+
+/// A program of second degree in speed and curvature (thesis 5.1), nested so that no product is needed by itself:
+/// kappa (kappa a + (V b + c)) + V (V d + e), with the yaw rate in the turn.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
+                                      const typename L::Vector& omega, TangentLanes<L>& tangent) {
+  using Vector = typename L::Vector;
+  const Vector kappa = (omega * v) / (v * v + job.squared_curvature_speed);
+  const Scalar* a = shares + 3 * job.quadratic.curvature_squared;
+  const Scalar* b = shares + 3 * job.quadratic.speed_by_curvature;
+  const Scalar* c = shares + 3 * job.quadratic.curvature;
+  const Scalar* d = shares + 3 * job.quadratic.speed_squared;
+  const Scalar* e = shares + 3 * kProductV;
+  tangent.forward = kappa * (kappa * a[0] + (v * b[0] + c[0])) + v * (v * d[0] + e[0]);
+  tangent.left = kappa * (kappa * a[1] + (v * b[1] + c[1])) + v * (v * d[1] + e[1]);
+  tangent.turn =
+      kappa * (kappa * a[2] + (v * b[2] + c[2])) + (v * (v * d[2] + e[2]) + omega * shares[3 * kProductOmega + 2]);
+}
+
+/// Runs the program: each product is an earlier one times a factor, and has its shares in the tangent.
+template <class L, typename Scalar = typename L::Scalar>
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
+                                 const typename L::Vector& omega, TangentLanes<L>& tangent) {
+  FactorLanes<L> factors;
+  find_factors<L>(job, v, omega, factors);
+  typename L::Vector products[kMostProducts];
+  copy(v, products[kProductV]);
+  copy(omega, products[kProductOmega]);
+  fill(static_cast<Scalar>(1), products[kProductOne]);
+  tangent.forward = v * shares[3 * kProductV] + omega * shares[3 * kProductOmega];
+  tangent.left = v * shares[3 * kProductV + 1] + omega * shares[3 * kProductOmega + 1];
+  tangent.turn = v * shares[3 * kProductV + 2] + omega * shares[3 * kProductOmega + 2];
+  for (std::size_t i = kFirstProduct; i < job.product_count; ++i) {
+    const LaneProduct code = job.products[i];
+    const typename L::Vector product = products[code.parent] * factors.value[code.factor];
+    copy(product, products[i]);
+    add_shares<L>(code.channels, product, shares + 3 * i, tangent);
+  }
+}
+
+}  // namespace slipwise

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// A motion model compiled for rollouts of one control period: made once, used for any number of batches.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/rollout/chain_schedule.hpp"
+#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/slip_program.hpp"
+
+namespace slipwise {
+
+/// What stays the same over all rollouts.
+struct RolloutSetting {
+  double period;    ///< time that each command is held [s]
+  double gx = 0.0;  ///< gravity along the robot's x axis, positive downhill [m/s^2]
+  double gy = 0.0;  ///< gravity along its y axis [m/s^2]
+};
+
+/// The program in the numbers of a kernel.
+template <typename Scalar>
+struct LaneConstants {
+  std::vector<LanePart<Scalar>> parts;  ///< lead-in, cycle, tail
+  std::vector<Scalar> shares;
+};
+
+class RolloutProgram {
+ public:
+  /// \throws std::invalid_argument when the parameters do not fit the model, the period is not positive, the gravity
+  /// not finite, or the basis too large.
+  RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                 const RolloutSetting& setting);
+
+  const RolloutSetting& setting() const { return setting_; }
+  const SlipProgram& slip() const { return slip_; }
+  const ChainSchedule& chain() const { return chain_; }
+
+  const std::optional<LaneQuadratic>& quadratic() const { return quadratic_; }
+  const std::vector<LaneProduct>& products() const { return products_; }
+  template <typename Scalar>
+  const LaneConstants<Scalar>& constants() const;
+
+ private:
+  RolloutSetting setting_;
+  SlipProgram slip_;
+  ChainSchedule chain_;
+  std::optional<LaneQuadratic> quadratic_;
+  std::vector<LaneProduct> products_;
+  LaneConstants<float> float_;
+  LaneConstants<double> double_;
+};
+
+template <>
+inline const LaneConstants<float>& RolloutProgram::constants<float>() const {
+  return float_;
+}
+template <>
+inline const LaneConstants<double>& RolloutProgram::constants<double>() const {
+  return double_;
+}
+
+}  // namespace slipwise

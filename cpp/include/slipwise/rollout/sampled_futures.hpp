@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Futures drawn from what was learned: parameters from their distribution, slip noise along the way.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "slipwise/rollout/path_noise.hpp"
+
+namespace slipwise {
+
+/// Where the drawn poses go, [samples * periods * rollouts] each.
+struct FutureOutputs {
+  std::span<double> x;      ///< [m]
+  std::span<double> y;      ///< [m]
+  std::span<double> theta;  ///< [rad], not wrapped
+};
+
+/// Parameters drawn from their distribution, [parameters, samples]; the growth widens it.
+Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples, std::uint64_t seed);
+
+/// Each sample drives all commands with parameters of its own, and each of its rollouts has slip noise of its own. The
+/// learned factors of (x, y, theta) are taken as those of the forward, sideways and angular slip.
+/// The same seed gives the same bytes at any number of threads.
+/// \throws std::invalid_argument as rollout_batch does, when there is no sample, or an output has the wrong length.
+void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
+                    const FutureOutputs& outputs, const RolloutOptions& options = {});
+
+}  // namespace slipwise

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the products of a slip program are multiplied by.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace slipwise {
+
+/// `Moving` is 1, and 0 where a robot is parked: gravity is constant over a rollout and goes into a product's shares,
+/// but must not move a parked robot.
+enum class SlipFactor : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, Moving };
+inline constexpr std::size_t kSlipFactors = 7;
+
+constexpr unsigned bit(SlipFactor factor) { return 1U << static_cast<unsigned>(factor); }
+
+/// The products that every program starts with: V, omega and 1; the others follow.
+inline constexpr std::size_t kProductV = 0, kProductOmega = 1, kProductOne = 2, kFirstProduct = 3;
+inline constexpr std::size_t kMostProducts = 64;
+
+}  // namespace slipwise

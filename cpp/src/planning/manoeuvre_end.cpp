@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// One pass over the steps of a manoeuvre: lag by lag, pose by pose, with slopes carried along.
+#include "slipwise/planning/manoeuvre_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/segment/path_step.hpp"
+
+namespace slipwise {
+namespace {
+
+using StepJacobian = Eigen::Matrix<double, 4, kManoeuvreParameters>;  // duration, forward, left, turn
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kLongestStep = DriveWindow{.start = 0.0, .end = 0.0}.longest_step;  // [s]
+
+/// A speed or a yaw rate, and how it moves with the parameters: `Slopes` is a row, or one number where the length alone
+/// matters.
+template <typename Slopes>
+struct Moving {
+  double value;
+  Slopes by;
+};
+using Speed = Moving<double>;
+using YawRate = Moving<ManoeuvreRow>;
+
+void add_by_length(double& by, double slope) { by += slope; }
+void add_by_length(ManoeuvreRow& by, double slope) { by[kLength] += slope; }
+
+/// Advances a lag over a step of moving duration and under a moving input; returns the integral.
+template <typename Slopes>
+Moving<Slopes> advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDecay& decay,
+                       double duration_by_length) {
+  const auto step = linearize_lag_step(output.value, told.value, decay);
+  // The lag is linear with a gain of one: what it does not keep of its output it takes from its input.
+  Moving<Slopes> integral{step.value.integral,
+                          step.by_output.integral * output.by + (decay.duration - step.by_output.integral) * told.by};
+  add_by_length(integral.by, step.by_duration.integral * duration_by_length);
+  output.by = step.by_output.output * output.by + (1.0 - step.by_output.output) * told.by;
+  add_by_length(output.by, step.by_duration.output * duration_by_length);
+  output.value = step.value.output;
+  return integral;
+}
+
+template <typename Slopes>
+double advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDecay& decay) {
+  const LagStep step = linearize_lag_step(output.value, told.value, decay).value;
+  output.value = step.output;
+  return step.integral;
+}
+
+/// How one channel answers its input: two lags side by side, of a gain (derivations.md, section 4).
+struct Answer {
+  double gain, lag, slow_share, slow_lag;
+
+  bool has_slow_part() const { return slow_lag > 0.0; }
+  double share() const { return has_slow_part() ? slow_share : 0.0; }
+  double longest_lag() const { return std::max(lag, slow_lag); }
+};
+
+Answer speed_answer(const CommandChain& chain) {
+  return {chain.gain_v, chain.lag_v, chain.slow_share_v, chain.slow_lag_v};
+}
+Answer turn_answer(const CommandChain& chain) {
+  return {chain.gain_omega, chain.lag_omega, chain.slow_share_omega, chain.slow_lag_omega};
+}
+
+/// One channel of the drive.
+template <typename Slopes>
+class Channel {
+ public:
+  /// What the fast part of a settled drive does not explain is the slow part's.
+  Channel(const Answer& answer, double drive, const Moving<Slopes>& told) : answer_(answer), told_(told) {
+    const double fast = answer.has_slow_part() ? (1.0 - answer.share()) * answer.gain * told.value : drive;
+    fast_ = {fast, told.by};
+    slow_ = {drive - fast, told.by};
+  }
+
+  void tell(const Moving<Slopes>& told) { told_ = told; }
+  double value() const { return fast_.value + slow_.value; }
+
+  Moving<Slopes> linearize_step(double duration, double duration_by_length) {
+    Moving<Slopes> integral =
+        advance(fast_, part(1.0 - answer_.share()), LagDecay(answer_.lag, duration), duration_by_length);
+    if (answer_.has_slow_part()) {
+      const Moving<Slopes> slow =
+          advance(slow_, part(answer_.share()), LagDecay(answer_.slow_lag, duration), duration_by_length);
+      integral = {integral.value + slow.value, integral.by + slow.by};
+    }
+    return integral;
+  }
+
+  double step(double duration) {
+    double integral = advance(fast_, part(1.0 - answer_.share()), LagDecay(answer_.lag, duration));
+    if (answer_.has_slow_part()) {
+      integral += advance(slow_, part(answer_.share()), LagDecay(answer_.slow_lag, duration));
+    }
+    return integral;
+  }
+
+ private:
+  Moving<Slopes> part(double share) const {
+    return {share * answer_.gain * told_.value, share * answer_.gain * told_.by};
+  }
+
+  Answer answer_;
+  Moving<Slopes> told_;
+  Moving<Slopes> fast_{}, slow_{};
+};
+
+/// The pose as it grows, and the sums that give its derivative.
+class GrowingEnd {
+ public:
+  explicit GrowingEnd(const PlanningModel& model)
+      : model_(model),
+        along_{.basis = model.basis(), .alpha = model.alpha(), .gravity = {}},
+        features_(model.basis().size()) {}
+
+  /// Drives one step; `jacobian` is null where no derivative is asked for.
+  void drive(const DriveStep& step, const StepJacobian* jacobian) {
+    model_.basis().features(slip_state(step, BodyGravity{}), features_);
+    const Eigen::Vector3d slip = slip_rate(model_.basis(), model_.alpha(), features_);
+    const Eigen::Vector3d tangent = tangent_of(step, slip);
+    const auto arc = arc_functions(tangent.z());
+    const Eigen::Vector2d moved = heading_ * (arc_matrix(arc) * tangent.head<2>());
+    pose_ = {pose_.x + moved.x(), pose_.y + moved.y(), pose_.theta + tangent.z()};
+    if (jacobian != nullptr) {
+      sums_.noalias() += start_by_tangent(heading_, tangent, arc, pose_) * tangent_by(step, *jacobian, along_, slip);
+    }
+    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
+    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
+  }
+
+  const Pose2& pose() const { return pose_; }
+  ManoeuvreJacobian jacobian() const { return transition(Pose2{}, pose_) * sums_; }
+
+ private:
+  const PlanningModel& model_;
+  PathSlip along_;
+  std::vector<double> features_;
+  Pose2 pose_;
+  Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
+  ManoeuvreJacobian sums_ = ManoeuvreJacobian::Zero();
+};
+
+/// Walks over the moments at which a delayed command begins to act in one of the channels.
+class ManoeuvreWalk {
+ public:
+  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, double settling)
+      : chain_(model.chain()),
+        held_(std::move(held)),
+        settling_(settling),
+        v_(speed_answer(model.chain()), start.drive.v, {start.told.v, 0.0}),
+        vy_(speed_answer(model.chain()), start.drive.vy, {start.told.vy, 0.0}),
+        omega_(turn_answer(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()}),
+        end_(model) {}
+
+  template <bool kSlopes>
+  void run() {
+    const auto count = static_cast<double>(held_.commands.size() - 1);
+    const Moment end{count * held_.period.value + settling_, count * held_.period.slope};
+    Moment now{0.0, 0.0};
+    while (now.t < end.t) {
+      const Moment next_v = acts(next_v_, chain_.delay_v), next_omega = acts(next_omega_, chain_.delay_omega);
+      Moment next = next_v.t <= next_omega.t ? next_v : next_omega;
+      next = next.t < end.t ? next : end;
+      subdivide<kSlopes>(now, next);
+      if (next_v.t <= next.t) {
+        tell_speed();
+      }
+      if (next_omega.t <= next.t) {
+        tell_yaw_rate();
+      }
+      now = next;
+    }
+  }
+
+  /// The path is recorded into `path` from now on.
+  void record(ManoeuvrePath& path) {
+    path_ = &path;
+    path.t.push_back(0.0);
+    path.poses.push_back(end_.pose());
+  }
+
+  BodyTwist drive() const { return {.v = v_.value(), .vy = vy_.value(), .omega = omega_.value()}; }
+  Pose2 pose() const { return end_.pose(); }
+  ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
+
+ private:
+  /// A time and its derivative by the manoeuvre's length.
+  struct Moment {
+    double t;
+    double slope;
+  };
+
+  Moment acts(std::size_t command, double delay) const {
+    if (command >= held_.commands.size()) {
+      return {kNever, 0.0};
+    }
+    const auto k = static_cast<double>(command);
+    return {delay + k * held_.period.value, k * held_.period.slope};
+  }
+
+  void tell_speed() {
+    const HeldCommand& command = held_.commands[next_v_++];
+    v_.tell({command.v, command.v_by_length});
+    vy_.tell({0.0, 0.0});
+  }
+
+  void tell_yaw_rate() {
+    const HeldCommand& command = held_.commands[next_omega_++];
+    omega_.tell({command.omega, command.omega_by});
+  }
+
+  template <bool kSlopes>
+  void subdivide(const Moment& from, const Moment& to) {
+    const bool lagging = speed_answer(chain_).longest_lag() > 0.0 || turn_answer(chain_).longest_lag() > 0.0;
+    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / kLongestStep))) : 1;
+    const double duration = (to.t - from.t) / parts;
+    for (int i = 0; i < parts; ++i) {
+      if constexpr (kSlopes) {
+        const double slope = (to.slope - from.slope) / parts;
+        const Speed forward = v_.linearize_step(duration, slope);
+        const Speed left = vy_.linearize_step(duration, slope);
+        const YawRate turn = omega_.linearize_step(duration, slope);
+        StepJacobian jacobian = StepJacobian::Zero();
+        jacobian.col(kLength).head<3>() << slope, forward.by, left.by;
+        jacobian.row(3) = turn.by;
+        end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
+      } else {
+        end_.drive({duration, v_.step(duration), vy_.step(duration), omega_.step(duration)}, nullptr);
+      }
+      if (path_ != nullptr) {
+        path_->t.push_back(from.t + (i + 1) * duration);
+        path_->poses.push_back(end_.pose());
+      }
+    }
+  }
+
+  const CommandChain& chain_;
+  HeldCommands held_;
+  double settling_;
+  Channel<double> v_, vy_;
+  Channel<ManoeuvreRow> omega_;
+  std::size_t next_v_ = 0;
+  std::size_t next_omega_ = 0;
+  GrowingEnd end_;
+  ManoeuvrePath* path_ = nullptr;
+};
+
+}  // namespace
+
+PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters)
+    : basis_(model.basis()) {
+  model.check(parameters);
+  alpha_ = parameters.head(model.slip_size());
+  chain_ = model.chain(parameters);
+  chain_.clock_offset = 0.0;
+}
+
+Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                     const DriveStart& start) {
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.run<false>();
+  return walk.pose();
+}
+
+ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                             const DriveStart& start) {
+  ManoeuvrePath path;
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.record(path);
+  walk.run<false>();
+  path.drive = walk.drive();
+  return path;
+}
+
+ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
+                                 const ManoeuvreVector& parameters, const DriveStart& start) {
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  walk.run<true>();
+  return {walk.pose(), walk.jacobian()};
+}
+
+}  // namespace slipwise

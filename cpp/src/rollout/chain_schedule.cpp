@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cutting the control period where delayed commands begin to act.
+#include "slipwise/rollout/chain_schedule.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/first_order_lag.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kMostPeriods = 1e6;  // that a command may take to act
+constexpr double kSamePart = 1e-9;    // of a period: delays that differ by less act together
+
+/// A channel's delay: whole periods, and the time within a period at which a command begins to act.
+struct Delay {
+  std::ptrdiff_t periods;
+  double rest;
+};
+
+Delay split_delay(double delay, double period) {
+  double whole = std::floor(delay / period);
+  if (!(std::abs(whole) <= kMostPeriods)) {
+    throw std::invalid_argument("a command that acts after " + std::to_string(delay) + " s is more than " +
+                                std::to_string(kMostPeriods) + " periods of " + std::to_string(period) +
+                                " s late; use longer periods");
+  }
+  double rest = delay - whole * period;
+  if (rest > (1.0 - kSamePart) * period) {
+    whole += 1.0;
+    rest = 0.0;
+  }
+  return {static_cast<std::ptrdiff_t>(whole), rest < kSamePart * period ? 0.0 : rest};
+}
+
+LagShare share_of(double time_constant, double duration) {
+  const LagDecay decay(time_constant, duration);
+  return {time_constant > 0.0 ? time_constant * decay.gone / duration : 0.0, decay.left};
+}
+
+/// A stretch of constant delayed commands, cut so that no part with lag is longer than the chain's own steps are.
+std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool next_v, bool next_omega) {
+  if (!(duration > 0.0)) {
+    return {};
+  }
+  const bool lags = chain.lag_v > 0.0 || chain.lag_omega > 0.0;
+  const int count = lags ? std::max(1, static_cast<int>(std::ceil(duration / DriveWindow{}.longest_step))) : 1;
+  const double part = duration / count;
+  std::vector<PeriodPart> parts(static_cast<std::size_t>(count),
+                                {part, false, false, share_of(chain.lag_v, part), share_of(chain.lag_omega, part)});
+  parts.front().next_v = next_v;
+  parts.front().next_omega = next_omega;
+  return parts;
+}
+
+}  // namespace
+
+ChainSchedule schedule_chain(const CommandChain& chain, double period) {
+  if (!(period > 0.0 && std::isfinite(period))) {
+    throw std::invalid_argument("the time between two commands must be a positive number of seconds, got " +
+                                std::to_string(period));
+  }
+  const Delay v = split_delay(chain.delay_v + chain.clock_offset, period);
+  const Delay omega = split_delay(chain.delay_omega + chain.clock_offset, period);
+  const double first = std::min(v.rest, omega.rest);
+  const double second = std::max(v.rest, omega.rest);
+  const bool together = first == second;
+  ChainSchedule schedule{period, v.periods, omega.periods, chain.lag_v > 0.0 || chain.lag_omega > 0.0, {}, {}, 0, {}};
+  schedule.lead_in = cut(chain, first, false, false);
+  if (!together) {
+    schedule.cycle = cut(chain, second - first, v.rest == first, omega.rest == first);
+  }
+  schedule.branch = schedule.cycle.size();
+  const std::vector<PeriodPart> last = cut(chain, first + period - second, v.rest == second, omega.rest == second);
+  schedule.cycle.insert(schedule.cycle.end(), last.begin(), last.end());
+  if (first > 0.0) {
+    schedule.tail = cut(chain, period - second, v.rest == second, omega.rest == second);
+  } else {
+    schedule.branch = schedule.cycle.size();
+  }
+  return schedule;
+}
+
+}  // namespace slipwise

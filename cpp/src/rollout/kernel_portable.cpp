@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rollout kernels for any processor that runs the rest of the library.
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "slipwise/rollout/lane_kernel.hpp"
+
+namespace slipwise {
+namespace {
+
+struct Level {
+  static constexpr std::size_t kBytes = 16;
+  static constexpr std::size_t kPairs = 1;
+};
+
+}  // namespace
+
+LaneKernelOfLevel<float> portable_kernel(float /*scalar*/) {
+  return {roll_block<Level, float>, Lanes<Level, float>::kLanes};
+}
+LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
+  return {roll_block<Level, double>, Lanes<Level, double>::kLanes};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks a batch, shares its blocks out to threads, and calls the kernel of the processor.
+#include "slipwise/rollout/rollout_batch.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/rollout_threads.hpp"
+#include "slipwise/slip/term.hpp"
+
+namespace slipwise {
+namespace {
+
+template <typename Scalar>
+LaneKernelOfLevel<Scalar> kernel_of(InstructionLevel level) {
+  if (!has_instruction_level(level)) {
+    throw std::invalid_argument("this processor has no " + std::string(name_of(level)) + "; use " +
+                                std::string(name_of(best_instruction_level())));
+  }
+  LaneKernelOfLevel<Scalar> kernel{};
+  if (level == InstructionLevel::Avx512) {
+    kernel = avx512_kernel(Scalar{});
+  } else if (level == InstructionLevel::Avx2) {
+    kernel = avx2_kernel(Scalar{});
+  }
+  return kernel.roll != nullptr ? kernel : portable_kernel(Scalar{});
+}
+
+bool is_finite(const RolloutStart& start) {
+  return start.pose.vector().allFinite() && std::isfinite(start.drive.v) && std::isfinite(start.drive.omega);
+}
+
+template <typename Scalar>
+void check(const RolloutBatch<Scalar>& batch) {
+  if (batch.rollouts == 0 || batch.periods == 0) {
+    throw std::invalid_argument("the batch is empty: " + std::to_string(batch.rollouts) + " rollouts of " +
+                                std::to_string(batch.periods) + " periods; give at least one command");
+  }
+  if (batch.commands.v == nullptr || batch.commands.omega == nullptr) {
+    throw std::invalid_argument("the batch has no commands; point to speeds and yaw rates");
+  }
+  if (batch.starts.size() != 1 && batch.starts.size() != batch.rollouts) {
+    throw std::invalid_argument("there are " + std::to_string(batch.starts.size()) + " starts for " +
+                                std::to_string(batch.rollouts) + " rollouts; give one, or one each");
+  }
+  if (batch.past.size() % batch.starts.size() != 0) {
+    throw std::invalid_argument(std::to_string(batch.past.size()) + " past commands cannot be shared out to " +
+                                std::to_string(batch.starts.size()) + " starts; give the same number for each");
+  }
+  for (std::size_t i = 0; i < batch.starts.size(); ++i) {
+    if (!is_finite(batch.starts[i])) {
+      throw std::invalid_argument("start " + std::to_string(i) + " is not finite");
+    }
+  }
+  for (std::size_t i = 0; i < batch.past.size(); ++i) {
+    if (!std::isfinite(batch.past[i].v) || !std::isfinite(batch.past[i].omega)) {
+      throw std::invalid_argument("past command " + std::to_string(i) + " is not finite");
+    }
+  }
+}
+
+/// Commands that no pose depends on, since they are still in the delay at the end, must be finite as well.
+template <typename Scalar>
+void check_commands(const RolloutBatch<Scalar>& batch, std::size_t first_period) {
+  const CommandView<Scalar>& commands = batch.commands;
+  for (std::size_t n = 0; n < batch.rollouts; ++n) {
+    for (std::size_t k = first_period; k < batch.periods; ++k) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(n) * commands.rollout_stride +
+                                static_cast<std::ptrdiff_t>(k) * commands.period_stride;
+      if (!std::isfinite(commands.v[at]) || !std::isfinite(commands.omega[at])) {
+        throw std::invalid_argument("the command of rollout " + std::to_string(n) + " over period " +
+                                    std::to_string(k) + " is not finite");
+      }
+    }
+  }
+}
+
+template <typename Scalar>
+LaneMap<Scalar> lane_map(const Costmap* map) {
+  if (map == nullptr) {
+    return {};
+  }
+  check_costmap(*map);
+  return {.cells = map->cells.data(),
+          .columns = map->columns,
+          .width = static_cast<Scalar>(map->columns),
+          .height = static_cast<Scalar>(map->rows),
+          .per_metre = static_cast<Scalar>(1.0 / map->resolution),
+          .outside = map->outside};
+}
+
+template <typename Scalar>
+LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
+                       const RolloutOutputs<Scalar>& outputs) {
+  const LaneConstants<Scalar>& constants = program.constants<Scalar>();
+  const ChainSchedule& chain = program.chain();
+  return {.parts = constants.parts.data(),
+          .shares = constants.shares.data(),
+          .cycle = chain.lead_in.size(),
+          .branch = chain.lead_in.size() + chain.branch,
+          .tail = chain.lead_in.size() + chain.cycle.size(),
+          .part_end = constants.parts.size(),
+          .products = program.products().data(),
+          .product_count = program.products().size(),
+          .is_quadratic = program.quadratic().has_value(),
+          .quadratic = program.quadratic().value_or(LaneQuadratic{}),
+          .factors = program.slip().factors,
+          .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
+          .shift_v = program.chain().shift_v,
+          .shift_omega = program.chain().shift_omega,
+          .lags = program.chain().lags,
+          .rollouts = batch.rollouts,
+          .periods = batch.periods,
+          .v = batch.commands.v,
+          .omega = batch.commands.omega,
+          .rollout_stride = batch.commands.rollout_stride,
+          .period_stride = batch.commands.period_stride,
+          .path = {outputs.x, outputs.y, outputs.theta},
+          .end = {outputs.end_x, outputs.end_y, outputs.end_theta},
+          .map = lane_map<Scalar>(outputs.map),
+          .cost_sum = outputs.cost_sum,
+          .cost_highest = outputs.cost_highest,
+          .cost_lowest = outputs.cost_lowest};
+}
+
+/// Writes one start into a lane.
+template <typename Scalar>
+void set_lane(LaneBlock<Scalar>& block, std::size_t lane, const RolloutStart& start, const Costmap* map) {
+  const auto number = [](double value) { return static_cast<Scalar>(value); };
+  block.x[lane] = number(start.pose.x);
+  block.y[lane] = number(start.pose.y);
+  block.theta[lane] = number(start.pose.theta);
+  block.cosine[lane] = number(std::cos(start.pose.theta));
+  block.sine[lane] = number(std::sin(start.pose.theta));
+  block.v[lane] = number(start.drive.v);
+  block.omega[lane] = number(start.drive.omega);
+  if (map != nullptr) {
+    block.cell_x[lane] = number((start.pose.x - map->origin_x) / map->resolution);
+    block.cell_y[lane] = number((start.pose.y - map->origin_y) / map->resolution);
+  }
+}
+
+/// Moves the block to its place in the batch. One start is set in every lane once.
+template <typename Scalar>
+class BlockOfBatch {
+ public:
+  BlockOfBatch(const RolloutBatch<Scalar>& batch, const Costmap* map, std::size_t lanes)
+      : batch_(batch), map_(map), lanes_(lanes), many_(batch.starts.size() > 1) {
+    for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+      set_lane(block_, lane, batch.starts.front(), map);
+    }
+    block_.past_count = batch.past.size() / batch.starts.size();
+    block_.past_stride = many_ ? block_.past_count : 0;
+  }
+
+  const LaneBlock<Scalar>& at(std::size_t block) {
+    block_.first = block * lanes_;
+    block_.count = std::min(lanes_, batch_.rollouts - block_.first);
+    block_.side_by_side = batch_.commands.rollout_stride == 1 && block_.count == lanes_;
+    block_.past = batch_.past.data() + (many_ ? block_.first * block_.past_count : 0);
+    for (std::size_t lane = 0; many_ && lane < block_.count; ++lane) {
+      set_lane(block_, lane, batch_.starts[block_.first + lane], map_);
+    }
+    return block_;
+  }
+
+ private:
+  const RolloutBatch<Scalar>& batch_;
+  const Costmap* map_;
+  std::size_t lanes_;
+  bool many_;
+  LaneBlock<Scalar> block_{};
+};
+
+[[noreturn]] void refuse(unsigned fault) {
+  if ((fault & kTurnsTooFar) != 0) {
+    throw std::invalid_argument(
+        "a rollout turns thousands of times within one period; use shorter periods, or "
+        "commands in rad/s");
+  }
+  throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands in m/s and rad/s?");
+}
+
+}  // namespace
+
+template <typename Scalar>
+void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
+                   const RolloutOutputs<Scalar>& outputs, const RolloutOptions& options) {
+  check(batch);
+  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
+  const LaneJob<Scalar> job = job_of(program, batch, outputs);
+  std::atomic<unsigned> faults = kNoFault;
+  const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
+  share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
+    BlockOfBatch<Scalar> place(batch, outputs.map, kernel.lanes);
+    unsigned found = kNoFault;
+    for (std::size_t block = first; block < last; ++block) {
+      found |= kernel.roll(job, place.at(block));
+    }
+    faults |= found;
+  });
+  const std::ptrdiff_t unused = std::max({job.shift_v, job.shift_omega, std::ptrdiff_t{0}});
+  const auto periods = static_cast<std::ptrdiff_t>(batch.periods);
+  check_commands(batch,
+                 faults == kNoFault ? static_cast<std::size_t>(std::max(periods - unused, std::ptrdiff_t{0})) : 0);
+  if (faults != kNoFault) {
+    refuse(faults);
+  }
+}
+
+template void rollout_batch(const RolloutProgram&, const RolloutBatch<float>&, const RolloutOutputs<float>&,
+                            const RolloutOptions&);
+template void rollout_batch(const RolloutProgram&, const RolloutBatch<double>&, const RolloutOutputs<double>&,
+                            const RolloutOptions&);
+
+}  // namespace slipwise

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Compiling a motion model for rollouts.
+#include "slipwise/rollout/rollout_program.hpp"
+
+#include <cmath>
+#include <span>
+#include <stdexcept>
+
+namespace slipwise {
+namespace {
+
+SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                    const RolloutSetting& setting) {
+  model.check(parameters);
+  if (!std::isfinite(setting.gx) || !std::isfinite(setting.gy)) {
+    throw std::invalid_argument("the gravity along the robot's axes must be finite");
+  }
+  const Eigen::VectorXd alpha = parameters.head(model.slip_size());
+  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, setting.gx, setting.gy);
+}
+
+std::vector<LaneProduct> lane_products(const SlipProgram& program) {
+  std::vector<LaneProduct> products;
+  for (const SlipProduct& product : program.products) {
+    unsigned channels = 0;
+    for (unsigned c = 0; c < product.share.size(); ++c) {
+      channels |= product.share[c] != 0.0 ? 1U << c : 0U;
+    }
+    products.push_back({static_cast<std::uint8_t>(product.parent), static_cast<std::uint8_t>(product.factor),
+                        static_cast<std::uint8_t>(channels)});
+  }
+  return products;
+}
+
+template <typename Scalar>
+LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain) {
+  LaneConstants<Scalar> constants;
+  const auto number = [](double value) { return static_cast<Scalar>(value); };
+  std::vector<PeriodPart> parts = chain.lead_in;
+  parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
+  parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
+  for (const PeriodPart& part : parts) {
+    constants.parts.push_back({.first_share = constants.shares.size(),
+                               .duration = number(part.duration),
+                               .mean_gap_v = number(part.lag_v.mean_gap),
+                               .end_gap_v = number(part.lag_v.end_gap),
+                               .mean_gap_omega = number(part.lag_omega.mean_gap),
+                               .end_gap_omega = number(part.lag_omega.end_gap),
+                               .next_v = part.next_v,
+                               .next_omega = part.next_omega});
+    for (const SlipProduct& product : slip.products) {
+      for (const double share : product.share) {
+        constants.shares.push_back(number(share * part.duration));
+      }
+    }
+  }
+  return constants;
+}
+
+}  // namespace
+
+RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                               const RolloutSetting& setting)
+    : setting_(setting),
+      slip_(slip_of(model, parameters, setting)),
+      chain_(schedule_chain(model.chain(parameters), setting.period)),
+      quadratic_(find_quadratic(slip_)),
+      products_(lane_products(slip_)),
+      float_(lane_constants<float>(slip_, chain_)),
+      double_(lane_constants<double>(slip_, chain_)) {}
+
+}  // namespace slipwise

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Drawing parameters and slip noise.
+#include "slipwise/rollout/sampled_futures.hpp"
+
+#include <array>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "slipwise/rollout/rollout_threads.hpp"
+
+namespace slipwise {
+namespace {
+
+/// A generator for one sample of one rollout: neighbours' numbers do not depend on each other.
+std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_t rollout) {
+  std::uint64_t mixed = seed;
+  for (const std::uint64_t part : {sample, rollout}) {  // SplitMix64 (Steele, Lea and Flood 2014)
+    mixed += 0x9E3779B97F4A7C15U * (part + 1U);
+    mixed = (mixed ^ (mixed >> 30U)) * 0xBF58476D1CE4E5B9U;
+    mixed = (mixed ^ (mixed >> 27U)) * 0x94D049BB133111EBU;
+    mixed ^= mixed >> 31U;
+  }
+  return std::mt19937_64(mixed);
+}
+
+constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the rollout where parameters are drawn
+
+/// Drives along a path again, with noise added to the tangent of every period.
+class NoisyPath {
+ public:
+  NoisyPath(const UncertainModel& model, std::mt19937_64 random) : model_(model), random_(random) {
+    for (double& part : constant_) {
+      part = normal_(random_);
+    }
+  }
+
+  Pose2 next(const Pose2& pose, Eigen::Vector3d tangent, const Eigen::Vector3d& drive) {
+    const PeriodNoise noise = period_noise(drive, model_.setting.period, model_.uncertainty.noise);
+    for (std::size_t c = 0; c < constant_.size(); ++c) {
+      const double widened =
+          std::sqrt(model_.uncertainty.growth * model_.uncertainty.scale[static_cast<Eigen::Index>(c)]);
+      tangent[static_cast<Eigen::Index>(c)] +=
+          widened * (std::sqrt(noise.variance[c]) * normal_(random_) + noise.constant[c] * constant_[c]);
+    }
+    return compose(pose, exp(tangent));
+  }
+
+ private:
+  const UncertainModel& model_;
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  std::array<double, 3> constant_{};
+};
+
+}  // namespace
+
+Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples, std::uint64_t seed) {
+  check_uncertainty(model);
+  const Eigen::MatrixXd root = covariance_root(model.uncertainty.covariance) * std::sqrt(model.uncertainty.growth);
+  Eigen::MatrixXd drawn(model.parameters.size(), static_cast<Eigen::Index>(samples));
+  for (std::size_t s = 0; s < samples; ++s) {
+    std::mt19937_64 random = generator(seed, s, kParameters);
+    std::normal_distribution<double> normal;
+    Eigen::VectorXd unit(root.cols());
+    for (double& number : unit) {
+      number = normal(random);
+    }
+    drawn.col(static_cast<Eigen::Index>(s)) = model.parameters + root * unit;
+  }
+  return drawn;
+}
+
+void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
+                    const FutureOutputs& outputs, const RolloutOptions& options) {
+  const std::size_t poses = batch.rollouts * batch.periods;
+  const std::size_t samples = poses > 0 ? outputs.x.size() / poses : 0;
+  if (poses > 0 && (samples == 0 || outputs.x.size() != samples * poses || outputs.y.size() != outputs.x.size() ||
+                    outputs.theta.size() != outputs.x.size())) {
+    throw std::invalid_argument("the poses of every sample need room for " + std::to_string(poses) +
+                                " numbers in x, y and theta each, got " + std::to_string(outputs.x.size()));
+  }
+  const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
+  const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
+  share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
+    for (std::size_t s = first; s < last; ++s) {
+      const RolloutProgram program(model.model, parameters.col(static_cast<Eigen::Index>(s)), model.setting);
+      const RolloutPaths paths = roll_paths(program, batch, {1, options.level});
+      for (std::size_t n = 0; n < batch.rollouts; ++n) {
+        NoisyPath noisy(model, generator(seed, s, n));
+        const Pose2 start = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
+        Pose2 before = start, driven = start, pose = start;
+        for (std::size_t k = 0; k < batch.periods; ++k) {
+          pose = noisy.next(pose, period_tangent(before, paths.at(k, n)), period_tangent(driven, drive.at(k, n)));
+          before = paths.at(k, n);
+          driven = drive.at(k, n);
+          const std::size_t at = s * poses + k * batch.rollouts + n;
+          outputs.x[at] = pose.x;
+          outputs.y[at] = pose.y;
+          outputs.theta[at] = pose.theta;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace slipwise

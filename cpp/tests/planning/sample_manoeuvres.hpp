@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// Motion models and manoeuvres for the tests of planning, over all bases and with all parts of the chain.
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sample_bases.hpp"
+#include "slipwise/planning/trajectory.hpp"
+
+namespace slipwise::tests {
+
+/// A basis with slip of plausible size, with or without lag and delay that differ between the channels.
+struct SampleModel {
+  std::string name;
+  MotionModel motion;
+  Eigen::VectorXd parameters;
+};
+
+inline SampleModel sample_model(const Basis& basis, bool dynamics) {
+  MotionModel motion(basis, {.dynamics = dynamics});
+  Eigen::VectorXd parameters(motion.size());
+  parameters.head(motion.slip_size()) = sample_slip(basis, 5);
+  if (dynamics) {
+    parameters.tail(4) << std::log(0.31), std::log(0.22), std::log(0.0827), std::log(0.1133);
+  }
+  return {basis.name() + (dynamics ? " with chain" : ""), std::move(motion), std::move(parameters)};
+}
+
+/// The same with gains and a slow part that differ between the channels.
+inline SampleModel responding_model(const Basis& basis) {
+  MotionModel motion(basis, {.dynamics = true, .response = true});
+  Eigen::VectorXd parameters(motion.size());
+  parameters.head(motion.slip_size()) = sample_slip(basis, 5);
+  parameters.tail(10) << std::log(0.31), std::log(0.22), std::log(0.0827), std::log(0.1133), 0.9, 1.1, 0.25, 0.15,
+      std::log(1.7), std::log(1.3);
+  return {basis.name() + " with response", std::move(motion), std::move(parameters)};
+}
+
+inline std::vector<SampleModel> sample_models() {
+  std::vector<SampleModel> models;
+  for (const Basis& basis : all_bases()) {
+    models.push_back(sample_model(basis, false));
+    models.push_back(sample_model(basis, true));
+    models.push_back(responding_model(basis));
+  }
+  return models;
+}
+
+/// A manoeuvre anywhere within its bounds.
+inline ManoeuvreVector random_manoeuvre(const ManoeuvreBounds& bounds, std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  ManoeuvreVector parameters;
+  for (int i = 0; i < kManoeuvreParameters; ++i) {
+    parameters[i] = bounds.low[i] + (bounds.high[i] - bounds.low[i]) * uniform(random);
+  }
+  return parameters;
+}
+
+}  // namespace slipwise::tests

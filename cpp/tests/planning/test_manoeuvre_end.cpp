@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where a manoeuvre leads: as the integrator says, with the exact derivative by every parameter.
+#include <doctest/doctest.h>
+
+#include <random>
+#include <vector>
+
+#include "finite_difference.hpp"
+#include "sample_manoeuvres.hpp"
+#include "slipwise/planning/manoeuvre_end.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+const DriveStart kStart{.drive = {.v = 0.31, .vy = 0.0, .omega = 0.12}, .told = {.v = 0.4, .vy = 0.0, .omega = 0.1}};
+
+ManoeuvreFrame sample_frame(double direction, double end_speed) {
+  return {.speeds = {.start = 0.4, .cruise = 1.1, .end = end_speed},
+          .acceleration = 0.6,
+          .direction = direction,
+          .commands = 20,
+          .settling = end_speed > 0.0 ? 0.0 : 1.3};
+}
+
+ManoeuvreVector sample_parameters() {
+  return (ManoeuvreVector() << 0.25, 0.4, -0.3, 0.2, 0.35, -0.15, 0.1, 4.3).finished();
+}
+
+/// The commands as the integrator takes them: what was told before the start, then one command after the other.
+InputTrack track_of(const HeldCommands& held) {
+  std::vector<double> t{-100.0}, v{kStart.told.v}, vy{0.0}, omega{kStart.told.omega};
+  for (std::size_t k = 0; k < held.commands.size(); ++k) {
+    t.push_back(static_cast<double>(k) * held.period.value);
+    v.push_back(held.commands[k].v);
+    vy.push_back(0.0);
+    omega.push_back(held.commands[k].omega);
+  }
+  return {t, v, vy, omega};
+}
+
+TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains") {
+  for (const tests::SampleModel& sample : tests::sample_models()) {
+    for (const double direction : {1.0, -1.0}) {
+      CAPTURE(sample.name);
+      const ManoeuvreFrame frame = sample_frame(direction, 0.0);
+      const PlanningModel model(sample.motion, sample.parameters);
+      const HeldCommands held = held_commands(frame, sample_parameters());
+      const Segment segment{
+          .start = 0.0, .end = frame.commands * held.period.value + frame.settling, .initial = kStart.drive};
+      const Pose2 expected = integrate_segment(sample.motion, sample.parameters, track_of(held), segment).poses.back();
+      const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), kStart);
+      CHECK((pose.vector() - expected.vector()).norm() < 1e-9);
+      const Pose2 linearized = linearize_manoeuvre(model, frame, sample_parameters(), kStart).pose;
+      CHECK((linearized.vector() - pose.vector()).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("a manoeuvre's end has the exact derivative by every parameter, over all bases and chains") {
+  for (const tests::SampleModel& sample : tests::sample_models()) {
+    for (const double end_speed : {0.0, 0.7}) {
+      CAPTURE(sample.name);
+      const ManoeuvreFrame frame = sample_frame(1.0, end_speed);
+      const PlanningModel model(sample.motion, sample.parameters);
+      const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
+        return manoeuvre_pose(model, frame, p, kStart).vector();
+      };
+      const auto numeric = tests::finite_difference(value, sample_parameters(), 1e-4);
+      const ManoeuvreJacobian exact = linearize_manoeuvre(model, frame, sample_parameters(), kStart).by;
+      CHECK(tests::jacobian_error(exact, numeric, 0.1) < 10.0 * tests::kDerivativeTolerance);
+    }
+  }
+}
+
+TEST_CASE("a manoeuvre's commands cover its length and end with the speed at the end") {
+  const HeldCommands held = held_commands(sample_frame(-1.0, 0.7), sample_parameters());
+  double length = 0.0;
+  for (std::size_t k = 0; k + 1 < held.commands.size(); ++k) {
+    CHECK(held.commands[k].v < 0.0);
+    length -= held.commands[k].v * held.period.value;
+  }
+  CHECK(length == doctest::Approx(sample_parameters()[kLength]));
+  CHECK(held.commands.back().v == -0.7);
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Batches of made-up commands, and the same drives as the plain integrator sees them.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <vector>
+
+#include "sample_bases.hpp"
+#include "slipwise/rollout/rollout_batch.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise::tests {
+
+/// Smoothly changing commands, forwards, backwards and spinning, side by side over the rollouts.
+template <typename Scalar>
+struct SampleCommands {
+  std::size_t rollouts;
+  std::size_t periods;
+  double period;
+  std::vector<Scalar> v, omega;
+
+  SampleCommands(std::size_t n, std::size_t k, double dt, double fastest_turn = 1.0)
+      : rollouts(n), periods(k), period(dt) {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<double> shape(4 * n);
+    for (double& number : shape) {
+      number = uniform(random);
+    }
+    for (std::size_t j = 0; j < k; ++j) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const double t = dt * static_cast<double>(j);
+        const double forward = i % 3 == 0 ? -1.0 : 1.0;
+        v.push_back(static_cast<Scalar>(forward * (0.9 + 0.5 * std::sin(shape[4 * i] * 3.0 * t))));
+        omega.push_back(
+            static_cast<Scalar>(fastest_turn * std::sin(shape[4 * i + 1] * 2.0 * t + 6.0 * shape[4 * i + 2])));
+      }
+    }
+  }
+
+  CommandView<Scalar> view() const { return {v.data(), omega.data(), 1, static_cast<std::ptrdiff_t>(rollouts)}; }
+  RolloutBatch<Scalar> batch(std::span<const RolloutStart> starts, std::span<const DriveCommand> past = {}) const {
+    return {rollouts, periods, view(), starts, past};
+  }
+
+  /// The commands of one rollout, after those sent before the start.
+  InputTrack track(std::size_t rollout, std::span<const DriveCommand> past) const {
+    std::vector<double> t, forward, left, turn;
+    for (std::size_t i = 0; i < past.size(); ++i) {
+      t.push_back(-period * static_cast<double>(past.size() - i));
+      forward.push_back(past[i].v);
+      turn.push_back(past[i].omega);
+    }
+    for (std::size_t j = 0; j < periods; ++j) {
+      t.push_back(period * static_cast<double>(j));
+      forward.push_back(static_cast<double>(v[j * rollouts + rollout]));
+      turn.push_back(static_cast<double>(omega[j * rollouts + rollout]));
+    }
+    left.assign(t.size(), 0.0);
+    return {t, forward, left, turn};
+  }
+};
+
+template <typename Scalar>
+struct SamplePaths {
+  std::vector<Scalar> x, y, theta;
+
+  explicit SamplePaths(std::size_t poses) : x(poses), y(poses), theta(poses) {}
+  RolloutOutputs<Scalar> outputs() {
+    RolloutOutputs<Scalar> result;
+    result.x = x.data();
+    result.y = y.data();
+    result.theta = theta.data();
+    return result;
+  }
+  bool operator==(const SamplePaths&) const = default;
+};
+
+template <typename Scalar>
+SamplePaths<Scalar> roll(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
+                         const RolloutOptions& options = {}) {
+  SamplePaths<Scalar> paths(batch.rollouts * batch.periods);
+  rollout_batch(program, batch, paths.outputs(), options);
+  return paths;
+}
+
+/// A chain by name, with parameters for it.
+struct SampleChain {
+  const char* name;
+  ChainParameters learned;
+  std::vector<double> parameters;
+};
+
+inline std::vector<SampleChain> sample_chains() {
+  const auto ln = [](double seconds) { return std::log(seconds); };
+  return {{"none", {}, {}},
+          {"lag", {.dynamics = true}, {ln(0.2), ln(0.15), ln(1e-20), ln(1e-20)}},
+          {"delay of whole periods", {.dynamics = true}, {ln(1e-20), ln(1e-20), ln(0.15), ln(0.1)}},
+          {"lag and delay", {.dynamics = true}, {ln(0.2), ln(0.15), ln(0.13), ln(0.07)}},
+          {"clock offset", {.dynamics = true, .clock_offset = true}, {ln(0.3), ln(0.1), ln(0.131), ln(0.131), 0.02}},
+          {"early poses", {.clock_offset = true}, {-0.07}}};
+}
+
+inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& chain) {
+  Eigen::VectorXd parameters(model.size());
+  const Eigen::VectorXd slip = sample_slip(model.basis(), 31);
+  parameters.head(slip.size()) = slip;
+  for (std::size_t i = 0; i < chain.parameters.size(); ++i) {
+    parameters[slip.size() + static_cast<Eigen::Index>(i)] = chain.parameters[i];
+  }
+  return parameters;
+}
+
+}  // namespace slipwise::tests

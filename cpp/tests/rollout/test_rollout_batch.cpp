@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rollouts are what integrate_segment says, in every basis, with every chain, at every instruction level.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rollout/sample_rollouts.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kPeriod = 0.05;
+const std::vector<RolloutStart> kStart{{{1.0, -2.0, 0.5}, {0.4, 0.2}}};
+const std::vector<DriveCommand> kPast{{0.5, 0.1}, {0.6, 0.0}, {0.5, 0.2}, {0.4, 0.3}};
+
+/// Largest difference of position and heading to the integrator over some rollouts and periods.
+template <typename Scalar>
+double error(const MotionModel& model, const Eigen::VectorXd& parameters, const tests::SampleCommands<Scalar>& commands,
+             InstructionLevel level) {
+  const RolloutProgram program(model, parameters, {commands.period, 0.3, -0.2});
+  const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
+  const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
+  // Where commands act early, the integrator of a shorter segment leaves out those that a rollout already knows.
+  const std::size_t fewest = program.chain().shift_v < 0 ? commands.periods : 1;
+  double worst = 0.0;
+  for (std::size_t n = 0; n < commands.rollouts; n += 5) {
+    const InputTrack track = commands.track(n, kPast);
+    for (std::size_t k = commands.periods; k >= fewest; k /= 3) {
+      const Segment segment{
+          .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
+      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, track, segment).poses.back());
+      const std::size_t i = (k - 1) * commands.rollouts + n;
+      worst =
+          std::max({worst, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y),
+                    std::abs(static_cast<double>(paths.theta[i]) - end.theta)});
+    }
+  }
+  return worst;
+}
+
+std::vector<Basis> bases_and_their_union() {
+  std::vector<Basis> bases = tests::all_bases();
+  bases.push_back(union_basis("union", bases));
+  return bases;
+}
+
+TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and with every chain") {
+  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  const tests::SampleCommands<float> in_float(37, 100, kPeriod);
+  for (const Basis& basis : bases_and_their_union()) {
+    CAPTURE(basis.name());
+    for (const tests::SampleChain& chain : tests::sample_chains()) {
+      CAPTURE(std::string(chain.name));
+      const MotionModel model(basis, chain.learned);
+      const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+      for (const InstructionLevel level : kInstructionLevels) {
+        if (has_instruction_level(level)) {
+          CAPTURE(name_of(level));
+          CHECK(error(model, parameters, commands, level) < 1e-9);
+          CHECK(error(model, parameters, in_float, level) < 2e-5);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("periods so long that a robot turns round within them are exact as well") {
+  const MotionModel model(named_basis("odd-even-10"), {});
+  const Eigen::VectorXd parameters = tests::sample_slip(model.basis(), 31);
+  for (const InstructionLevel level : kInstructionLevels) {
+    if (has_instruction_level(level)) {
+      CHECK(error(model, parameters, tests::SampleCommands<double>(37, 5, 1.0, 9.0), level) < 1e-9);
+      CHECK(error(model, parameters, tests::SampleCommands<float>(37, 5, 1.0, 9.0), level) < 1e-4);
+    }
+  }
+}
+
+TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands lie") {
+  const tests::SampleChain chain = tests::sample_chains()[3];
+  const MotionModel model(named_basis("odd-even-10"), chain.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleCommands<float> commands(101, 20, kPeriod);
+  const auto one = tests::roll(program, commands.batch(kStart, kPast));
+  for (const unsigned threads : {2U, 3U, 200U}) {
+    CHECK(tests::roll(program, commands.batch(kStart, kPast), {.threads = threads}) == one);
+  }
+  std::vector<float> rows(2 * 101 * 20);
+  for (std::size_t n = 0; n < 101; ++n) {
+    for (std::size_t k = 0; k < 20; ++k) {
+      rows[2 * (n * 20 + k)] = commands.v[k * 101 + n];
+      rows[2 * (n * 20 + k) + 1] = commands.omega[k * 101 + n];
+    }
+  }
+  RolloutBatch<float> batch = commands.batch(kStart, kPast);
+  batch.commands = {rows.data(), rows.data() + 1, 40, 2};
+  CHECK(tests::roll(program, batch) == one);
+}
+
+TEST_CASE("every rollout may have a start of its own") {
+  const tests::SampleChain chain = tests::sample_chains()[3];
+  const MotionModel model(named_basis("edd-2"), chain.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleCommands<double> commands(40, 10, kPeriod);
+  std::vector<RolloutStart> starts;
+  std::vector<DriveCommand> past;
+  for (std::size_t n = 0; n < 40; ++n) {
+    const double shift = static_cast<double>(n);
+    starts.push_back({{shift, -shift, 0.1 * shift}, {0.01 * shift, 0.0}});
+    past.insert(past.end(), {{0.02 * shift, 0.1}, {0.03 * shift, 0.2}});
+  }
+  const auto all = tests::roll(program, commands.batch(starts, past));
+  for (const std::size_t n : {std::size_t{0}, std::size_t{17}, std::size_t{39}}) {
+    const RolloutBatch<double> single{1,
+                                      10,
+                                      {&commands.v[n], &commands.omega[n], 40, 40},
+                                      std::span(starts).subspan(n, 1),
+                                      std::span(past).subspan(2 * n, 2)};
+    const auto alone = tests::roll(program, single);
+    CHECK(alone.x[9] == all.x[9 * 40 + n]);
+    CHECK(alone.y[9] == all.y[9 * 40 + n]);
+    CHECK(alone.theta[9] == all.theta[9 * 40 + n]);
+  }
+}
+
+TEST_CASE("last poses and costs are those along the path") {
+  const tests::SampleChain chain = tests::sample_chains()[3];
+  const MotionModel model(named_basis("thesis-15"), chain.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleCommands<double> commands(21, 30, kPeriod);
+  const auto path = tests::roll(program, commands.batch(kStart, kPast));
+  std::vector<float> cells;
+  for (int i = 0; i < 60; ++i) {
+    cells.push_back(static_cast<float>(i % 7));
+  }
+  const Costmap map{cells, 6, 10, 0.25, 0.0, -2.5, 100.0F};
+  std::vector<double> end_x(21), end_y(21), end_theta(21), sum(21), highest(21), lowest(21);
+  RolloutOutputs<double> outputs{.end_x = end_x.data(),
+                                 .end_y = end_y.data(),
+                                 .end_theta = end_theta.data(),
+                                 .map = &map,
+                                 .cost_sum = sum.data(),
+                                 .cost_highest = highest.data(),
+                                 .cost_lowest = lowest.data()};
+  rollout_batch(program, commands.batch(kStart, kPast), outputs);
+  RolloutOutputs<double> end_alone{.end_x = end_y.data()};
+  for (std::size_t n = 0; n < 21; ++n) {
+    double expected_sum = 0.0, expected_highest = -1.0, expected_lowest = 1e9;
+    for (std::size_t k = 0; k < 30; ++k) {
+      const double column = std::floor(path.x[k * 21 + n] / 0.25);
+      const double row = std::floor((path.y[k * 21 + n] + 2.5) / 0.25);
+      const bool inside = column >= 0.0 && column < 10.0 && row >= 0.0 && row < 6.0;
+      const double cost = inside ? static_cast<double>(cells[static_cast<std::size_t>(row * 10.0 + column)]) : 100.0;
+      expected_sum += cost;
+      expected_highest = std::max(expected_highest, cost);
+      expected_lowest = std::min(expected_lowest, cost);
+    }
+    CHECK(end_x[n] == path.x[29 * 21 + n]);
+    CHECK(end_y[n] == path.y[29 * 21 + n]);
+    CHECK(end_theta[n] == path.theta[29 * 21 + n]);
+    CHECK(sum[n] == expected_sum);
+    CHECK(highest[n] == expected_highest);
+    CHECK(lowest[n] == expected_lowest);
+  }
+  rollout_batch(program, commands.batch(kStart, kPast), end_alone);  // takes fewer steps: none for poses on the way
+  CHECK(end_y == end_x);
+}
+
+TEST_CASE("far from the origin nothing but the last digit is lost") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const RolloutProgram program(model, tests::sample_slip(model.basis(), 31), {kPeriod});
+  const tests::SampleCommands<float> commands(5, 100, kPeriod);
+  const std::vector<RolloutStart> near{{{0.0, 0.0, 0.3}, {}}};
+  const std::vector<RolloutStart> far{{{4096.0, 0.0, 0.3}, {}}};
+  const auto at_origin = tests::roll(program, commands.batch(near));
+  const auto far_off = tests::roll(program, commands.batch(far));
+  for (std::size_t n = 0; n < 5; ++n) {
+    CHECK(std::abs(far_off.x[99 * 5 + n] - 4096.0F - at_origin.x[99 * 5 + n]) <= 5e-4F);
+  }
+}
+
+std::string refusal(const RolloutProgram& program, const RolloutBatch<double>& batch) {
+  try {
+    tests::roll(program, batch);
+  } catch (const std::invalid_argument& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
+TEST_CASE("what cannot be rolled out is refused and named") {
+  const tests::SampleChain chain = tests::sample_chains()[3];
+  const MotionModel model(named_basis("edd-2"), chain.learned);
+  const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+  const RolloutProgram program(model, parameters, {kPeriod});
+  tests::SampleCommands<double> commands(3, 10, kPeriod);
+  const auto batch = commands.batch(kStart);
+  CHECK(refusal(program, batch).empty());
+  auto empty = batch;
+  empty.rollouts = 0;
+  CHECK(refusal(program, empty).find("empty") != std::string::npos);
+  const std::vector<RolloutStart> two(2);
+  CHECK(refusal(program, commands.batch(two)).find("2 starts for 3 rollouts") != std::string::npos);
+  const std::vector<RolloutStart> nowhere{{{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, {}}};
+  CHECK(refusal(program, commands.batch(nowhere)).find("start 0 is not finite") != std::string::npos);
+  for (const std::size_t at : {std::size_t{7}, std::size_t{29}}) {  // the last one is still in the delay at the end
+    commands.omega[at] = std::numeric_limits<double>::quiet_NaN();
+    CHECK(
+        refusal(program, batch).find("rollout " + std::to_string(at % 3) + " over period " + std::to_string(at / 3)) !=
+        std::string::npos);
+    commands.omega[at] = 0.0;
+  }
+  commands.omega[4] = 1e9;
+  CHECK(refusal(program, batch).find("thousands of times") != std::string::npos);
+  for (const double period : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    CHECK_THROWS_AS(RolloutProgram(model, parameters, {period}), std::invalid_argument);
+  }
+  CHECK_THROWS_AS(RolloutProgram(model, parameters, {kPeriod, std::numeric_limits<double>::quiet_NaN(), 0.0}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(RolloutProgram(model, parameters.head(2), {kPeriod}), std::invalid_argument);
+}
+
+TEST_CASE("a level that the processor lacks is refused, and the portable one is always there") {
+  CHECK(has_instruction_level(InstructionLevel::Portable));
+  CHECK(has_instruction_level(best_instruction_level()));
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Covariances along rollouts are those of one linearised segment, and sampled futures scatter like them.
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "rollout/sample_rollouts.hpp"
+#include "slipwise/rollout/rollout_covariance.hpp"
+#include "slipwise/rollout/sampled_futures.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kPeriod = 0.05;
+const std::vector<RolloutStart> kOrigin{{{}, {0.4, 0.2}}};
+
+UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& chain) {
+  const Eigen::VectorXd stds = Eigen::VectorXd::LinSpaced(model.size(), 0.01, 0.03);
+  Eigen::MatrixXd covariance = stds.cwiseAbs2().asDiagonal();
+  covariance(0, 1) = covariance(1, 0) = 0.5 * stds[0] * stds[1];
+  return {model,
+          tests::sample_parameters(model, chain),
+          {.covariance = covariance,
+           .noise = {.psd_time = {1e-4, 2e-4, 1e-4}, .psd_motion = {2e-4, 1e-4, 3e-4}, .fraction = {0.01, 0.02, 0.01}},
+           .scale = {1.5, 0.7, 2.0},
+           .growth = 1.2},
+          {kPeriod}};
+}
+
+Eigen::Matrix3d matrix_at(const std::vector<double>& entries, std::size_t poses, std::size_t i) {
+  const auto e = [&](std::size_t k) { return entries[k * poses + i]; };
+  return (Eigen::Matrix3d() << e(0), e(1), e(3), e(1), e(2), e(4), e(3), e(4), e(5)).finished();
+}
+
+TEST_CASE("the covariance of a pose is that of its segment in every basis") {
+  const tests::SampleCommands<double> commands(4, 60, kPeriod);
+  const std::vector<DriveCommand> past{{0.5, 0.1}, {0.4, 0.2}, {0.3, 0.2}, {0.4, 0.2}};
+  for (const Basis& basis : tests::all_bases()) {
+    CAPTURE(basis.name());
+    const tests::SampleChain chain = tests::sample_chains()[3];
+    const MotionModel model(basis, chain.learned);
+    const UncertainModel uncertain = sample_model(model, chain);
+    std::vector<double> entries(6 * 4 * 60);
+    rollout_covariance(uncertain, commands.batch(kOrigin, past), entries);
+    for (std::size_t n = 0; n < 4; ++n) {
+      const Segment segment{.start = 0.0, .end = 60 * kPeriod, .initial = BodyTwist{0.4, 0.0, 0.2}};
+      const auto at = linearize_segment(model, uncertain.parameters, commands.track(n, past), segment);
+      const Eigen::Matrix3d root = uncertain.uncertainty.scale.cwiseSqrt().asDiagonal();
+      const Eigen::Matrix3d from_parameters =
+          at.by_parameter * uncertain.uncertainty.covariance * at.by_parameter.transpose();
+      const Eigen::Matrix3d from_noise = root * slip_covariance(at.path, uncertain.uncertainty.noise) * root;
+      const Eigen::Matrix3d expected = 1.2 * (from_parameters + from_noise);
+      const Eigen::Matrix3d found = matrix_at(entries, 4 * 60, 59 * 4 + n);
+      CHECK((found - expected).norm() < 0.02 * expected.norm());
+    }
+  }
+}
+
+TEST_CASE("without noise the parameters' share is exact to the difference's step") {
+  const tests::SampleCommands<double> commands(3, 40, kPeriod);
+  const tests::SampleChain chain = tests::sample_chains()[0];
+  const MotionModel model(named_basis("odd-even-10"), chain.learned);
+  UncertainModel uncertain = sample_model(model, chain);
+  uncertain.uncertainty.noise = {};
+  uncertain.uncertainty.growth = 1.0;
+  std::vector<double> entries(6 * 3 * 40);
+  rollout_covariance(uncertain, commands.batch(kOrigin), entries);
+  for (std::size_t n = 0; n < 3; ++n) {
+    const auto at =
+        linearize_segment(model, uncertain.parameters, commands.track(n, {}), {.start = 0.0, .end = 40 * kPeriod});
+    const Eigen::Matrix3d expected = at.by_parameter * uncertain.uncertainty.covariance * at.by_parameter.transpose();
+    CHECK((matrix_at(entries, 3 * 40, 39 * 3 + n) - expected).norm() < 1e-6 * expected.norm());
+  }
+}
+
+TEST_CASE("sampled futures scatter as the covariance says, from the same seed in the same way") {
+  const std::size_t samples = 2000;
+  const tests::SampleCommands<double> commands(2, 30, kPeriod);
+  const tests::SampleChain chain = tests::sample_chains()[3];
+  const MotionModel model(named_basis("full-linear-6"), chain.learned);
+  UncertainModel uncertain = sample_model(model, chain);
+  uncertain.uncertainty.scale.setOnes();
+  const auto batch = commands.batch(kOrigin);
+  const std::size_t poses = 2 * 30;
+  const auto drawn = [&](std::uint64_t seed, unsigned threads) {
+    tests::SamplePaths<double> paths(samples * poses);
+    sample_futures(uncertain, batch, seed, {paths.x, paths.y, paths.theta}, {.threads = threads});
+    return paths;
+  };
+  const auto paths = drawn(3, 1);
+  CHECK(paths == drawn(3, 2));
+  CHECK(paths != drawn(4, 1));
+  std::vector<double> entries(6 * poses);
+  rollout_covariance(uncertain, batch, entries);
+  const std::size_t last = 29 * 2;
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (std::size_t s = 0; s < samples; ++s) {
+    const std::size_t i = s * poses + last;
+    const Eigen::Vector3d pose(paths.x[i], paths.y[i], paths.theta[i]);
+    mean += pose / static_cast<double>(samples);
+    squares += pose * pose.transpose() / static_cast<double>(samples);
+  }
+  const Eigen::Matrix3d scatter = squares - mean * mean.transpose();
+  const Eigen::Matrix3d expected = matrix_at(entries, poses, last);
+  const double tolerance = 4.0 * std::sqrt(2.0 / static_cast<double>(samples));  // four sigma of a sampled variance
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    CHECK(scatter(i, i) == doctest::Approx(expected(i, i)).epsilon(tolerance));
+  }
+}
+
+TEST_CASE("an uncertainty that does not fit is refused") {
+  const tests::SampleCommands<double> commands(2, 3, kPeriod);
+  const tests::SampleChain chain = tests::sample_chains()[0];
+  const MotionModel model(named_basis("edd-2"), chain.learned);
+  UncertainModel uncertain = sample_model(model, chain);
+  std::vector<double> entries(6 * 6), few(5);
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), few), std::invalid_argument);
+  CHECK_THROWS_AS(sample_futures(uncertain, commands.batch(kOrigin), 1, {few, few, few}), std::invalid_argument);
+  uncertain.uncertainty.scale[0] = -1.0;
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
+  uncertain.uncertainty.covariance = Eigen::Matrix3d::Identity();
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

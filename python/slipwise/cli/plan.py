@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise plan`: a route through a map with a learned model, drawn with its uncertainty."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from slipwise.cli.options import Json
+
+if TYPE_CHECKING:
+    from slipwise.reporting.plan_drawing import Plan
+
+
+def plan(
+    model: Annotated[Path, typer.Option(metavar="FILE", help="The model, as calibrate writes it.")],
+    map_file: Annotated[
+        Path, typer.Option("--map", metavar="FILE", help="The map: YAML with a PGM, as map_saver writes it.")
+    ],
+    start: Annotated[str, typer.Option("--from", metavar="X,Y,YAW", help="Where the robot stands: m, rad.")],
+    goal: Annotated[str, typer.Option("--to", metavar="X,Y,YAW", help="Where it is to stand: m, rad.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.png, STEM.html and STEM.csv.")
+    ] = Path("plan"),
+    radius: Annotated[float, typer.Option(metavar="METRES", help="Of a disc that covers the robot.")] = 0.5,
+    cruise: Annotated[
+        float | None,
+        typer.Option(metavar="M/S", show_default=False, help="Speed; 0.7 of the model's range by default."),
+    ] = None,
+    longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
+    picture: Annotated[bool, typer.Option(help="Draw the PNG, which needs Matplotlib.")] = True,
+    seed: Annotated[int, typer.Option(metavar="N", help="Of the search round obstacles.")] = 1,
+    json: Json = None,
+) -> int:
+    """Plan commands from one pose to another through a map, as the learned model says that the robot drives.
+
+    Limits of speed and yaw rate are those that the model was learned within.
+
+    \b
+    Examples:
+      slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57
+      slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57 --radius 0.8 -o dock
+    """  # noqa: D301
+    from slipwise.cli.document import head
+    from slipwise.cli.output import Output
+    from slipwise.cli.tables import show_files
+    from slipwise.models import load_model
+    from slipwise.planning import RouteOptions, RoutePlanner, TrajectoryOptions, load_map
+    from slipwise.reporting.plan_drawing import Plan
+    from slipwise.reporting.plan_page import summary
+
+    out = Output(json)
+    learned, grid = load_model(model), load_map(map_file)
+    begin, end = _pose(start, "--from"), _pose(goal, "--to")
+    planner = RoutePlanner(
+        learned,
+        grid,
+        options=TrajectoryOptions(cruise=cruise, longest=longest),
+        search=RouteOptions(radius=radius, seed=seed),
+    )
+    drawn = Plan(planner.route(begin, end), grid, radius, begin, end, f"{model.name} on {map_file.name}")
+    files = _write(output, drawn, picture=picture)
+    out.document(head("plan") | {"exit_code": 0, "files": files} | _figures(drawn))
+    for sentence in summary(drawn):
+        out.line(sentence)
+    show_files(out, files)
+    return 0
+
+
+def _pose(text: str, option: str) -> tuple[float, float, float]:
+    import math
+
+    try:
+        x, y, yaw = (float(part) for part in text.split(","))
+    except ValueError:
+        x = y = yaw = math.nan
+    if not all(map(math.isfinite, (x, y, yaw))):
+        from slipwise.errors import SettingsError
+
+        raise SettingsError(f"{text!r} is no pose", where=option, advice="give X,Y,YAW, such as 1.5,2,0.3")
+    return x, y, yaw
+
+
+def _write(stem: Path, drawn: Plan, *, picture: bool) -> dict[str, Path]:
+    from slipwise.files import write_text_whole
+    from slipwise.reporting.plan_page import plan_page
+    from slipwise.reporting.plan_picture import write_plan_picture
+
+    named = {kind: stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "html", "csv")}
+    if picture:
+        write_plan_picture(named["png"], drawn)
+    else:
+        del named["png"]
+    write_text_whole(named["html"], plan_page(drawn))
+    rows = "".join(f"{t:.6f},{v:.6f},{w:.6f}\n" for t, v, w in drawn.route.trajectory.commands.tolist())
+    write_text_whole(named["csv"], "t,cmd_v,cmd_omega\n" + rows)
+    return named
+
+
+def _figures(drawn: Plan) -> dict[str, Any]:
+    route = drawn.route
+    return {
+        "duration": route.trajectory.duration,
+        "legs": route.legs,
+        "clearance": route.clearance,
+        "end": route.predicted[-1].tolist(),
+        "end_covariance": route.covariance[-1].tolist(),
+        "commands": route.trajectory.commands.tolist(),
+    }

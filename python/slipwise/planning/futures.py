@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Futures drawn from what was learned, for planners that weigh risks."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.models.model import Model
+from slipwise.planning.rollout import check_threads, checked_commands, uncertain
+from slipwise.planning.start import Start
+
+
+def sample_futures(
+    model: Model,
+    commands: ArrayLike,
+    dt: float,
+    *,
+    samples: int,
+    seed: int,
+    start: Start | None = None,
+    threads: int = 1,
+) -> NDArray[np.float64]:
+    """Draw poses [3, S, K, N]: x, y [m] and yaw [rad] at the end of each period, for S samples of every rollout.
+
+    A sample drives all commands with parameters of its own; each of its rollouts has slip noise of its own. Both
+    are widened as held-out predictions at the rollouts' end needed. The same seed gives the same bytes.
+
+    Args:
+        model: a learned model.
+        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`.
+        dt: time that a command is held [s].
+        samples: how many futures to draw of each rollout.
+        seed: where the random numbers start, at least 0.
+        start: where the rollouts start; by default at rest in the origin.
+        threads: the results are the same bytes for any number.
+
+    Raises:
+        SettingsError: as for `rollout`, and when there is no sample or the seed is negative.
+    """
+    numbers = np.asarray(checked_commands(commands, np.float64))
+    check_threads(threads)
+    if samples < 1 or seed < 0:
+        raise SettingsError(
+            f"{samples} samples from seed {seed} cannot be drawn",
+            advice="use at least 1 sample, and a seed from 0",
+        )
+    begin = Start() if start is None else start
+    rollouts, periods = numbers.shape[:2]
+    result = np.empty((3, samples, periods, rollouts))
+    try:
+        widened = uncertain(model, dt, begin.gravity, dt * periods)
+        _core.sample_futures(widened, numbers, begin.in_core(rollouts), seed, result, threads)
+    except (ValueError, TypeError) as problem:
+        raise SettingsError(str(problem)) from problem
+    return result

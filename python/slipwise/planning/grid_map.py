@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Maps of what is free: from arrays, or from the YAML and PGM files of ROS's map_server."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.errors import PlanningError
+from slipwise.models.yaml_file import read_yaml
+from slipwise.planning.pgm import read_pgm
+
+Floats = NDArray[np.float64]
+
+FINEST, COARSEST = 1e-3, 10.0  # m, of a cell; outside of these the unit is wrong
+FAR = 1e3  # m, the clearance in a map without obstacles
+CELL_REACH = math.sqrt(0.5)  # cells, from a cell's centre to its corner
+
+
+@dataclass(frozen=True, eq=False)
+class GridMap:
+    """Square cells; what is not known to be free counts as occupied, and so does all beyond the map.
+
+    Raises:
+        PlanningError: the cells are no grid, or their size makes no sense.
+    """
+
+    occupied: NDArray[np.bool_]  # [rows, columns], rows in order of growing y
+    resolution: float  # side of a cell [m]
+    origin: tuple[float, float] = (0.0, 0.0)  # x, y of the corner of cell (0, 0) [m]
+    clearance: NDArray[np.float32] = field(init=False, repr=False)  # [rows, columns] m to what is occupied
+
+    def __post_init__(self) -> None:
+        cells = np.asarray(self.occupied)
+        if cells.ndim != 2 or cells.size == 0:
+            raise PlanningError(f"the map has shape {cells.shape}", advice="give [rows, columns] of cells")
+        if cells.dtype != np.bool_:
+            raise PlanningError(
+                f"the map's cells are {cells.dtype}", advice="give booleans, such as costs > 50"
+            )
+        if not (math.isfinite(self.resolution) and FINEST <= self.resolution <= COARSEST):
+            raise PlanningError(
+                f"a map's resolution of {self.resolution} m makes no sense",
+                where="resolution",
+                advice=f"give metres per cell, {FINEST:g} to {COARSEST:g}",
+            )
+        if not all(map(math.isfinite, self.origin)):
+            raise PlanningError("the map's origin is not finite", where="origin", advice="give metres")
+        field_ = _core.distance_field(np.ascontiguousarray(cells, dtype=np.uint8), self.resolution, FAR)
+        reach = 2.0 * CELL_REACH * self.resolution  # half a cell each, of the robot's place and the obstacle
+        object.__setattr__(self, "clearance", np.maximum(field_ - np.float32(reach), np.float32(0.0)))
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height [m]."""
+        rows, columns = self.occupied.shape
+        return columns * self.resolution, rows * self.resolution
+
+    def clearance_at(self, points: ArrayLike) -> Floats:
+        """Return at least how far it is from points [N, 2] to what is occupied [m]; 0 beyond the map."""
+        xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
+        column, row = np.floor((xy - self.origin) / self.resolution).astype(np.int64).T
+        rows, columns = self.occupied.shape
+        inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        found = np.zeros(len(xy))
+        found[inside] = self.clearance[row[inside], column[inside]]
+        return found
+
+
+def load_map(path: str | Path) -> GridMap:
+    """Read a map of ROS's map_server: a YAML file that names a PGM image.
+
+    Raises:
+        PlanningError: a file is missing or wrong, or the map is rotated.
+    """
+    source = Path(path)
+    content = read_yaml(source, error=PlanningError)
+    image = content.get("image")
+    if not isinstance(image, str):
+        raise _fault(source, "image", "names no image", "give the name of a PGM file")
+    grey = read_pgm(source.parent / image)
+    share = grey if _number(content, "negate", source, default=0.0) else 1.0 - grey
+    free = share < _number(content, "free_thresh", source, default=0.196)
+    origin = content.get("origin")
+    if not isinstance(origin, list) or len(origin) < 2 or not all(_is_number(value) for value in origin):
+        raise _fault(source, "origin", "is no list of x, y, yaw", "such as [-10.0, -10.0, 0.0]")
+    if len(origin) > 2 and origin[2] != 0.0:
+        raise _fault(source, "origin", "is rotated", "save the map with a yaw of 0")
+    resolution = _number(content, "resolution", source)
+    try:
+        return GridMap(np.flipud(~free).copy(), resolution, (float(origin[0]), float(origin[1])))
+    except PlanningError as problem:
+        raise PlanningError(
+            problem.what, where=f"{source}, {problem.where}", advice=problem.advice
+        ) from problem
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def _number(content: dict[str, Any], key: str, source: Path, *, default: float | None = None) -> float:
+    value = content.get(key, default)
+    if not _is_number(value):
+        raise _fault(source, key, "is no number", "see the files that map_saver writes")
+    return float(value)  # type: ignore[arg-type]
+
+
+def _fault(source: Path, key: str, what: str, advice: str) -> PlanningError:
+    return PlanningError(f"the map's `{key}` {what}", where=str(source), advice=advice)

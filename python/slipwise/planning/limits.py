@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot may be told to do, and what it is doing when a plan begins."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.models.model import Model
+
+ACCELERATION = 0.5  # m/s^2, where the user says nothing
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Limits of the commands, not of what the robot makes of them; all are positive.
+
+    Raises:
+        SettingsError: a limit is not positive and finite.
+    """
+
+    speed: float  # m/s, forwards and backwards
+    yaw_rate: float  # rad/s
+    curvature: float  # 1/m, of yaw rate over speed
+    acceleration: float = ACCELERATION  # m/s^2, also when braking
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise SettingsError(
+                    f"the limit {field.name} is {value}", where=field.name, advice="give a positive number"
+                )
+
+    def to_core(self) -> _core.DriveLimits:
+        """Return the limits as the core takes them."""
+        return _core.DriveLimits(self.speed, self.yaw_rate, self.curvature, self.acceleration)
+
+
+def limits_of(model: Model) -> Limits:
+    """Return limits within which the model was learned; the curvature is that of full turning at half speed.
+
+    Raises:
+        SettingsError: the model has never seen the robot drive or turn.
+    """
+    speed = max(abs(value) for value in model.content.range.speed)
+    yaw_rate = max(abs(value) for value in model.content.range.yaw_rate)
+    if speed <= 0.0 or yaw_rate <= 0.0:
+        raise SettingsError(
+            "the model was learned from a drive without speed or without turning",
+            advice="give limits, or calibrate on a drive that has both",
+        )
+    return Limits(speed=speed, yaw_rate=yaw_rate, curvature=2.0 * yaw_rate / speed)
+
+
+@dataclass(frozen=True)
+class DriveState:
+    """What the drive does (behind its lag) and what it was told last; both forward [m/s] and turning [rad/s].
+
+    Raises:
+        SettingsError: a value is not finite.
+    """
+
+    drive: tuple[float, float] = (0.0, 0.0)
+    told: tuple[float, float] = (0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not all(map(math.isfinite, (*self.drive, *self.told))):
+            raise SettingsError("the speeds at the start are not finite", advice="such as drive=(0.5, 0.0)")
+
+    def to_core(self) -> _core.DriveStart:
+        """Return the state as the core takes it."""
+        return _core.DriveStart(*(_core.BodyTwist(v, 0.0, omega) for v, omega in (self.drive, self.told)))
+
+
+AT_REST = DriveState()

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The MPPI controller: sampled commands driven through a learned model, averaged by cost, in C++."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.errors import PlanningError, SettingsError
+from slipwise.models.model import Model
+from slipwise.planning.costmap import Costmap
+from slipwise.planning.grid_map import GridMap
+from slipwise.planning.track import Track
+from slipwise.planning.trajectory import Pose, to_core_pose
+
+Floats = NDArray[np.float64]
+
+LETHAL = 100.0  # cost of a cell where the robot's disc touches something
+MOST_PAST = 200  # commands that are remembered
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A motion model with its parameters, as a controller drives through it."""
+
+    model: _core.MotionModel
+    parameters: Floats
+
+
+def plain_motion() -> Motion:
+    """Return the motion of a robot that does at once and exactly what it is told."""
+    return Motion(_core.MotionModel(_core.Basis("none", [], [], []), False, False), np.zeros(0))
+
+
+def vendor_motion(multiplier: float) -> Motion:
+    """Return the motion of a robot that turns `multiplier` times less than it is told."""
+    model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
+    return Motion(model, np.array([0.0, 1.0 / multiplier - 1.0]))
+
+
+def learned_motions(model: Model, *, samples: int = 0, seed: int = 1) -> list[Motion]:
+    """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance."""
+    rng = np.random.Generator(np.random.PCG64(seed))
+    drawn = rng.multivariate_normal(model.mean, model.covariance, size=samples, method="eigh")
+    return [Motion(model.motion, parameters) for parameters in (model.mean, *drawn)]
+
+
+@dataclass(frozen=True)
+class MppiOptions:
+    """Settings of the controller; the defaults suit a robot of a metre at a metre per second."""
+
+    rollouts: int = 2048
+    periods: int = 56
+    period: float = 0.05  # s
+    highest_speed: float = 1.5  # m/s
+    lowest_speed: float = 0.0  # m/s
+    yaw_rate: float = 1.0  # rad/s
+    acceleration: float = 1.0  # m/s^2
+    yaw_acceleration: float = 2.0  # rad/s^2
+    speed_std: float = 0.3  # m/s of the samples
+    yaw_rate_std: float = 0.4  # rad/s of the samples
+    colour: float = 0.3  # s over which the noise changes
+    temperature: float = 0.3  # of the excess cost of the best quarter, where a rollout weighs e^-1
+    risk: float = 0.0  # 0 counts the mean cost over the motions, 1 the worst
+    across: float = 20.0  # cost per squared metre beside the track and second
+    along: float = 2.0  # per squared metre ahead or behind and second
+    heading: float = 1.0  # per squared radian and second
+    smoothness: float = 0.05  # per squared share of the largest change of a command
+    obstacle: float = 1.0  # per cost of the map and second
+    seed: int = 1
+
+    def to_core(self) -> _core.MppiSettings:
+        """Return the options as the core takes them."""
+        limits, costs, settings = _core.MppiLimits(), _core.MppiCosts(), _core.MppiSettings()
+        for name in ("highest_speed", "lowest_speed", "yaw_rate", "acceleration", "yaw_acceleration"):
+            setattr(limits, name, getattr(self, name))
+        for name in ("across", "along", "heading", "smoothness", "obstacle"):
+            setattr(costs, name, getattr(self, name))
+        costs.lethal = LETHAL
+        for name in ("rollouts", "periods", "period", "speed_std", "yaw_rate_std", "colour"):
+            setattr(settings, name, getattr(self, name))
+        settings.temperature, settings.risk, settings.seed = self.temperature, self.risk, self.seed
+        settings.limits, settings.costs = limits, costs
+        return settings
+
+
+USUAL = MppiOptions()
+
+
+def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap:
+    """Return the cost of every place for a robot's disc: lethal in obstacles, falling to 0 beside them.
+
+    Args:
+        grid: what is free.
+        radius: of a disc that covers the robot [m].
+        inflation: how far from touching something places still cost [m].
+
+    Raises:
+        SettingsError: radius or inflation are not positive.
+    """
+    if not (np.isfinite([radius, inflation]).all() and radius > 0.0 and inflation > 0.0):
+        raise SettingsError("radius and inflation must be positive", where="inflation", advice="give metres")
+    near = np.clip(1.0 - (grid.clearance - radius) / inflation, 0.0, 1.0)
+    cells = np.where(grid.clearance < radius, LETHAL, 0.5 * LETHAL * near**2).astype(np.float32)
+    return Costmap(cells, grid.resolution, grid.origin, LETHAL)
+
+
+class Controller:
+    """Follows a track, one command per period.
+
+    Args:
+        motions: through which sampled commands are driven; several where risk counts.
+        track: what to follow.
+        options: settings.
+        obstacles: costs of places, `LETHAL` where a collision is; see `inflated`.
+
+    Raises:
+        SettingsError: there is no motion, or an option makes no sense.
+    """
+
+    def __init__(
+        self,
+        motions: list[Motion],
+        track: Track,
+        *,
+        options: MppiOptions = USUAL,
+        obstacles: Costmap | None = None,
+    ) -> None:
+        self.track, self.options = track, options
+        self._obstacles = obstacles  # keeps the cells
+        try:
+            models = [(motion.model, motion.parameters) for motion in motions]
+            self._core = _core.Mppi(models, options.to_core())
+        except (ValueError, TypeError, OverflowError) as problem:
+            raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
+        self._past = np.zeros((1, 2))
+
+    def command(self, pose: Pose, drive: tuple[float, float]) -> tuple[float, float]:
+        """Return the next command (v [m/s], omega [rad/s]); call it once per period.
+
+        Args:
+            pose: of the robot now, in the frame of the track.
+            drive: what the drive does now (v, omega), as wheels show it.
+
+        Raises:
+            SettingsError: pose or drive are not finite.
+            PlanningError: the robot is inside an obstacle.
+        """
+        at = to_core_pose(pose, "robot's pose")
+        obstacles = None if self._obstacles is None else self._obstacles.in_core
+        wanted = self.track.ahead(pose, self.options.periods, self.options.period)
+        try:
+            result = self._core.step(at, drive, self._past, wanted, obstacles)
+        except ValueError as problem:
+            kind = PlanningError if "obstacle" in str(problem) else SettingsError
+            raise kind(str(problem), where="controller") from problem
+        self._past = np.vstack((self._past, (result.v, result.omega)))[-MOST_PAST:]
+        return float(result.v), float(result.omega)

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rolling out many command sequences through a learned model at once."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.models.model import Model
+from slipwise.planning.costmap import Costmap
+from slipwise.planning.start import Start
+from slipwise.prediction import growth_at
+
+Numbers = NDArray[Any]  # float32 or float64
+Output = Literal["path", "end", "costs"]
+OUTPUTS: tuple[Output, ...] = ("path", "end", "costs")
+
+
+@dataclass(frozen=True, eq=False)
+class Rollouts:
+    """What N rollouts of K periods gave, rollouts side by side; None where it was not asked for."""
+
+    path: Numbers | None = None  # [3, K, N] x, y [m], yaw [rad, not wrapped] at the end of each period
+    end: Numbers | None = None  # [3, N] the same at the end of the last period
+    costs: Numbers | None = None  # [3, N] sum, highest and lowest value of the map at the periods' ends
+    covariance: NDArray[np.float64] | None = None  # [6, K, N] xx, xy, yy, xt, yt, tt of x, y, yaw
+
+
+def command_buffer(rollouts: int, periods: int, dtype: DTypeLike = np.float32) -> Numbers:
+    """Return zero commands [N, K, 2] that lie in memory as the kernels read them fastest.
+
+    Any array of commands is taken; in one from here, those of one period lie side by side.
+    """
+    return np.zeros((2, periods, rollouts), dtype=dtype).transpose(2, 1, 0)
+
+
+def rollout(  # noqa: PLR0913  (all but the first three have defaults)
+    model: Model,
+    commands: ArrayLike,
+    dt: float,
+    *,
+    start: Start | None = None,
+    outputs: Collection[Output] = ("path",),
+    costmap: Costmap | None = None,
+    covariance: bool = False,
+    threads: int = 1,
+    dtype: DTypeLike | None = None,
+    out: Rollouts | None = None,
+    level: str | None = None,
+) -> Rollouts:
+    """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
+
+    Args:
+        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate; those of
+            a car with a steering angle are v and v tan(angle) / wheelbase.
+        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`.
+        dt: time that a command is held [s].
+        start: where the rollouts start; by default at rest in the origin.
+        outputs: of "path", "end" and "costs".
+        costmap: what "costs" are sampled from.
+        covariance: also the covariance of every pose from parameters and slip noise, grown as held-out
+            predictions needed; costs two rollouts in float64 per parameter.
+        threads: the results are the same bytes for any number.
+        dtype: float32 or float64; by default that of the commands.
+        out: results of an earlier call of the same shape and dtype, whose arrays are filled again.
+        level: instruction level, one of `_core.instruction_levels()`; by default the best.
+
+    Raises:
+        SettingsError: the batch is empty, a command is not finite, or something does not fit the rest.
+    """
+    numbers = checked_commands(commands, dtype)
+    check_threads(threads)
+    begin = Start() if start is None else start
+    wanted = _wanted(outputs, costmap)
+    rollouts, periods = numbers.shape[:2]
+    buffers = {
+        "path": _buffer("path", wanted, out, (3, periods, rollouts), numbers.dtype),
+        "end": _buffer("end", wanted, out, (3, rollouts), numbers.dtype),
+        "costs": _buffer("costs", wanted, out, (3, rollouts), numbers.dtype),
+    }
+    starts = begin.in_core(rollouts)
+    try:
+        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity)
+        _core.rollout_batch(
+            program,
+            numbers,
+            starts,
+            buffers["path"],
+            buffers["end"],
+            None if costmap is None else costmap.in_core,
+            buffers["costs"],
+            threads,
+            _core.instruction_levels()[-1] if level is None else level,
+        )
+        spread = _covariance(model, numbers, dt, begin, threads) if covariance else None
+    except (ValueError, TypeError) as problem:
+        raise SettingsError(str(problem)) from problem
+    return Rollouts(covariance=spread, **buffers)
+
+
+def checked_commands(commands: ArrayLike, dtype: DTypeLike | None) -> Numbers:
+    """Return commands [N, K, 2] in float32 or float64, without a copy where they are.
+
+    Raises:
+        SettingsError: they are no such array, or the type is another one.
+    """
+    try:
+        given = np.asarray(commands)
+        kind = np.dtype((np.float32 if given.dtype == np.float32 else np.float64) if dtype is None else dtype)
+        numbers = given.astype(kind, copy=False)
+    except (TypeError, ValueError) as problem:
+        raise SettingsError("the commands are no array of numbers", advice="give [N, K, 2]") from problem
+    if kind not in (np.float32, np.float64):
+        raise SettingsError(f"rollouts do not compute in {kind}", advice="use float32 or float64")
+    if numbers.ndim != 3 or numbers.shape[2] != 2 or numbers.size == 0:
+        raise SettingsError(
+            f"the commands have shape {numbers.shape}",
+            advice="give [N, K, 2] with at least one rollout and period",
+        )
+    return numbers
+
+
+def check_threads(threads: int) -> None:
+    """Refuse a number of threads that is none.
+
+    Raises:
+        SettingsError: it is less than 1.
+    """
+    if threads < 1:
+        raise SettingsError(f"{threads} threads cannot work", advice="use threads=1 or more")
+
+
+def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
+    """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
+    scale = np.array(model.content.noise.scale)
+    growth = growth_at(model, horizon)
+    return _core.UncertainModel(
+        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity
+    )
+
+
+def _covariance(
+    model: Model, commands: Numbers, dt: float, start: Start, threads: int
+) -> NDArray[np.float64]:
+    rollouts, periods = commands.shape[:2]
+    result = np.empty((6, periods, rollouts))
+    unit = uncertain(model, dt, start.gravity, dt)
+    _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
+    at_one_period = growth_at(model, dt)
+    growth = np.array([growth_at(model, dt * (k + 1)) / at_one_period for k in range(periods)])
+    result *= growth[:, None]
+    return result
+
+
+def _wanted(outputs: Collection[str], costmap: Costmap | None) -> frozenset[str]:
+    wanted = frozenset((outputs,) if isinstance(outputs, str) else outputs)
+    if unknown := sorted(wanted - set(OUTPUTS)):
+        raise SettingsError(f"unknown output {unknown[0]!r}", advice=f"known are {', '.join(OUTPUTS)}")
+    if ("costs" in wanted) != (costmap is not None):
+        raise SettingsError("costs need a costmap, and a costmap gives costs", advice="give both or neither")
+    return wanted
+
+
+def _buffer(
+    name: Output, wanted: frozenset[str], out: Rollouts | None, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> Numbers | None:
+    if name not in wanted:
+        return None
+    given: Numbers | None = None if out is None else getattr(out, name)
+    if given is None:
+        return np.empty(shape, dtype)
+    if (
+        given.shape != shape
+        or given.dtype != dtype
+        or not given.flags.c_contiguous
+        or not given.flags.writeable
+    ):
+        raise SettingsError(
+            f"the array for {name} has shape {given.shape} and type {given.dtype} where {shape} and {dtype} are needed",
+            advice="give results of a call with as many rollouts and periods",
+        )
+    return given

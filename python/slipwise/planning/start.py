@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where rollouts start: poses, what the drive does, and the commands that are still in its delay."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Start:
+    """One start for all rollouts, or one each."""
+
+    pose: ArrayLike = (0.0, 0.0, 0.0)  # [3] or [N, 3]: x, y [m], yaw [rad]; results are in its frame
+    drive: ArrayLike = (0.0, 0.0)  # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter where there is lag
+    past: ArrayLike | None = None  # [P, 2] or [N, P, 2]: commands sent before, one period apart, oldest first
+    gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2 along the robot's x and y axes, positive downhill
+
+    def in_core(self, rollouts: int) -> _core.StartList:
+        """Check the start against the number of rollouts and hand it to the core.
+
+        Raises:
+            SettingsError: a shape does not fit, or a number is not finite.
+        """
+        pose, drive = _rows("pose", self.pose, 3), _rows("drive", self.drive, 2)
+        starts = max(len(pose), len(drive))
+        past = np.zeros((1, 0, 2)) if self.past is None else _past(self.past)
+        starts = max(starts, len(past))
+        if starts not in (1, rollouts):
+            raise SettingsError(
+                f"there are {starts} starts for {rollouts} rollouts", advice="give one start, or one each"
+            )
+        joined = np.hstack((_repeated("pose", pose, starts), _repeated("drive", drive, starts)))
+        return _core.StartList(joined, np.ascontiguousarray(_repeated("past", past, starts)))
+
+
+def _rows(name: str, values: ArrayLike, width: int) -> Floats:
+    rows = np.atleast_2d(_finite(name, values))
+    if rows.ndim != 2 or rows.shape[1] != width or len(rows) == 0:
+        raise SettingsError(
+            f"the start's {name} has shape {np.shape(values)}",
+            advice=f"give {width} numbers, or rows of {width}",
+        )
+    return rows
+
+
+def _past(values: ArrayLike) -> Floats:
+    past = _finite("past", values)
+    if past.ndim == 2:
+        past = past[None]
+    if past.ndim != 3 or past.shape[2] != 2:
+        raise SettingsError(
+            f"the start's past has shape {np.shape(values)}", advice="give commands [P, 2], or [N, P, 2]"
+        )
+    return past
+
+
+def _finite(name: str, values: ArrayLike) -> Floats:
+    try:
+        numbers = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as problem:
+        raise SettingsError(f"the start's {name} is no array of numbers") from problem
+    if not np.isfinite(numbers).all():
+        raise SettingsError(f"the start's {name} is not finite", advice="leave out what is not known")
+    return numbers
+
+
+def _repeated(name: str, rows: Floats, starts: int) -> Floats:
+    if len(rows) == starts:
+        return rows
+    if len(rows) != 1:
+        raise SettingsError(
+            f"the start has {len(rows)} rows of {name} and {starts} of others", advice="give one, or one each"
+        )
+    return np.repeat(rows, starts, axis=0)

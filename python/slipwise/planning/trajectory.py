@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories to a goal pose through the learned model, within limits (thesis 8.4)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.errors import PlanningError, SettingsError
+from slipwise.models.model import Model
+from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
+from slipwise.prediction import Path, predict
+
+Floats = NDArray[np.float64]
+Pose = tuple[float, float, float]  # x, y [m], yaw [rad]
+
+CRUISE_SHARE = 0.7  # of the limit of speed, where the user says nothing
+LONG_AGO = 1e4  # s before a plan, when what was told last is taken to have been told
+
+
+@dataclass(frozen=True)
+class TrajectoryOptions:
+    """How trajectories are shaped."""
+
+    cruise: float | None = None  # m/s between the ramps; by default `CRUISE_SHARE` of the limit
+    end_speed: float = 0.0  # m/s commanded at the goal; 0 waits until the robot has come to rest
+    longest: float = 10.0  # m, of commanded paths
+    backwards: bool = False  # drive backwards all the way
+    commands: int = 32  # each held for the same time
+    guesses: int = 12  # first manoeuvres that are tried at most
+    tolerance_xy: float = 1e-3  # m
+    tolerance_yaw: float = 1e-3  # rad
+
+    def to_core(self, limits: Limits) -> _core.TrajectorySettings:
+        """Return the options as the core takes them."""
+        settings = _core.TrajectorySettings()
+        settings.cruise = CRUISE_SHARE * limits.speed if self.cruise is None else self.cruise
+        settings.end_speed = self.end_speed
+        settings.longest = self.longest
+        settings.backwards = self.backwards
+        settings.commands = self.commands
+        settings.guesses = self.guesses
+        settings.tolerance_xy = self.tolerance_xy
+        settings.tolerance_yaw = self.tolerance_yaw
+        return settings
+
+
+USUAL = TrajectoryOptions()
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """Commands, each held until the next and the last one on, and the path that they cause."""
+
+    commands: Floats  # [N, 3] t [s] from 0 on, v [m/s], omega [rad/s]
+    t: Floats  # [M] s, of the poses
+    poses: Floats  # [M, 3] x, y [m], yaw [rad] in the frame of the goal, the yaw not wrapped
+    at_end: DriveState  # when the goal is reached
+
+    @property
+    def duration(self) -> float:
+        """Time from the first command until the goal is reached [s]."""
+        return float(self.t[-1])
+
+
+class Planner:
+    """Plans to any goal from states near one start; it keeps a table of manoeuvres made for that start.
+
+    Args:
+        model: a learned model.
+        limits: of the commands; by default what the model was learned within.
+        options: how trajectories are shaped.
+        state: what the robot usually does when a plan begins.
+
+    Raises:
+        SettingsError: limits, options or state contradict each other.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        *,
+        limits: Limits | None = None,
+        options: TrajectoryOptions = USUAL,
+        state: DriveState = AT_REST,
+    ) -> None:
+        self.limits = limits_of(model) if limits is None else limits
+        settings = options.to_core(self.limits)
+        try:
+            self._core = _core.TrajectoryPlanner(
+                model.motion, model.mean, self.limits.to_core(), settings, state.to_core()
+            )
+        except ValueError as problem:
+            raise SettingsError(str(problem), where="trajectory options") from problem
+
+    def try_to(
+        self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST
+    ) -> Trajectory | None:
+        """Return a trajectory from `start` to `goal`, None where there is none; see `to`."""
+        plan = self._plan(goal, start, state)
+        return _trajectory(plan, start) if plan.status == _core.TrajectoryStatus.Reached else None
+
+    def to(self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST) -> Trajectory:
+        """Return a trajectory from `start` to `goal`, both (x [m], y [m], yaw [rad]) in one frame.
+
+        Raises:
+            PlanningError: no manoeuvre within the limits ends at the goal.
+            SettingsError: a pose is not finite, or the start is faster than the limits.
+        """
+        plan = self._plan(goal, start, state)
+        if plan.status != _core.TrajectoryStatus.Reached:
+            what, _, advice = _core.trajectory_advice(plan.status).partition(": ")
+            nearest = f"the nearest attempt ends {plan.gap_xy:.2g} m and {plan.gap_yaw:.2g} rad beside it"
+            raise PlanningError(f"{what}; {nearest}", where=f"goal {pose_text(goal)}", advice=advice)
+        return _trajectory(plan, start)
+
+    def _plan(self, goal: Pose, start: Pose, state: DriveState) -> _core.Trajectory:
+        relative = _core.between(to_core_pose(start, "start"), to_core_pose(goal, "goal"))
+        try:
+            return self._core.to(relative, state.to_core())
+        except ValueError as problem:
+            raise SettingsError(str(problem), where="start state") from problem
+
+
+def trajectory_to(  # noqa: PLR0913 - what a Planner takes, and what its `to` takes
+    model: Model,
+    goal: Pose,
+    *,
+    start: Pose = (0.0, 0.0, 0.0),
+    limits: Limits | None = None,
+    options: TrajectoryOptions = USUAL,
+    state: DriveState = AT_REST,
+) -> Trajectory:
+    """Plan once; whoever plans often keeps a `Planner`, whose table is made once. See `Planner.to`."""
+    return Planner(model, limits=limits, options=options, state=state).to(goal, start=start, state=state)
+
+
+def uncertain_path(model: Model, trajectory: Trajectory, *, state: DriveState = AT_REST) -> Path:
+    """Return the path of a trajectory with its covariance, from the origin; see `predict`."""
+    before = np.array([[-LONG_AGO, *state.told]])
+    commands = np.vstack((before, trajectory.commands))
+    return predict(model, commands, horizon=trajectory.duration, start=0.0, initial=state.drive)
+
+
+def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
+    """Return a pose as the core takes it.
+
+    Raises:
+        SettingsError: it is not three finite numbers.
+    """
+    values = np.asarray(pose, dtype=np.float64)
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise SettingsError(
+            f"the {name} is no pose", where=str(pose), advice="give finite x, y [m], yaw [rad]"
+        )
+    return _core.Pose2(*map(float, values))
+
+
+def pose_text(pose: Pose) -> str:
+    """Return a pose in few digits."""
+    return ", ".join(f"{value:.4g}" for value in pose)
+
+
+def placed(poses: Floats, start: Pose) -> Floats:
+    """Return poses [N, 3] seen from `start` in the frame that `start` is given in."""
+    cos, sin = np.cos(start[2]), np.sin(start[2])
+    x = start[0] + cos * poses[:, 0] - sin * poses[:, 1]
+    y = start[1] + sin * poses[:, 0] + cos * poses[:, 1]
+    return np.column_stack((x, y, start[2] + poses[:, 2]))
+
+
+def _trajectory(plan: _core.Trajectory, start: Pose) -> Trajectory:
+    drive = plan.drive
+    return Trajectory(
+        commands=np.column_stack((plan.t, plan.v, plan.omega)),
+        t=np.asarray(plan.path_t),
+        poses=placed(np.asarray(plan.path), start),
+        at_end=DriveState(drive=(drive.v, drive.omega), told=(float(plan.v[-1]), float(plan.omega[-1]))),
+    )

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise plan` draws a route, and says in one line what stands in its way."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cli.conftest import Result
+from planning.planning_samples import learned_model, walled_map
+
+from slipwise.planning.pgm import write_pgm
+
+Slipwise = Callable[..., Result]
+START, GOAL = "1.5,6,0", "5,6.4,0.1"
+
+
+@pytest.fixture
+def arguments(folder: Path) -> list[object]:
+    """Write a model and a map; return how they are named."""
+    learned_model().save(folder / "model.yaml")
+    write_pgm(folder / "map.pgm", np.flipud(np.where(walled_map().occupied, 0.0, 1.0)))
+    (folder / "map.yaml").write_text("image: map.pgm\nresolution: 0.1\norigin: [0, 0, 0]\n", encoding="utf-8")
+    return ["plan", "--model", "model.yaml", "--map", "map.yaml", "--radius", "0.3"]
+
+
+def test_plan_draws_the_swept_path_and_writes_the_commands(
+    slipwise: Slipwise, arguments: list[object]
+) -> None:
+    pytest.importorskip("matplotlib", reason="the picture is drawn by Matplotlib")
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, "-o", "out/dock")
+    assert (result.code, result.err) == (0, "")
+    assert Path("out/dock.png").read_bytes().startswith(b"\x89PNG")
+    assert "swept by the robot" in Path("out/dock.html").read_text(encoding="utf-8")
+    table = np.genfromtxt("out/dock.csv", delimiter=",", names=True)
+    assert table.dtype.names == ("t", "cmd_v", "cmd_omega")
+    assert table["cmd_v"][-1] == 0.0
+    assert "The predicted end is" in result.out
+
+
+def test_plan_without_a_picture_needs_no_matplotlib_and_tells_machines(
+    slipwise: Slipwise, arguments: list[object]
+) -> None:
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, "--no-picture", "--json", "-")
+    assert result.code == 0
+    assert result.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
+    assert result.json["legs"] == 1
+    assert not Path("plan.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "message"),
+    [
+        ("5.7,2,0", GOAL, "the start lies in or too near an obstacle"),
+        ("1,2", GOAL, "'1,2' is no pose (--from): give X,Y,YAW"),
+        (START, "nan,2,0", "'nan,2,0' is no pose (--to)"),
+        (START, "40,2,0", "off the map"),
+    ],
+)
+def test_a_pose_that_cannot_be_is_refused(
+    slipwise: Slipwise, arguments: list[object], start: str, goal: str, message: str
+) -> None:
+    result = slipwise(*arguments, "--from", start, "--to", goal)
+    assert result.code == 2
+    assert message in result.line
+    assert not Path("plan.html").exists()
+
+
+def test_a_model_of_another_schema_version_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:
+    text = Path("model.yaml").read_text(encoding="utf-8").replace("slipwise_model: 1", "slipwise_model: 9")
+    Path("model.yaml").write_text(text, encoding="utf-8")
+    result = slipwise(*arguments, "--from", START, "--to", GOAL)
+    assert result.code == 2
+    assert "schema version 9" in result.line

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Maps are read as map_server writes them, know their clearance, and are refused where they make no sense."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slipwise.errors import PlanningError
+from slipwise.planning import GridMap, load_map
+from slipwise.planning.pgm import read_pgm, write_pgm
+
+KEYS = {
+    "image": "map.pgm",
+    "resolution": "0.5",
+    "origin": "[-1.0, -2.0, 0.0]",
+    "negate": "0",
+    "occupied_thresh": "0.65",
+    "free_thresh": "0.196",
+}
+
+
+def written(folder: Path, **changed: str) -> Path:
+    """Write a map of 4 x 6 cells that is occupied in its lower left corner and unknown in its upper right."""
+    grey = np.full((4, 6), 254 / 255)
+    grey[3, 0], grey[0, 5] = 0.0, 205 / 255
+    write_pgm(folder / "map.pgm", grey)
+    lines = [f"{key}: {value}" for key, value in (KEYS | changed).items() if value]
+    path = folder / "map.yaml"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+def test_a_map_is_read_with_its_lower_row_first(tmp_path: Path) -> None:
+    grid = load_map(written(tmp_path))
+    expected = np.zeros((4, 6), dtype=bool)
+    expected[0, 0] = expected[3, 5] = True
+    assert (grid.occupied == expected).all()
+    assert (grid.resolution, grid.origin, grid.size) == (0.5, (-1.0, -2.0), (3.0, 2.0))
+
+
+def test_plain_pgm_with_comments_reads_as_the_binary_one(tmp_path: Path) -> None:
+    path = tmp_path / "plain.pgm"
+    path.write_text("P2\n# made by hand\n3 2\n10\n0 5 10\n10 5 0\n", encoding="utf-8")
+    assert read_pgm(path) == pytest.approx(np.array([[0.0, 0.5, 1.0], [1.0, 0.5, 0.0]]))
+
+
+def test_clearance_never_overstates_the_room_and_ends_at_the_map() -> None:
+    occupied = np.zeros((50, 60), dtype=bool)
+    occupied[20:23, 30] = True
+    grid = GridMap(occupied, 0.2, (1.0, 2.0))
+    rng = np.random.Generator(np.random.PCG64(2))
+    points = np.array([1.0, 2.0]) + rng.random((400, 2)) * grid.size
+    low, high = np.array([7.0, 6.0]), np.array([7.2, 6.6])  # the obstacle's corners
+    true = np.hypot(*np.maximum(np.maximum(low - points, points - high), 0.0).T)
+    stated = grid.clearance_at(points)
+    assert (stated <= true + 1e-9).all()
+    assert (stated >= true - 0.6).all()
+    assert grid.clearance_at([[0.9, 3.0], [100.0, 3.0]]).tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("changed", "message"),
+    [
+        ({"resolution": "-0.1"}, "resolution of -0.1 m makes no sense"),
+        ({"resolution": "500.0"}, "resolution of 500.0 m makes no sense"),
+        ({"resolution": ".nan"}, "resolution of nan m makes no sense"),
+        ({"resolution": "fine"}, "`resolution` is no number"),
+        ({"resolution": ""}, "`resolution` is no number"),
+        ({"image": ""}, "`image` names no image"),
+        ({"image": "no.pgm"}, "cannot read the map's image"),
+        ({"image": "map.yaml"}, "is no PGM image"),
+        ({"origin": "[0.0]"}, "`origin` is no list"),
+        ({"origin": "[0.0, 0.0, 0.5]"}, "`origin` is rotated"),
+    ],
+)
+def test_a_map_that_makes_no_sense_is_refused(tmp_path: Path, changed: dict[str, str], message: str) -> None:
+    with pytest.raises(PlanningError, match=message) as caught:
+        load_map(written(tmp_path, **changed))
+    assert str(tmp_path) in caught.value.where
+    assert caught.value.advice
+
+
+def test_a_cut_off_image_is_refused(tmp_path: Path) -> None:
+    path = written(tmp_path)
+    image = tmp_path / "map.pgm"
+    image.write_bytes(image.read_bytes()[:-3])
+    with pytest.raises(PlanningError, match="cut off: 21 of 24 pixels"):
+        load_map(path)
+
+
+def test_cells_that_are_no_grid_are_refused() -> None:
+    with pytest.raises(PlanningError, match="shape"):
+        GridMap(np.zeros((0, 4), dtype=bool), 0.1)
+    with pytest.raises(PlanningError, match="give booleans"):
+        GridMap(np.zeros((3, 4)), 0.1)  # type: ignore[arg-type]

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The controller takes any motion, knows the robot's disc on a map, and refuses what makes no sense."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from planning.planning_samples import learned_model, walled_map
+
+from slipwise.errors import PlanningError, SettingsError
+from slipwise.planning import (
+    Controller,
+    MppiOptions,
+    Track,
+    inflated,
+    learned_motions,
+    plain_motion,
+    vendor_motion,
+)
+
+QUICK = MppiOptions(rollouts=256, periods=30, period=0.1)
+
+
+def straight() -> Track:
+    return Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8)
+
+
+def test_the_controller_steers_back_to_its_track() -> None:
+    for motions in ([plain_motion()], [vendor_motion(1.5)], learned_motions(learned_model(), samples=2)):
+        controller = Controller(motions, straight(), options=QUICK)
+        left = [controller.command((1.0, 0.8, 0.0), (0.5, 0.0)) for _ in range(3)][-1]
+        controller = Controller(motions, straight(), options=QUICK)
+        right = [controller.command((1.0, -0.8, 0.0), (0.5, 0.0)) for _ in range(3)][-1]
+        assert left[0] > 0.0
+        assert left[1] < 0.0 < right[1]
+
+
+def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> None:
+    model = learned_model()
+    drawn = np.array([motion.parameters for motion in learned_motions(model, samples=400)])
+    assert (drawn[0] == model.mean).all()
+    spread = drawn[1:].std(axis=0) / np.sqrt(np.diag(model.covariance))
+    assert spread == pytest.approx(1.0, abs=0.2)
+    again = np.array([motion.parameters for motion in learned_motions(model, samples=400)])
+    assert (drawn == again).all()
+
+
+def test_a_start_in_an_obstacle_is_refused() -> None:
+    obstacles = inflated(walled_map(), 0.3)
+    track = Track(np.array([[1.0, 2.0], [11.0, 2.0]]), 0.8)
+    controller = Controller([plain_motion()], track, options=QUICK, obstacles=obstacles)
+    controller.command((2.0, 2.0, 0.0), (0.0, 0.0))
+    with pytest.raises(PlanningError, match="starts inside an obstacle"):
+        controller.command((5.7, 2.0, 0.0), (0.0, 0.0))
+
+
+def test_what_makes_no_sense_is_refused() -> None:
+    with pytest.raises(SettingsError, match="at least one model"):
+        Controller([], straight())
+    with pytest.raises(SettingsError, match="positive number of seconds"):
+        Controller([plain_motion()], straight(), options=MppiOptions(period=0.0))
+    with pytest.raises(SettingsError, match="2 rollouts"):
+        Controller([plain_motion()], straight(), options=MppiOptions(rollouts=0))
+    with pytest.raises(SettingsError, match="radius and inflation"):
+        inflated(walled_map(), math.nan)
+    controller = Controller([plain_motion()], straight(), options=QUICK)
+    with pytest.raises(SettingsError, match="the robot's pose is no pose"):
+        controller.command((math.nan, 0.0, 0.0), (0.0, 0.0))
+    with pytest.raises(SettingsError):
+        controller.command((0.0, 0.0, 0.0), (math.nan, 0.0))

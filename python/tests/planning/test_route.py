@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Routes lead round what is in the way, as one drive that ends at the goal."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from planning.planning_samples import LIMITS, learned_model, walled_map
+
+from slipwise.errors import PlanningError, SettingsError
+from slipwise.planning import GridMap, RouteOptions, RoutePlanner, TrajectoryOptions
+
+OPTIONS = TrajectoryOptions(cruise=0.8, longest=6.0)
+
+
+def planner(grid: GridMap, *, radius: float = 0.3, attempts: int = 800) -> RoutePlanner:
+    search = RouteOptions(radius=radius, attempts=attempts)
+    return RoutePlanner(learned_model(), grid, limits=LIMITS, options=OPTIONS, search=search)
+
+
+def test_a_free_way_is_one_trajectory() -> None:
+    route = planner(walled_map()).route((1.0, 6.0, 0.0), (5.5, 6.5, 0.2))
+    assert route.legs == 1
+    assert route.clearance >= 0.0
+
+
+def test_a_route_leads_round_a_wall_to_the_goal_without_touching_it() -> None:
+    grid = walled_map()
+    route = planner(grid).route((1.5, 2.0, 0.5), (10.0, 2.5, -0.6))
+    assert route.legs > 1
+    assert route.predicted[-1] == pytest.approx((10.0, 2.5, -0.6), abs=0.05)
+    assert (grid.clearance_at(route.predicted[:, :2]) >= 0.3).all()
+    assert (np.diff(route.trajectory.commands[:, 0]) > 0.0).all()
+    spread = route.covariance[:, 0, 0] + route.covariance[:, 1, 1]
+    assert spread[-1] > spread[len(spread) // 4] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("start", "goal", "message"),
+    [
+        ((5.7, 2.0, 0.0), (10.0, 2.0, 0.0), "the start lies in or too near an obstacle"),
+        ((1.0, 2.0, 0.0), (5.7, 2.0, 0.0), "the goal lies in or too near an obstacle"),
+        ((1.0, 2.0, 0.0), (99.0, 2.0, 0.0), "the goal lies in or too near an obstacle, or off the map"),
+    ],
+)
+def test_a_start_or_goal_in_an_obstacle_is_refused(
+    start: tuple[float, float, float], goal: tuple[float, float, float], message: str
+) -> None:
+    with pytest.raises(PlanningError, match=message):
+        planner(walled_map()).route(start, goal)
+
+
+def test_a_closed_off_goal_is_said_to_have_no_free_route() -> None:
+    occupied = walled_map().occupied.copy()
+    occupied[:, 55:60] = True
+    with pytest.raises(PlanningError, match="no free route was found"):
+        planner(GridMap(occupied, 0.1), attempts=30).route((1.0, 2.0, 0.0), (10.0, 2.0, 0.0))
+
+
+def test_a_map_coarser_than_the_robot_and_a_robot_without_size_are_refused() -> None:
+    coarse = GridMap(np.zeros((8, 12), dtype=bool), 1.0)
+    with pytest.raises(PlanningError, match="cells of 1 m are larger than the robot"):
+        planner(coarse)
+    with pytest.raises(SettingsError, match="the radius is 0"):
+        planner(walled_map(), radius=0.0)

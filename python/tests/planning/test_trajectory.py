@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Trajectories end at their goal as `predict` sees it, stay within limits, and fail with advice."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from planning.planning_samples import LIMITS, learned_model
+
+from slipwise.errors import PlanningError, SettingsError
+from slipwise.planning import (
+    DriveState,
+    Limits,
+    Planner,
+    TrajectoryOptions,
+    limits_of,
+    trajectory_to,
+    uncertain_path,
+)
+
+OPTIONS = TrajectoryOptions(cruise=1.0, longest=8.0)
+
+
+@pytest.fixture(scope="module")
+def planner() -> Planner:
+    return Planner(learned_model(), limits=LIMITS, options=OPTIONS)
+
+
+def test_a_trajectory_ends_at_the_goal_as_the_model_predicts(planner: Planner) -> None:
+    rng = np.random.Generator(np.random.PCG64(4))
+    for _ in range(30):
+        bearing = rng.uniform(-0.5, 0.5)
+        x, y = 4.5 * np.cos(bearing), 4.5 * np.sin(bearing)
+        goal = (float(x), float(y), float(2.0 * bearing + rng.uniform(-0.3, 0.3)))
+        plan = planner.to(goal)
+        path = uncertain_path(learned_model(), plan)
+        assert path.poses[-1] == pytest.approx(goal, abs=2e-3)
+        assert plan.poses[-1] == pytest.approx(path.poses[-1], abs=1e-6)
+        assert path.t[-1] == pytest.approx(plan.duration)
+
+
+def test_commands_stay_within_the_limits(planner: Planner) -> None:
+    plan = planner.to((3.0, 1.5, 1.2))
+    t, v, omega = plan.commands.T
+    assert np.abs(v).max() <= 1.0 + 1e-9
+    assert np.abs(omega).max() <= LIMITS.yaw_rate + 1e-9
+    assert (np.abs(omega) <= LIMITS.curvature * np.abs(v) + 1e-9).all()
+    assert (np.abs(np.diff(v)) <= LIMITS.acceleration * np.diff(t) + 1e-9).all()
+    assert v[-1] == 0.0
+
+
+def test_a_goal_in_another_frame_gives_the_same_commands(planner: Planner) -> None:
+    here = planner.to((3.013, 1.027, 0.411))
+    start = (10.0, -5.0, math.pi / 2.0)
+    there = planner.to((10.0 - 1.027, -5.0 + 3.013, math.pi / 2.0 + 0.411), start=start)
+    assert there.commands == pytest.approx(here.commands, abs=1e-9)
+    assert there.poses[-1] == pytest.approx((8.973, -1.987, math.pi / 2.0 + 0.411), abs=2e-3)
+
+
+def test_a_moving_robot_goes_on_with_its_curvature() -> None:
+    state = DriveState(drive=(0.8, 0.2), told=(0.8, 0.24))
+    plan = trajectory_to(learned_model(), (4.0, 0.5, 0.0), limits=LIMITS, options=OPTIONS, state=state)
+    assert plan.commands[0, 1] == pytest.approx(0.8, abs=0.2)
+    assert plan.commands[0, 2] / plan.commands[0, 1] == pytest.approx(0.3, abs=0.1)
+
+
+def test_limits_follow_from_what_the_model_has_seen() -> None:
+    limits = limits_of(learned_model())
+    seen = learned_model().content.range
+    assert limits.speed == max(map(abs, seen.speed))
+    assert limits.yaw_rate == max(map(abs, seen.yaw_rate))
+
+
+def test_an_unreachable_goal_says_how_near_it_came_and_what_would_help(planner: Planner) -> None:
+    with pytest.raises(PlanningError, match="the nearest attempt ends") as caught:
+        planner.to((0.0, 0.5, 0.0))
+    assert "larger curvature" in caught.value.advice
+    with pytest.raises(PlanningError, match="farther than the longest path"):
+        planner.to((50.0, 0.0, 0.0))
+    assert planner.try_to((0.0, 0.5, 0.0)) is None
+
+
+@pytest.mark.parametrize("goal", [(math.nan, 0.0, 0.0), (1.0, math.inf, 0.0), (1.0, 2.0)])
+def test_a_goal_that_is_no_pose_is_refused(planner: Planner, goal: tuple[float, ...]) -> None:
+    with pytest.raises(SettingsError, match="the goal is no pose"):
+        planner.to(goal)  # type: ignore[arg-type]
+
+
+def test_options_that_contradict_the_limits_are_refused() -> None:
+    with pytest.raises(SettingsError, match="cruise speed"):
+        Planner(learned_model(), limits=LIMITS, options=TrajectoryOptions(cruise=9.0))
+    with pytest.raises(SettingsError, match="limit yaw_rate"):
+        Limits(speed=1.0, yaw_rate=0.0, curvature=1.0)
+    with pytest.raises(SettingsError, match="not finite"):
+        DriveState(drive=(math.nan, 0.0))
