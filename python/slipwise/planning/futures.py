@@ -44,7 +44,8 @@ def sample_futures(
     check_threads(threads)
     if samples < 1 or seed < 0:
         raise SettingsError(
-            f"{samples} samples from seed {seed} cannot be drawn", advice="use at least 1 sample, and a seed from 0"
+            f"{samples} samples from seed {seed} cannot be drawn",
+            advice="use at least 1 sample, and a seed from 0",
         )
     begin = Start() if start is None else start
     rollouts, periods = numbers.shape[:2]

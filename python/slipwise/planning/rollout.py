@@ -120,7 +120,8 @@ def checked_commands(commands: ArrayLike, dtype: DTypeLike | None) -> Numbers:
         raise SettingsError(f"rollouts do not compute in {kind}", advice="use float32 or float64")
     if numbers.ndim != 3 or numbers.shape[2] != 2 or numbers.size == 0:
         raise SettingsError(
-            f"the commands have shape {numbers.shape}", advice="give [N, K, 2] with at least one rollout and period"
+            f"the commands have shape {numbers.shape}",
+            advice="give [N, K, 2] with at least one rollout and period",
         )
     return numbers
 
@@ -174,7 +175,12 @@ def _buffer(
     given: Numbers | None = None if out is None else getattr(out, name)
     if given is None:
         return np.empty(shape, dtype)
-    if given.shape != shape or given.dtype != dtype or not given.flags.c_contiguous or not given.flags.writeable:
+    if (
+        given.shape != shape
+        or given.dtype != dtype
+        or not given.flags.c_contiguous
+        or not given.flags.writeable
+    ):
         raise SettingsError(
             f"the array for {name} has shape {given.shape} and type {given.dtype} where {shape} and {dtype} are needed",
             advice="give results of a call with as many rollouts and periods",

@@ -45,7 +45,8 @@ def _rows(name: str, values: ArrayLike, width: int) -> Floats:
     rows = np.atleast_2d(_finite(name, values))
     if rows.ndim != 2 or rows.shape[1] != width or len(rows) == 0:
         raise SettingsError(
-            f"the start's {name} has shape {np.shape(values)}", advice=f"give {width} numbers, or rows of {width}"
+            f"the start's {name} has shape {np.shape(values)}",
+            advice=f"give {width} numbers, or rows of {width}",
         )
     return rows
 

@@ -2,6 +2,8 @@
 // The rollout of one block of lanes: command chain, slip, exact steps, outputs. Compiled once per instruction level.
 #pragma once
 
+#include <cstdint>
+
 #include "slipwise/rollout/lane_drive.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
@@ -10,6 +12,9 @@
 #include "slipwise/rollout/lanes.hpp"
 
 namespace slipwise {
+
+/// What a kernel is made for. None: every period is one part without lag.
+enum class Chain : std::uint8_t { None, Delays, Lags };
 
 /// A robot in every lane: its drive and where it is.
 template <class L>
@@ -34,7 +39,7 @@ SLIPWISE_LANES bool any_above(const typename L::Vector& lanes, Scalar limit, std
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
 [[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
@@ -49,18 +54,19 @@ template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = ty
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
-    if (part.next_v) {
+    if (kChain == Chain::None || part.next_v) {
       read_commands<L>(job, block, source_v, robot.v.next, robot.v.input);
       ++robot.v.next;
     }
-    if (part.next_omega) {
+    if (kChain == Chain::None || part.next_omega) {
       read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
       ++robot.omega.next;
     }
     typename L::Vector mean_v;
     typename L::Vector mean_omega;
-    advance_lag<kLags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
-    advance_lag<kLags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output, mean_omega);
+    advance_lag<kChain == Chain::Lags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
+    advance_lag<kChain == Chain::Lags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output,
+                                       mean_omega);
     TangentLanes<L> tangent;
     if constexpr (kQuadratic) {
       quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
@@ -68,6 +74,11 @@ template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = ty
       slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
     }
     step<L, kWide>(tangent, robot.path);
+    if constexpr (kChain == Chain::None) {
+      output.write_period(robot.path, period);
+      ++period;
+      continue;
+    }
     ++i;
     if (i == job.part_end) {
       output.write_period(robot.path, period);
@@ -96,19 +107,29 @@ template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = ty
   return (too_far ? kTurnsTooFar : kNoFault) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, bool kLags, bool kQuadratic, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, typename Scalar = typename L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const unsigned fault = roll_block_as<L, kLags, kQuadratic, false>(job, block);
-  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kLags, kQuadratic, true>(job, block);
+  const unsigned fault = roll_block_as<L, kChain, kQuadratic, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kChain, kQuadratic, true>(job, block);
+}
+
+template <class Level, bool kQuadratic, typename Scalar>
+unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  using L = Lanes<Level, Scalar>;
+  if (job.lags) {
+    return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
+  }
+  if constexpr (Level::kSingleLoop) {
+    if (job.part_end == 1) {
+      return roll_block_with<L, Chain::None, kQuadratic>(job, block);
+    }
+  }
+  return roll_block_with<L, Chain::Delays, kQuadratic>(job, block);
 }
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  using L = Lanes<Level, Scalar>;
-  if (job.is_quadratic) {
-    return job.lags ? roll_block_with<L, true, true>(job, block) : roll_block_with<L, false, true>(job, block);
-  }
-  return job.lags ? roll_block_with<L, true, false>(job, block) : roll_block_with<L, false, false>(job, block);
+  return job.is_quadratic ? roll_block_of<Level, true>(job, block) : roll_block_of<Level, false>(job, block);
 }
 
 }  // namespace slipwise
