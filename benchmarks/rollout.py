@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rollouts of 2048 x 100 with 15 slip parameters: steps per second and accuracy beside rivals, on one core."""
+"""Rollouts of 2048 x 100, 15 slip parameters: steps per second and accuracy beside rivals, on one core."""
 
 from __future__ import annotations
 

@@ -25,14 +25,14 @@ def slip_tangent(p: Floats, v: Any, omega: Any, dt: float) -> tuple[Any, Any, An
 
 
 def numpy_rival(p: Floats, dt: float) -> Rival:
-    """All rollouts of one period at once, float32; steps turn by the heading in their middle's arc, exactly."""
+    """All rollouts of one period at once, float32, exact steps."""
     kind = np.float32
 
     def roll(v: Floats, omega: Floats) -> Floats:
         x, y, yaw = (np.zeros(v.shape[1], kind) for _ in range(3))
         for k in range(len(v)):
             forward, left, turn = (np.asarray(a, kind) for a in slip_tangent(p, v[k], omega[k], kind(dt)))
-            a, b = arc(np, turn)
+            a, b = arc(turn)
             c, s = np.cos(yaw), np.sin(yaw)
             dx, dy = a * forward - b * left, b * forward + a * left
             x, y, yaw = x + c * dx - s * dy, y + s * dx + c * dy, yaw + turn
@@ -41,7 +41,7 @@ def numpy_rival(p: Floats, dt: float) -> Rival:
     return roll
 
 
-def arc(module: Any, turn: Any) -> tuple[Any, Any]:
+def arc(turn: Any) -> tuple[Any, Any]:
     """Return sin(f)/f and (1 - cos(f))/f of a small turn, by their series."""
     q = turn * turn
     return 1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0)), turn / 2.0 * (
@@ -112,7 +112,7 @@ def jax_rival(p: Floats, dt: float) -> Rival:
     def one(state: Any, command: Any) -> tuple[Any, None]:
         x, y, yaw = state
         forward, left, turn = slip_tangent(p, command[0], command[1], dt)
-        a, b = arc(jnp, turn)
+        a, b = arc(turn)
         c, s = jnp.cos(yaw), jnp.sin(yaw)
         dx, dy = a * forward - b * left, b * forward + a * left
         return (x + c * dx - s * dy, y + s * dx + c * dy, yaw + turn), None
@@ -131,7 +131,7 @@ def casadi_rival(p: Floats, dt: float, shape: tuple[int, int]) -> Rival:
 
     state, command = casadi.SX.sym("state", 3), casadi.SX.sym("command", 2)
     forward, left, turn = slip_tangent(p, command[0], command[1], dt)
-    a, b = arc(casadi, turn)
+    a, b = arc(turn)
     c, s = casadi.cos(state[2]), casadi.sin(state[2])
     dx, dy = a * forward - b * left, b * forward + a * left
     after = casadi.vertcat(state[0] + c * dx - s * dy, state[1] + s * dx + c * dy, state[2] + turn)

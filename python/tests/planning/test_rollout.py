@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rollouts from Python: the poses that `predict` gives, for many command sequences at once, or a clear error."""
+"""Rollouts from Python: the poses that `predict` gives, for many commands at once, or a clear error."""
 
 from __future__ import annotations
 
@@ -80,8 +80,10 @@ def test_same_bytes_for_any_number_of_threads_and_any_layout(
         rollout(model, commands, DT, outputs=("path", "end"), threads=3),
         rollout(model, fast, DT, outputs=("path", "end")),
     ):
-        assert one.path is not None and other.path is not None
-        assert one.end is not None and other.end is not None
+        assert one.path is not None
+        assert other.path is not None
+        assert one.end is not None
+        assert other.end is not None
         assert one.path.tobytes() == other.path.tobytes()
         assert one.end.tobytes() == other.end.tobytes() == one.path[:, -1].tobytes()
 
@@ -99,7 +101,8 @@ def test_buffers_are_filled_again(model: Model, commands: NDArray[np.float64]) -
     again = rollout(model, 0.5 * commands, DT, out=first)
     assert again.path is first.path
     fresh = rollout(model, 0.5 * commands, DT).path
-    assert again.path is not None and fresh is not None
+    assert again.path is not None
+    assert fresh is not None
     assert again.path.tobytes() == fresh.tobytes()
 
 
@@ -107,7 +110,8 @@ def test_costs_are_sampled_along_the_path(model: Model, commands: NDArray[np.flo
     cells = np.arange(80.0).reshape(8, 10)
     costmap = Costmap(cells, resolution=0.5, origin=(-1.0, -2.0), outside=200.0)
     found = rollout(model, commands, DT, outputs=("path", "costs"), costmap=costmap)
-    assert found.path is not None and found.costs is not None
+    assert found.path is not None
+    assert found.costs is not None
     column = np.floor((found.path[0] + 1.0) / 0.5).astype(int)
     row = np.floor((found.path[1] + 2.0) / 0.5).astype(int)
     inside = (column >= 0) & (column < 10) & (row >= 0) & (row < 8)
@@ -123,7 +127,8 @@ def test_sampled_futures_scatter_around_the_rollout(model: Model, commands: NDAr
     assert futures.shape == (3, 400, K, 2)
     assert futures.tobytes() == sample_futures(model, few, DT, samples=400, seed=1, threads=2).tobytes()
     middle = rollout(model, few, DT, covariance=True)
-    assert middle.path is not None and middle.covariance is not None
+    assert middle.path is not None
+    assert middle.covariance is not None
     spread = np.sqrt(middle.covariance[[0, 2, 5], -1])
     assert (np.abs(futures[:, :, -1].mean(axis=1) - middle.path[:, -1]) < 0.3 * spread + 1e-6).all()
 
