@@ -57,8 +57,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
 
     Args:
-        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate; those
-            of a car with a steering angle are v and v tan(angle) / wheelbase.
+        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
+            those of a car with a steering angle are v and v tan(angle) / wheelbase.
         commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`.
         dt: time that a command is held [s].
         start: where the rollouts start; by default at rest in the origin.

@@ -7,6 +7,8 @@
 
 #include "slipwise/rollout/drive_command.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 inline constexpr std::size_t kMostLanes = 64;  ///< rollouts of one block at any instruction level
@@ -91,7 +93,7 @@ struct LaneBlock {
 };
 
 /// What went wrong in a block, as bits.
-enum LaneFault : unsigned { kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2 };
+inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;
 
 /// Rolls one block out; one function per instruction level.
 template <typename Scalar>
@@ -112,3 +114,4 @@ LaneKernelOfLevel<float> avx512_kernel(float);
 LaneKernelOfLevel<double> avx512_kernel(double);
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

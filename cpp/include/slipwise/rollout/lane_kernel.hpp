@@ -11,6 +11,8 @@
 #include "slipwise/rollout/lane_slip.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 /// What a kernel is made for. None: every period is one part without lag.
@@ -24,22 +26,39 @@ struct RobotLanes {
   PathLanes<L> path;
 };
 
-/// Whether some lane is above the limit.
-template <class L, typename Scalar = typename L::Scalar>
-SLIPWISE_LANES bool any_above(const typename L::Vector& lanes, Scalar limit, std::size_t count) {
-  alignas(64) Scalar values[L::kLanes];
-  store(lanes, values);
-  bool above = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    above |= values[i] > limit;
+/// Whether some rollout turned by more than the kernel's steps can.
+template <class L, bool kWide, typename Scalar = L::Scalar>
+SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Scalar>& block) {
+  constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
+  alignas(64) Scalar squared[L::kLanes];
+  store(path.widest_squared, squared);
+  unsigned faults = kNoFault;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    faults |= squared[i] > static_cast<Scalar>(kWidest * kWidest) ? kTurnsTooFar : kNoFault;
   }
-  return above;
+  return faults;
+}
+
+/// The tangent of one part: the drive moves on, and slips.
+template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
+SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, RobotLanes<L>& robot,
+                               TangentLanes<L>& tangent) {
+  typename L::Vector mean_v;
+  typename L::Vector mean_omega;
+  advance_lag<kChain == Chain::Lags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
+  advance_lag<kChain == Chain::Lags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output,
+                                     mean_omega);
+  if constexpr (kQuadratic) {
+    quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+  } else {
+    slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+  }
 }
 
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
 [[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
@@ -62,17 +81,8 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
       read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
       ++robot.omega.next;
     }
-    typename L::Vector mean_v;
-    typename L::Vector mean_omega;
-    advance_lag<kChain == Chain::Lags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
-    advance_lag<kChain == Chain::Lags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output,
-                                       mean_omega);
     TangentLanes<L> tangent;
-    if constexpr (kQuadratic) {
-      quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
-    } else {
-      slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
-    }
+    drive_part<L, kChain, kQuadratic>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);
     if constexpr (kChain == Chain::None) {
       output.write_period(robot.path, period);
@@ -102,12 +112,10 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
     }
   }
   output.write_end(robot.path);
-  constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
-  const bool too_far = any_above<L>(robot.path.widest_squared, static_cast<Scalar>(kWidest * kWidest), block.count);
-  return (too_far ? kTurnsTooFar : kNoFault) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
+  return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, Chain kChain, bool kQuadratic, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const unsigned fault = roll_block_as<L, kChain, kQuadratic, false>(job, block);
   return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kChain, kQuadratic, true>(job, block);
@@ -133,3 +141,4 @@ unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) 
 }
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)
