@@ -60,7 +60,7 @@ std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool nex
 }  // namespace
 
 ChainSchedule schedule_chain(const CommandChain& chain, double period) {
-  if (!(period > 0.0 && std::isfinite(period))) {
+  if (!(period > 0.0) || !std::isfinite(period)) {
     throw std::invalid_argument("the time between two commands must be a positive number of seconds, got " +
                                 std::to_string(period));
   }

@@ -62,9 +62,8 @@ template <typename Scalar, typename Vector>
 [[gnu::always_inline]] inline void lane_arc(const Vector& f, LaneArc<Vector>& arc) {
   const Vector q = f * f;
   if constexpr (std::is_same_v<Scalar, float>) {
-    using namespace lane_series;
-    arc.a = kFloatA[0] + q * (kFloatA[1] + q * kFloatA[2]);
-    arc.b = f * (kFloatB[0] + q * (kFloatB[1] + q * kFloatB[2]));
+    arc.a = lane_series::kFloatA[0] + q * (lane_series::kFloatA[1] + q * lane_series::kFloatA[2]);
+    arc.b = f * (lane_series::kFloatB[0] + q * (lane_series::kFloatB[1] + q * lane_series::kFloatB[2]));
   } else {
     constexpr std::size_t kLast = 6;
     Vector a = Vector{} + lane_series::kDoubleA[kLast];

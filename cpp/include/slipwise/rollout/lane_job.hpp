@@ -75,9 +75,6 @@ struct LaneJob {
 /// Some neighbouring rollouts and where they start, one a lane.
 template <typename Scalar>
 struct LaneBlock {
-  std::size_t first;
-  std::size_t count;
-  bool side_by_side;  ///< a period's commands can be read as they lie
   alignas(64) Scalar x[kMostLanes];
   alignas(64) Scalar y[kMostLanes];
   alignas(64) Scalar theta[kMostLanes];
@@ -90,6 +87,9 @@ struct LaneBlock {
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first
   std::size_t past_count;    ///< of one start
   std::size_t past_stride;   ///< from one rollout's to the next one's
+  std::size_t first;
+  std::size_t count;
+  bool side_by_side;  ///< a period's commands can be read as they lie
 };
 
 /// What went wrong in a block, as bits.

@@ -105,11 +105,11 @@ class OutputLanes {
     }
   }
 
-  const LaneJob<Scalar>& job_;
-  const LaneBlock<Scalar>& block_;
   alignas(64) Scalar sum_[L::kLanes];
   alignas(64) Scalar highest_[L::kLanes];
   alignas(64) Scalar lowest_[L::kLanes];
+  const LaneJob<Scalar>& job_;
+  const LaneBlock<Scalar>& block_;
 };
 
 }  // namespace slipwise
