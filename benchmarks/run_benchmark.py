@@ -35,6 +35,7 @@ BENCHMARKS = (
     Benchmark("benchmark_logs", "Opening logs", quick=("--repeats", "1")),
     Benchmark("kernel", "The kernel, timed in C++", has_figures=False),
     Benchmark("filter_speed", "The filter beside numpy and filterpy", quick=("--quick",)),
+    Benchmark("rollout", "Rollouts for planners, beside rivals", quick=("--quick",)),
     Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
     Benchmark("real_logs", "The score on real logs", needs_data=True),
     Benchmark("surfaces", "Slip surfaces: time and held-out scores", quick=("--quick",)),

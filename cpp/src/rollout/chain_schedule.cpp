@@ -14,6 +14,7 @@ namespace slipwise {
 namespace {
 
 constexpr double kMostPeriods = 1e6;  // that a command may take to act
+constexpr double kSameStep = 1e-6;    // a stretch longer than whole steps by no more than rounding gets no other step
 constexpr double kSamePart = 1e-9;    // of a period: delays that differ by less act together
 
 /// A channel's delay: whole periods, and the time within a period at which a command begins to act.
@@ -48,7 +49,8 @@ std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool nex
     return {};
   }
   const bool lags = chain.lag_v > 0.0 || chain.lag_omega > 0.0;
-  const int count = lags ? std::max(1, static_cast<int>(std::ceil(duration / DriveWindow{}.longest_step))) : 1;
+  const int count =
+      lags ? std::max(1, static_cast<int>(std::ceil(duration / DriveWindow{}.longest_step - kSameStep))) : 1;
   const double part = duration / count;
   std::vector<PeriodPart> parts(static_cast<std::size_t>(count),
                                 {part, false, false, share_of(chain.lag_v, part), share_of(chain.lag_omega, part)});
@@ -60,9 +62,14 @@ std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool nex
 }  // namespace
 
 ChainSchedule schedule_chain(const CommandChain& chain, double period) {
-  if (!(period > 0.0 && std::isfinite(period))) {
+  if (!(period > 0.0) || !std::isfinite(period)) {
     throw std::invalid_argument("the time between two commands must be a positive number of seconds, got " +
                                 std::to_string(period));
+  }
+  if (chain.slow_lag_v > 0.0 || chain.slow_lag_omega > 0.0 || chain.gain_v != 1.0 || chain.gain_omega != 1.0) {
+    throw std::invalid_argument(
+        "rollouts have no gain and no slow part in their chain, as this model has; learn one without: [auto] cascade = "
+        "false");
   }
   const Delay v = split_delay(chain.delay_v + chain.clock_offset, period);
   const Delay omega = split_delay(chain.delay_omega + chain.clock_offset, period);

@@ -14,7 +14,7 @@ void check_costmap(const Costmap& map) {
                                 " cells cannot hold " + std::to_string(map.cells.size()) +
                                 " cells; give rows * columns, at least one");
   }
-  if (!(map.resolution > 0.0 && std::isfinite(map.resolution))) {
+  if (!(map.resolution > 0.0) || !std::isfinite(map.resolution)) {
     throw std::invalid_argument("a costmap's resolution must be a positive number of metres per cell, got " +
                                 std::to_string(map.resolution));
   }

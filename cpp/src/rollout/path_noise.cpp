@@ -19,7 +19,7 @@ void check_uncertainty(const UncertainModel& model) {
                                 " parameters");
   }
   if (!covariance.allFinite() || !uncertainty.scale.allFinite() || (uncertainty.scale.array() < 0.0).any() ||
-      !(uncertainty.growth >= 0.0 && std::isfinite(uncertainty.growth))) {
+      !(uncertainty.growth >= 0.0) || !std::isfinite(uncertainty.growth)) {
     throw std::invalid_argument("the covariance, its scale and its growth must be finite, and no scale negative");
   }
 }

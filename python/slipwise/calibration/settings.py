@@ -97,6 +97,7 @@ class AutoTable(_Section):
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
     learning_rate: Positive = _AVERAGE.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.share
+    cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
 
 
 class WindowTable(_Section):

@@ -28,7 +28,8 @@ def learning_pass(
     observer: Observer | None = None,
 ) -> CausalPass | StructureChoice:
     """Return the pass that learns `average`; `auto` also tries the cascade where wheel speeds allow it."""
-    if settings.basis == "auto" and average.model.dynamics and has_wheels(windows.drive):
+    tries = settings.basis == "auto" and settings.auto.cascade
+    if tries and average.model.dynamics and has_wheels(windows.drive):
         return StructureChoice(average, windows, settings, observer)
     return CausalPass(average, windows, observer)
 

@@ -13,7 +13,7 @@ from slipwise.planning.rollout import check_threads, checked_commands, uncertain
 from slipwise.planning.start import Start
 
 
-def sample_futures(
+def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     model: Model,
     commands: ArrayLike,
     dt: float,
@@ -23,10 +23,10 @@ def sample_futures(
     start: Start | None = None,
     threads: int = 1,
 ) -> NDArray[np.float64]:
-    """Draw poses [3, S, K, N]: x, y [m] and yaw [rad] at the end of each period, for S samples of every rollout.
+    """Draw S samples of every rollout: x, y [m] and yaw [rad] after each period, [3, S, K, N].
 
-    A sample drives all commands with parameters of its own; each of its rollouts has slip noise of its own. Both
-    are widened as held-out predictions at the rollouts' end needed. The same seed gives the same bytes.
+    A sample drives all commands with parameters of its own; each of its rollouts has slip noise of its own.
+    Both are widened as held-out predictions at the rollouts' end needed. The same seed gives the same bytes.
 
     Args:
         model: a learned model.

@@ -46,7 +46,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     dt: float,
     *,
     start: Start | None = None,
-    outputs: Collection[Output] = ("path",),
+    outputs: Collection[str] = ("path",),
     costmap: Costmap | None = None,
     covariance: bool = False,
     threads: int = 1,
@@ -57,8 +57,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
 
     Args:
-        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate; those of
-            a car with a steering angle are v and v tan(angle) / wheelbase.
+        model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
+            those of a car with a steering angle are v and v tan(angle) / wheelbase.
         commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`.
         dt: time that a command is held [s].
         start: where the rollouts start; by default at rest in the origin.
@@ -182,7 +182,7 @@ def _buffer(
         or not given.flags.writeable
     ):
         raise SettingsError(
-            f"the array for {name} has shape {given.shape} and type {given.dtype} where {shape} and {dtype} are needed",
-            advice="give results of a call with as many rollouts and periods",
+            f"the array for {name} has shape {given.shape} and type {given.dtype}",
+            advice=f"give one of shape {shape} and type {dtype}, in one piece",
         )
     return given

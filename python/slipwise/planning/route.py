@@ -55,6 +55,7 @@ class Route:
     trajectory: Trajectory
     legs: int  # of which it is put together
     covariance: Floats  # [K, 3, 3] of x, y [m^2], yaw, in the frame of the start; see `slipwise.predict`
+    dof: Floats  # [K] degrees of freedom of the Student t with these covariances
     times: Floats  # [K] s, of the covariances
     predicted: Floats  # [K, 3] x, y, yaw in the map's frame at these times
     clearance: float  # m, least distance between the robot's disc and what is occupied
@@ -202,6 +203,7 @@ class RoutePlanner:
             trajectory=whole,
             legs=len(node.legs),
             covariance=path.covariance,
+            dof=path.dof,
             times=path.t,
             predicted=poses,
             clearance=self._room(poses),

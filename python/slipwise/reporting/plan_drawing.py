@@ -51,7 +51,12 @@ def ellipses(plan: Plan) -> list[Floats]:
     cos, sin = np.cos(plan.start[2]), np.sin(plan.start[2])
     turned = np.array([[cos, -sin], [sin, cos]])
     found = (
-        ellipse(route.predicted[row, :2], turned @ route.covariance[row, :2, :2] @ turned.T) for row in rows
+        ellipse(
+            route.predicted[row, :2],
+            turned @ route.covariance[row, :2, :2] @ turned.T,
+            float(route.dof[row]),
+        )
+        for row in rows
     )
     return [curve for curve in found if curve is not None]
 

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from slipwise.planning.trajectory import pose_text
-from slipwise.reporting.ellipse import RADIUS_95
 from slipwise.reporting.figure import Figure, axis, numbers
 from slipwise.reporting.markup import bullets, legend, number
 from slipwise.reporting.page import Part, page_of
@@ -23,6 +22,7 @@ from slipwise.reporting.plan_drawing import (
     extent,
     outline,
 )
+from slipwise.student import ellipse_squared
 
 HIGHEST = 900  # px
 
@@ -47,6 +47,7 @@ def plan_page(plan: Plan) -> str:
 def summary(plan: Plan) -> list[str]:
     """Return the plan in a few sentences."""
     route = plan.route
+    radius = np.sqrt(ellipse_squared(0.95, float(route.dof[-1])))
     spread = np.sqrt(np.linalg.eigvalsh(route.covariance[-1][:2, :2]).max())
     pieces = "one manoeuvre" if route.legs == 1 else f"{route.legs} manoeuvres, one after the other"
     end = route.predicted[-1]
@@ -56,7 +57,7 @@ def summary(plan: Plan) -> list[str]:
     )
     where = (
         f"The predicted end is {pose_text((float(end[0]), float(end[1]), float(end[2])))}; its longest 95 % "
-        f"half-axis is {number(RADIUS_95 * float(spread))} m."
+        f"half-axis is {number(radius * float(spread))} m."
     )
     room = (
         f"The robot's disc of {number(plan.radius)} m keeps at least {number(route.clearance)} m from what "

@@ -114,7 +114,7 @@ def test_the_readme_table_of_real_logs_has_its_columns() -> None:
 
 def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     derivations, settings = read("derivations.md"), " ".join(read("settings.md").split())
-    header = (ROOT / "cpp/include/slipwise/segment/segment_covariance.hpp").read_text(encoding="utf-8")
+    header = (ROOT / "cpp/include/slipwise/motion/motion_noise.hpp").read_text(encoding="utf-8")
     turn, straight = (re.search(rf"{name} = ([\d.]+)", header) for name in ("kTurnRadius", "kStraightRadius"))
     assert turn is not None
     assert straight is not None

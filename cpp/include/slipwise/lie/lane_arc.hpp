@@ -12,6 +12,8 @@ inline constexpr double kWidestLaneTurn = 1e5;  ///< beyond it, whole turns cann
 
 namespace lane_series {
 
+// Plain arrays: see rollout/lane_job.hpp.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 /// Series in q = f^2 of sin(f)/f and (1 - cos(f))/f^2, exact to rounding for q <= kLaneTurn^2. Those of float are
 /// economised: their q^3 is replaced by the polynomial of second degree that is nearest on that range (Chebyshev).
 inline constexpr double kQ = kLaneTurn * kLaneTurn;
@@ -23,6 +25,8 @@ inline constexpr double kDoubleA[] = {1.0,           -1.0 / 6,        1.0 / 120,
                                       1.0 / 362880., -1.0 / 39916800, 1.0 / 6227020800.};
 inline constexpr double kDoubleB[] = {1.0 / 2,        -1.0 / 24,         1.0 / 720,         -1.0 / 40320,
                                       1.0 / 3628800., -1.0 / 479001600., 1.0 / 87178291200.};
+
+// NOLINTEND(modernize-avoid-c-arrays)
 
 /// A whole turn in three parts of few digits, so that multiples of the first two are exact (Cody and Waite 1980), and
 /// the number whose addition rounds to an integer.
@@ -58,9 +62,8 @@ template <typename Scalar, typename Vector>
 [[gnu::always_inline]] inline void lane_arc(const Vector& f, LaneArc<Vector>& arc) {
   const Vector q = f * f;
   if constexpr (std::is_same_v<Scalar, float>) {
-    using namespace lane_series;
-    arc.a = kFloatA[0] + q * (kFloatA[1] + q * kFloatA[2]);
-    arc.b = f * (kFloatB[0] + q * (kFloatB[1] + q * kFloatB[2]));
+    arc.a = lane_series::kFloatA[0] + q * (lane_series::kFloatA[1] + q * lane_series::kFloatA[2]);
+    arc.b = f * (lane_series::kFloatB[0] + q * (lane_series::kFloatB[1] + q * lane_series::kFloatB[2]));
   } else {
     constexpr std::size_t kLast = 6;
     Vector a = Vector{} + lane_series::kDoubleA[kLast];

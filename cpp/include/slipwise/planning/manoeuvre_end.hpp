@@ -50,7 +50,7 @@ Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, co
 /// The way there.
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                              const DriveStart& start);
-/// Its end with the derivative (derivations.md, section 14).
+/// Its end with the derivative (derivations.md, section 15).
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const DriveStart& start);
 

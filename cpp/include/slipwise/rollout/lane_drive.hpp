@@ -6,6 +6,8 @@
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 inline constexpr std::size_t kLineBytes = 64;  ///< of the processor's cache
@@ -19,7 +21,7 @@ struct CommandSource {
 };
 
 /// Gathers commands one by one: those that do not lie side by side, and those that were sent before the start.
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 [[gnu::noinline]] void gather_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                        const CommandSource<Scalar>& source, std::ptrdiff_t period, Scalar* gathered) {
   const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(block.past_count) + period;
@@ -36,7 +38,7 @@ template <class L, typename Scalar = typename L::Scalar>
 }
 
 /// Reads the commands that a period brings; those before the first period were sent before the start.
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t period,
                                   typename L::Vector& command) {
@@ -70,12 +72,12 @@ SLIPWISE_LANES void advance_lag(const Vector& input, Scalar mean_gap, Scalar end
 /// One channel of the drive: the command that acts, and the lag's output.
 template <class L>
 struct ChannelLanes {
-  typename L::Vector input;
-  typename L::Vector output;
+  L::Vector input;
+  L::Vector output;
   std::ptrdiff_t next;  ///< the period whose command acts next
 };
 
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t shift, ChannelLanes<L>& channel) {
   channel.next = -shift;
@@ -84,3 +86,4 @@ SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Sc
 }
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

@@ -7,6 +7,8 @@
 
 #include "slipwise/rollout/drive_command.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 inline constexpr std::size_t kMostLanes = 64;  ///< rollouts of one block at any instruction level
@@ -73,9 +75,6 @@ struct LaneJob {
 /// Some neighbouring rollouts and where they start, one a lane.
 template <typename Scalar>
 struct LaneBlock {
-  std::size_t first;
-  std::size_t count;
-  bool side_by_side;  ///< a period's commands can be read as they lie
   alignas(64) Scalar x[kMostLanes];
   alignas(64) Scalar y[kMostLanes];
   alignas(64) Scalar theta[kMostLanes];
@@ -88,10 +87,13 @@ struct LaneBlock {
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first
   std::size_t past_count;    ///< of one start
   std::size_t past_stride;   ///< from one rollout's to the next one's
+  std::size_t first;
+  std::size_t count;
+  bool side_by_side;  ///< a period's commands can be read as they lie
 };
 
 /// What went wrong in a block, as bits.
-enum LaneFault : unsigned { kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2 };
+inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;
 
 /// Rolls one block out; one function per instruction level.
 template <typename Scalar>
@@ -112,3 +114,4 @@ LaneKernelOfLevel<float> avx512_kernel(float);
 LaneKernelOfLevel<double> avx512_kernel(double);
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

@@ -2,6 +2,8 @@
 // The rollout of one block of lanes: command chain, slip, exact steps, outputs. Compiled once per instruction level.
 #pragma once
 
+#include <cstdint>
+
 #include "slipwise/rollout/lane_drive.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
@@ -9,7 +11,12 @@
 #include "slipwise/rollout/lane_slip.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
+
+/// What a kernel is made for. None: every period is one part without lag.
+enum class Chain : std::uint8_t { None, Delays, Lags };
 
 /// A robot in every lane: its drive and where it is.
 template <class L>
@@ -19,22 +26,39 @@ struct RobotLanes {
   PathLanes<L> path;
 };
 
-/// Whether some lane is above the limit.
-template <class L, typename Scalar = typename L::Scalar>
-SLIPWISE_LANES bool any_above(const typename L::Vector& lanes, Scalar limit, std::size_t count) {
-  alignas(64) Scalar values[L::kLanes];
-  store(lanes, values);
-  bool above = false;
-  for (std::size_t i = 0; i < count; ++i) {
-    above |= values[i] > limit;
+/// Whether some rollout turned by more than the kernel's steps can.
+template <class L, bool kWide, typename Scalar = L::Scalar>
+SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Scalar>& block) {
+  constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
+  alignas(64) Scalar squared[L::kLanes];
+  store(path.widest_squared, squared);
+  unsigned faults = kNoFault;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    faults |= squared[i] > static_cast<Scalar>(kWidest * kWidest) ? kTurnsTooFar : kNoFault;
   }
-  return above;
+  return faults;
+}
+
+/// The tangent of one part: the drive moves on, and slips.
+template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
+SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, RobotLanes<L>& robot,
+                               TangentLanes<L>& tangent) {
+  typename L::Vector mean_v;
+  typename L::Vector mean_omega;
+  advance_lag<kChain == Chain::Lags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
+  advance_lag<kChain == Chain::Lags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output,
+                                     mean_omega);
+  if constexpr (kQuadratic) {
+    quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+  } else {
+    slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+  }
 }
 
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
 [[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
@@ -49,25 +73,22 @@ template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = ty
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
-    if (part.next_v) {
+    if (kChain == Chain::None || part.next_v) {
       read_commands<L>(job, block, source_v, robot.v.next, robot.v.input);
       ++robot.v.next;
     }
-    if (part.next_omega) {
+    if (kChain == Chain::None || part.next_omega) {
       read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
       ++robot.omega.next;
     }
-    typename L::Vector mean_v;
-    typename L::Vector mean_omega;
-    advance_lag<kLags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
-    advance_lag<kLags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output, mean_omega);
     TangentLanes<L> tangent;
-    if constexpr (kQuadratic) {
-      quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
-    } else {
-      slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
-    }
+    drive_part<L, kChain, kQuadratic>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);
+    if constexpr (kChain == Chain::None) {
+      output.write_period(robot.path, period);
+      ++period;
+      continue;
+    }
     ++i;
     if (i == job.part_end) {
       output.write_period(robot.path, period);
@@ -91,24 +112,33 @@ template <class L, bool kLags, bool kQuadratic, bool kWide, typename Scalar = ty
     }
   }
   output.write_end(robot.path);
-  constexpr double kWidest = kWide ? kWidestLaneTurn : kLaneTurn;
-  const bool too_far = any_above<L>(robot.path.widest_squared, static_cast<Scalar>(kWidest * kWidest), block.count);
-  return (too_far ? kTurnsTooFar : kNoFault) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
+  return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, bool kLags, bool kQuadratic, typename Scalar = typename L::Scalar>
+template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const unsigned fault = roll_block_as<L, kLags, kQuadratic, false>(job, block);
-  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kLags, kQuadratic, true>(job, block);
+  const unsigned fault = roll_block_as<L, kChain, kQuadratic, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kChain, kQuadratic, true>(job, block);
+}
+
+template <class Level, bool kQuadratic, typename Scalar>
+unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+  using L = Lanes<Level, Scalar>;
+  if (job.lags) {
+    return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
+  }
+  if constexpr (Level::kSingleLoop) {
+    if (job.part_end == 1) {
+      return roll_block_with<L, Chain::None, kQuadratic>(job, block);
+    }
+  }
+  return roll_block_with<L, Chain::Delays, kQuadratic>(job, block);
 }
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  using L = Lanes<Level, Scalar>;
-  if (job.is_quadratic) {
-    return job.lags ? roll_block_with<L, true, true>(job, block) : roll_block_with<L, false, true>(job, block);
-  }
-  return job.lags ? roll_block_with<L, true, false>(job, block) : roll_block_with<L, false, false>(job, block);
+  return job.is_quadratic ? roll_block_of<Level, true>(job, block) : roll_block_of<Level, false>(job, block);
 }
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

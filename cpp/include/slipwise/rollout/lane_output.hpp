@@ -6,12 +6,14 @@
 #include "slipwise/rollout/lane_path.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 template <class L>
 class OutputLanes {
  public:
-  using Scalar = typename L::Scalar;
+  using Scalar = L::Scalar;
 
   SLIPWISE_LANES OutputLanes(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) : job_(job), block_(block) {
     for (std::size_t i = 0; i < L::kLanes; ++i) {
@@ -58,7 +60,7 @@ class OutputLanes {
 
  private:
   /// Writes a row that is counted from the start.
-  SLIPWISE_LANES void write(const typename L::Vector& row, const Scalar* start, Scalar* to, std::size_t at) const {
+  SLIPWISE_LANES void write(const L::Vector& row, const Scalar* start, Scalar* to, std::size_t at) const {
     if (to == nullptr) {
       return;
     }
@@ -103,11 +105,12 @@ class OutputLanes {
     }
   }
 
-  const LaneJob<Scalar>& job_;
-  const LaneBlock<Scalar>& block_;
   alignas(64) Scalar sum_[L::kLanes];
   alignas(64) Scalar highest_[L::kLanes];
   alignas(64) Scalar lowest_[L::kLanes];
+  const LaneJob<Scalar>& job_;
+  const LaneBlock<Scalar>& block_;
 };
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

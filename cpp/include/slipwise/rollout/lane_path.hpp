@@ -12,13 +12,13 @@ namespace slipwise {
 /// Displacements from the start, so that far from the map's origin no digits are lost.
 template <class L>
 struct PathLanes {
-  typename L::Vector x, y;
-  typename L::Vector turned;
-  typename L::Vector cosine, sine;    ///< of the heading
-  typename L::Vector widest_squared;  ///< largest squared turn of a step
+  L::Vector x, y;
+  L::Vector turned;
+  L::Vector cosine, sine;    ///< of the heading
+  L::Vector widest_squared;  ///< largest squared turn of a step
 };
 
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_path(const LaneBlock<Scalar>& block, PathLanes<L>& path) {
   fill(typename L::Scalar{}, path.x);
   path.y = path.turned = path.widest_squared = path.x;

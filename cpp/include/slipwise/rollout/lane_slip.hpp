@@ -6,25 +6,27 @@
 #include "slipwise/rollout/lanes.hpp"
 #include "slipwise/rollout/slip_factor.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 template <class L>
 struct TangentLanes {
-  typename L::Vector forward;  ///< [m]
-  typename L::Vector left;     ///< [m]
-  typename L::Vector turn;     ///< [rad]
+  L::Vector forward;  ///< [m]
+  L::Vector left;     ///< [m]
+  L::Vector turn;     ///< [rad]
 };
 
 /// The factors of one state in every lane.
 template <class L>
 struct FactorLanes {
-  typename L::Vector value[kSlipFactors];
+  L::Vector value[kSlipFactors];
 };
 
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
                                  const typename L::Vector& omega, FactorLanes<L>& factors) {
-  using Vector = typename L::Vector;
+  using Vector = L::Vector;
   const unsigned used = job.factors;
   Vector one;
   fill(static_cast<Scalar>(1), one);
@@ -49,7 +51,7 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::V
 }
 
 /// Adds a product to the channels that it has a share in: bits 1, 2 and 4.
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& product, const Scalar* share,
                                TangentLanes<L>& tangent) {
   switch (channels) {  // the same way in every period: one well-predicted jump
@@ -86,10 +88,10 @@ SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& prod
 
 /// A program of second degree in speed and curvature (thesis 5.1), nested so that no product is needed by itself:
 /// kappa (kappa a + (V b + c)) + V (V d + e), with the yaw rate in the turn.
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
                                       const typename L::Vector& omega, TangentLanes<L>& tangent) {
-  using Vector = typename L::Vector;
+  using Vector = L::Vector;
   const Vector kappa = (omega * v) / (v * v + job.squared_curvature_speed);
   const Scalar* a = shares + 3 * job.quadratic.curvature_squared;
   const Scalar* b = shares + 3 * job.quadratic.speed_by_curvature;
@@ -103,7 +105,7 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
 }
 
 /// Runs the program: each product is an earlier one times a factor, and has its shares in the tangent.
-template <class L, typename Scalar = typename L::Scalar>
+template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
                                  const typename L::Vector& omega, TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
@@ -124,3 +126,4 @@ SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* share
 }
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

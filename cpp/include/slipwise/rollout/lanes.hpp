@@ -34,7 +34,7 @@ struct Paired<Vector, 0> {
 template <class Level, typename Number>
 struct Lanes {
   using Scalar = Number;
-  using Vector = typename Paired<typename NativeVector<Scalar, Level::kBytes>::Type, Level::kPairs>::Type;
+  using Vector = Paired<typename NativeVector<Scalar, Level::kBytes>::Type, Level::kPairs>::Type;
   static constexpr std::size_t kLanes = sizeof(Vector) / sizeof(Scalar);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How uncertain the poses of rollouts are: parameters and slip noise (derivations.md, section 14).
+// How uncertain the poses of rollouts are: parameters and slip noise (derivations.md, section 16).
 #pragma once
 
 #include <span>

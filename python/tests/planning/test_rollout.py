@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rollouts from Python: the poses that `predict` gives, for many commands at once, or a clear error."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core
+from slipwise.calibration import calibrate, make_settings
+from slipwise.errors import ModelError, SettingsError
+from slipwise.models import Model, load_model
+from slipwise.planning import Costmap, Start, command_buffer, rollout, sample_futures
+from slipwise.prediction import predict
+
+N, K, DT = 20, 30, 0.1
+
+
+def learned(basis: str) -> Model:
+    log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
+    return calibrate(log, input_name="command", settings=make_settings({"basis": basis})).model
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    return learned("auto")
+
+
+@pytest.fixture(scope="module")
+def commands() -> NDArray[np.float64]:
+    random = np.random.default_rng(5)
+    return np.stack((random.uniform(0.3, 1.2, (N, K)), random.uniform(-0.6, 0.6, (N, K))), axis=2)
+
+
+def poses_of_predict(model: Model, commands: NDArray[np.float64], n: int) -> tuple[Any, Any]:
+    """The path of one rollout as `predict` gives it, after standing still for long enough."""
+    before = np.arange(-20, 0) * DT
+    rows = np.column_stack(
+        (np.concatenate((before, np.arange(K) * DT)), np.vstack((np.zeros((20, 2)), commands[n])))
+    )
+    path = predict(model, rows, horizon=K * DT, start=0.0, initial=(0.0, 0.0))
+    return path.poses[1:], path.covariance[1:]
+
+
+def test_rollouts_are_predictions(model: Model, commands: NDArray[np.float64]) -> None:
+    start = Start(past=np.zeros((20, 2)))
+    for dtype, tolerance in ((np.float64, 1e-9), (np.float32, 2e-5)):
+        path = rollout(model, commands, DT, start=start, dtype=dtype).path
+        assert path is not None
+        assert path.shape == (3, K, N)
+        for n in (0, 7, N - 1):
+            expected, _ = poses_of_predict(model, commands, n)
+            assert path[:, -1, n] == pytest.approx(expected[-1], abs=tolerance)
+
+
+def test_covariance_is_that_of_a_prediction_without_pose_noise(
+    model: Model, commands: NDArray[np.float64]
+) -> None:
+    noise = model.content.noise.model_copy(update={"pose_std_xy": 0.0, "pose_std_yaw": 0.0})
+    exact = Model(model.content.model_copy(update={"noise": noise}))
+    found = rollout(exact, commands, DT, start=Start(past=np.zeros((20, 2))), covariance=True).covariance
+    assert found is not None
+    assert found.shape == (6, K, N)
+    _, expected = poses_of_predict(exact, commands, 3)
+    rows, columns = [0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]
+    assert found[:, -1, 3] == pytest.approx(expected[-1][rows, columns], rel=0.05, abs=1e-5)
+
+
+def test_same_bytes_for_any_number_of_threads_and_any_layout(
+    model: Model, commands: NDArray[np.float64]
+) -> None:
+    one = rollout(model, commands, DT, outputs=("path", "end"))
+    fast = command_buffer(N, K, np.float64)
+    fast[:] = commands
+    for other in (
+        rollout(model, commands, DT, outputs=("path", "end"), threads=3),
+        rollout(model, fast, DT, outputs=("path", "end")),
+    ):
+        assert one.path is not None
+        assert other.path is not None
+        assert one.end is not None
+        assert other.end is not None
+        assert one.path.tobytes() == other.path.tobytes()
+        assert one.end.tobytes() == other.end.tobytes() == one.path[:, -1].tobytes()
+
+
+def test_every_instruction_level_gives_the_same_poses(model: Model, commands: NDArray[np.float64]) -> None:
+    levels = _core.instruction_levels()
+    assert levels[0] == "portable"
+    portable = rollout(model, commands, DT, level="portable").path
+    for level in levels:
+        assert rollout(model, commands, DT, level=level).path == pytest.approx(portable, abs=1e-10)
+
+
+def test_buffers_are_filled_again(model: Model, commands: NDArray[np.float64]) -> None:
+    first = rollout(model, commands, DT)
+    again = rollout(model, 0.5 * commands, DT, out=first)
+    assert again.path is first.path
+    fresh = rollout(model, 0.5 * commands, DT).path
+    assert again.path is not None
+    assert fresh is not None
+    assert again.path.tobytes() == fresh.tobytes()
+
+
+def test_costs_are_sampled_along_the_path(model: Model, commands: NDArray[np.float64]) -> None:
+    cells = np.arange(80.0).reshape(8, 10)
+    costmap = Costmap(cells, resolution=0.5, origin=(-1.0, -2.0), outside=200.0)
+    found = rollout(model, commands, DT, outputs=("path", "costs"), costmap=costmap)
+    assert found.path is not None
+    assert found.costs is not None
+    column = np.floor((found.path[0] + 1.0) / 0.5).astype(int)
+    row = np.floor((found.path[1] + 2.0) / 0.5).astype(int)
+    inside = (column >= 0) & (column < 10) & (row >= 0) & (row < 8)
+    cost = np.where(inside, cells[row.clip(0, 7), column.clip(0, 9)], 200.0)
+    assert found.costs[0] == pytest.approx(cost.sum(axis=0))
+    assert found.costs[1] == pytest.approx(cost.max(axis=0))
+    assert found.costs[2] == pytest.approx(cost.min(axis=0))
+
+
+def test_sampled_futures_scatter_around_the_rollout(model: Model, commands: NDArray[np.float64]) -> None:
+    few = commands[:2]
+    futures = sample_futures(model, few, DT, samples=400, seed=1)
+    assert futures.shape == (3, 400, K, 2)
+    assert futures.tobytes() == sample_futures(model, few, DT, samples=400, seed=1, threads=2).tobytes()
+    middle = rollout(model, few, DT, covariance=True)
+    assert middle.path is not None
+    assert middle.covariance is not None
+    spread = np.sqrt(middle.covariance[[0, 2, 5], -1])
+    assert (np.abs(futures[:, :, -1].mean(axis=1) - middle.path[:, -1]) < 0.3 * spread + 1e-6).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"commands": np.zeros((0, 5, 2))}, "at least one rollout"),
+        ({"commands": np.zeros((5, 2))}, r"shape \(5, 2\)"),
+        ({"commands": "fast"}, "no array of numbers"),
+        ({"commands": np.full((2, 3, 2), np.nan)}, "rollout 0 over period 0 is not finite"),
+        ({"dt": 0.0}, "must be a positive number of seconds"),
+        ({"dt": np.nan}, "must be a positive number of seconds"),
+        ({"threads": 0}, "0 threads"),
+        ({"dtype": np.int32}, "int32"),
+        ({"level": "sse9"}, "unknown instruction level"),
+        ({"outputs": ("poses",)}, "unknown output 'poses'"),
+        ({"outputs": ("costs",)}, "costs need a costmap"),
+        ({"start": Start(pose=np.zeros((3, 3)))}, "3 starts for 20 rollouts"),
+        ({"start": Start(pose=(0.0, np.inf, 0.0))}, "pose is not finite"),
+        ({"start": Start(drive=(1.0,))}, "drive has shape"),
+        ({"start": Start(past=np.zeros(3))}, "past has shape"),
+    ],
+)
+def test_what_cannot_be_rolled_out_is_refused(
+    model: Model, commands: NDArray[np.float64], change: dict[str, Any], words: str
+) -> None:
+    arguments = {"commands": commands, "dt": DT} | change
+    with pytest.raises(SettingsError, match=words):
+        rollout(model, **arguments)
+
+
+def test_buffers_of_another_shape_are_refused(model: Model, commands: NDArray[np.float64]) -> None:
+    small = rollout(model, commands[:3], DT)
+    with pytest.raises(SettingsError, match="array for path has shape"):
+        rollout(model, commands, DT, out=small)
+
+
+@pytest.mark.parametrize(
+    "fault", [{"resolution": 0.0}, {"cells": np.zeros((0, 3))}, {"origin": (np.nan, 0.0)}]
+)
+def test_wrong_costmaps_are_refused(
+    model: Model, commands: NDArray[np.float64], fault: dict[str, Any]
+) -> None:
+    costmap = Costmap(**({"cells": np.zeros((2, 3)), "resolution": 0.1} | fault))
+    with pytest.raises(SettingsError, match="costmap"):
+        rollout(model, commands, DT, outputs=("costs",), costmap=costmap)
+
+
+def test_a_model_of_another_schema_is_refused_before_it_can_be_rolled_out(
+    model: Model, tmp_path: Any
+) -> None:
+    path = model.save(tmp_path / "model.yaml")
+    path.write_text(path.read_text().replace("slipwise_model: 1", "slipwise_model: 99"))
+    with pytest.raises(ModelError, match="schema version 99"):
+        load_model(path)
