@@ -15,7 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.start import Start
-from slipwise.prediction import growth_at
+from slipwise.prediction import tail_at
 
 Numbers = NDArray[Any]  # float32 or float64
 Output = Literal["path", "end", "costs"]
@@ -139,7 +139,7 @@ def check_threads(threads: int) -> None:
 def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
     scale = np.array(model.content.noise.scale)
-    growth = growth_at(model, horizon)
+    growth = tail_at(model, horizon).growth
     return _core.UncertainModel(
         model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity
     )
@@ -152,8 +152,8 @@ def _covariance(
     result = np.empty((6, periods, rollouts))
     unit = uncertain(model, dt, start.gravity, dt)
     _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
-    at_one_period = growth_at(model, dt)
-    growth = np.array([growth_at(model, dt * (k + 1)) / at_one_period for k in range(periods)])
+    at_one_period = tail_at(model, dt).growth
+    growth = np.array([tail_at(model, dt * (k + 1)).growth / at_one_period for k in range(periods)])
     result *= growth[:, None]
     return result
 
