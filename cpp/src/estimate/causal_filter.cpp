@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/estimate/heavy_tails.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kTailDegrees = 5.0;  // degrees of freedom of the predictive Student-t: real residuals have heavy tails
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
 Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
@@ -52,6 +53,15 @@ void CausalFilter::follow(const ReferenceSpeeds& speeds) {
 Eigen::VectorXd CausalFilter::prior_std() const {
   Estimate prior = prior_estimate(model_, speeds_, settings_.prior);
   return prior.covariance.diagonal().cwiseSqrt();
+}
+
+void CausalFilter::forget(double share) {
+  const Eigen::Index slip = model_.slip_size();
+  const double keep = std::sqrt(1.0 - share);
+  estimate_.covariance.topRows(slip) *= keep;
+  estimate_.covariance.leftCols(slip) *= keep;
+  estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  noise_scale_.hurry();
 }
 
 Learned CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {

@@ -29,6 +29,22 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
   return places;
 }
 
+/// The terms linear in V or w, by which every ground can be told; all terms where the basis has none of them.
+std::vector<Eigen::Index> changing_terms(const Basis& basis) {
+  const Basis linear = named_basis("full-linear-6");
+  std::vector<Eigen::Index> all;
+  std::vector<Eigen::Index> found;
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    all.push_back(static_cast<Eigen::Index>(i));
+    for (std::size_t j = 0; j < linear.size(); ++j) {
+      if (basis.parameter_name(i) == linear.parameter_name(j)) {
+        found.push_back(all.back());
+      }
+    }
+  }
+  return found.empty() ? all : found;
+}
+
 }  // namespace
 
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
@@ -36,7 +52,9 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
     : model_(averaged_basis(std::move(name), bases), learned),
       settings_(settings),
       weights_(
-          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))) {
+          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))),
+      changing_(changing_terms(model_.basis())),
+      detector_(settings.change) {
   for (const Basis& basis : bases) {
     filters_.emplace_back(MotionModel(basis, learned), filter);
     places_.push_back(places_of(filters_.back().model(), model_));
@@ -45,6 +63,10 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
 
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
   speeds_.see(inputs, segment);
+  change_ = test_for_change(inputs, segment);
+  if (change_.alarm) {
+    forget();
+  }
   Eigen::VectorXd log_scores(weights_.size());
   std::vector<IekfUpdate> updates;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
@@ -56,6 +78,29 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   weights_.maxCoeff(&heaviest);
   weigh(log_scores);
   return updates[static_cast<std::size_t>(heaviest)];
+}
+
+/// By the innovation of the average, which is what predicts.
+ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment& segment) {
+  if (!settings_.change.detect) {
+    return {};
+  }
+  const AverageState now = state();
+  const auto at = linearize_segment(model_, now.estimate.mean, inputs, segment);
+  const Eigen::Matrix3d covariance =
+      prediction_covariance(at, now.estimate.covariance, filters_.front().noise().shape, now.noise_scale);
+  const Eigen::VectorXd usual = slip_prior_std(model_.basis(), speeds_.reference(), settings_.change.fraction);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> by_change =
+      at.by_parameter(Eigen::all, changing_) * usual(changing_).asDiagonal();
+  return detector_.see(segment.measured.vector() - at.predicted.vector(), covariance, by_change);
+}
+
+void ModelAverage::forget() {
+  const double share = settings_.change.forget;
+  for (CausalFilter& filter : filters_) {
+    filter.forget(share);
+  }
+  weights_ = (1.0 - share) * weights_.array() + share / static_cast<double>(weights_.size());
 }
 
 void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {

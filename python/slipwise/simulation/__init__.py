@@ -3,6 +3,7 @@
 
 from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.physics import GroundChange
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
@@ -10,6 +11,7 @@ from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 
 __all__ = [
     "DRIVES",
+    "GroundChange",
     "LandTamer",
     "Scenario",
     "Simulation",

@@ -28,6 +28,14 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
+class GroundChange:
+    """A tyre-force ground that becomes another one while the vehicle drives."""
+
+    t: float  # [s]
+    law: TyreLaw
+
+
+@dataclass(frozen=True)
 class World:
     """The vehicle and what it stands on."""
 
@@ -35,6 +43,7 @@ class World:
     ground: str  # one of GROUNDS
     law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
     traction: TractionLaw = TractionLaw()
+    change: GroundChange | None = None
 
     @property
     def force_law(self) -> ForceLaw | None:
@@ -116,11 +125,15 @@ def run_physics(
     advance = _stepper(mujoco, model, data, tyres)
     for _ in range(math.ceil(SETTLING_TIME / sampling.time_step)):
         advance()
+    change = world.change
+    changes_at = math.ceil(change.t * sampling.rate - 1e-9) if change is not None else sampling.count
     targets = wheel_targets(world.vehicle, commands, sampling)[:, np.arange(len(names)) % 2]
     position = np.empty((sampling.count, model.nq))
     velocity = np.empty((sampling.count, model.nv))
     for sample in range(sampling.count):
         position[sample], velocity[sample] = data.qpos, data.qvel
+        if change is not None and tyres is not None and sample == changes_at:
+            tyres.law = partial(tyre_force, change.law)
         for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
             data.ctrl = target
             advance()

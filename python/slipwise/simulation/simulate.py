@@ -12,7 +12,7 @@ from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
-from slipwise.simulation.physics import GROUNDS, Progress, Sampling, World, run_physics
+from slipwise.simulation.physics import GROUNDS, GroundChange, Progress, Sampling, World, run_physics
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
@@ -29,6 +29,7 @@ class Scenario:
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
+    change: GroundChange | None = None  # of a tyre-force ground, while driving
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
@@ -60,7 +61,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
     if commands is None:
         commands = DRIVES[scenario.drive](seed, scenario.duration)
     truth = run_physics(
-        World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction),
+        World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction, scenario.change),
         commands,
         Sampling.over(scenario.duration, scenario.pose_rate),
         progress=progress,
@@ -103,6 +104,8 @@ def _check(scenario: Scenario, seed: int) -> None:
     if scenario.ground not in GROUNDS:
         advice = "choose one of " + ", ".join(GROUNDS)
         raise SettingsError(f"unknown ground {scenario.ground!r}", where="ground", advice=advice)
+    if scenario.change is not None:
+        _check_change(scenario, scenario.change)
     if scenario.commands is not None and len(scenario.commands) == 0:
         raise SettingsError("there are no commands", where="commands", advice="give at least one")
     if scenario.commands is None and scenario.drive not in DRIVES:
@@ -118,3 +121,12 @@ def _check(scenario: Scenario, seed: int) -> None:
             raise SettingsError(f"{name} is {value}", where=name, advice="give zero or a positive number")
     if not math.isfinite(scenario.pose_delay):
         raise SettingsError(f"pose_delay is {scenario.pose_delay}", where="pose_delay", advice="give seconds")
+
+
+def _check_change(scenario: Scenario, change: GroundChange) -> None:
+    if scenario.ground != "tyre-force":
+        advice = 'use the ground "tyre-force"'
+        raise SettingsError(f"a {scenario.ground} ground cannot change", where="change", advice=advice)
+    if not 0.0 <= change.t < scenario.duration:
+        advice = f"let it change within the {scenario.duration:g} s of the drive"
+        raise SettingsError(f"the ground changes at {change.t:g} s", where="change", advice=advice)

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "slipwise/estimate/causal_filter.hpp"
+#include "slipwise/estimate/change_detector.hpp"
 #include "slipwise/estimate/driven_speeds.hpp"
 
 namespace slipwise {
@@ -15,6 +16,7 @@ struct ModelAverageSettings {
   double learning_rate =
       0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
   double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a model can come back [-]
+  ChangeSettings change = {};
 };
 
 /// Parameters, covariance and noise of the average, over the union of all terms.
@@ -35,14 +37,19 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model. Returns the update of the model that weighed most before.
+  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
+  /// weighed most before.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
+  /// The test of the last segment for a change of ground.
+  const ChangeTest& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
+  ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  void forget();
   Eigen::VectorXd variance_ratio() const;
   void weigh(const Eigen::VectorXd& log_scores);
 
@@ -52,6 +59,9 @@ class ModelAverage {
   ModelAverageSettings settings_;
   Eigen::VectorXd weights_;
   DrivenSpeeds speeds_;
+  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
+  ChangeDetector detector_;
+  ChangeTest change_;
 };
 
 }  // namespace slipwise
