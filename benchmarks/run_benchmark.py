@@ -37,6 +37,8 @@ BENCHMARKS = (
     Benchmark("filter_speed", "The filter beside numpy and filterpy", quick=("--quick",)),
     Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
     Benchmark("real_logs", "The score on real logs", needs_data=True),
+    Benchmark("ground_change", "Finding a change of ground", quick=("--quick",)),
+    Benchmark("convergence", "Seconds of driving until the model has converged", needs_data=True),
     Benchmark("surfaces", "Slip surfaces: time and held-out scores", quick=("--quick",)),
     Benchmark("scaling", "Cost against log length", quick=("--quick",)),
 )

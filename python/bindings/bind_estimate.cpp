@@ -59,6 +59,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("longest", &ChangeSettings::longest)
       .def_rw("fraction", &ChangeSettings::fraction)
       .def_rw("forget", &ChangeSettings::forget)
+      .def_rw("trial", &ChangeSettings::trial)
       .def_rw("warm_up", &ChangeSettings::warm_up)
       .def_rw("memory", &ChangeSettings::memory);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
@@ -256,7 +257,7 @@ void bind_estimate(nb::module_& m) {
           "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
-      .def_prop_ro("change", &ModelAverage::change)
+      .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })
       .def_prop_ro("model", &ModelAverage::model)
       .def_prop_ro("reference_speeds", [](const ModelAverage& average) {
         const ReferenceSpeeds speeds = average.reference_speeds();

@@ -21,8 +21,7 @@ class CausalPass:
     def __init__(
         self, average: _core.ModelAverage, windows: WindowSet, observer: Observer | None = None
     ) -> None:
-        """`observer` is called with the index of each window, its update, its test for a change of
-        ground, and the belief after it."""
+        """`observer` gets each window's index, its update, its test for a change, and the belief after it."""
         self._average, self._windows, self._observer = average, windows, observer
         self._learned = 0
         self._belief: Belief | None = None

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -49,19 +50,23 @@ class ModelAverage {
 
  private:
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
-  void forget();
+  void doubt();
+  void settle();
+  Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
   void weigh(const Eigen::VectorXd& log_scores);
 
   MotionModel model_;
-  std::vector<CausalFilter> filters_;
+  std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   Eigen::VectorXd weights_;
   DrivenSpeeds speeds_;
   std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
+  std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;
+  int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
 };
 
 }  // namespace slipwise
