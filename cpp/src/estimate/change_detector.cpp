@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "slipwise/estimate/heavy_tails.hpp"
@@ -84,11 +85,11 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
   seen_ += 1.0;
   const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
   recent_.push_back({factor.matrixL().solve(innovation), factor.matrixL().solve(by_change)});
-  if (recent_.size() > static_cast<std::size_t>(settings_.longest)) {
+  if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
   }
   ChangeTest best;
-  for (int n = settings_.shortest; n <= static_cast<int>(recent_.size()); ++n) {
+  for (int n = settings_.shortest; n <= static_cast<int>(std::ssize(recent_)); ++n) {
     const ChangeFit found = fit_last(n, usual_[static_cast<std::size_t>(n)]);
     if (found.log_odds > best.log_odds) {
       best = {.log_odds = found.log_odds, .segments = n, .alarm = false};
@@ -105,13 +106,15 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
 /// The last segments, as if their residuals were `usual` times as large in square.
 ChangeFit ChangeDetector::fit_last(int segments, double usual) const {
   const double unit = 1.0 / std::sqrt(std::max(usual, 1.0));
+  const Eigen::Index rows = Eigen::Index{3} * segments;
   const Eigen::Index changes = recent_.back().by_change.cols();
-  Eigen::VectorXd residuals(3 * segments);
-  Eigen::MatrixXd by_change(3 * segments, changes);
+  Eigen::VectorXd residuals(rows);
+  Eigen::MatrixXd by_change(rows, changes);
   for (int i = 0; i < segments; ++i) {
+    const Eigen::Index row = Eigen::Index{3} * i;
     const Whitened& segment = recent_[recent_.size() - static_cast<std::size_t>(segments - i)];
-    residuals.segment<3>(3 * i) = unit * segment.residual;
-    by_change.middleRows<3>(3 * i) = unit * segment.by_change;
+    residuals.segment<3>(row) = unit * segment.residual;
+    by_change.middleRows<3>(row) = unit * segment.by_change;
   }
   return fit_change(residuals, by_change);
 }

@@ -80,8 +80,11 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
   weigh(log_scores);
-  if (on_trial_ > 0 && --on_trial_ == 0) {
-    settle();
+  if (on_trial_ > 0) {
+    --on_trial_;
+    if (on_trial_ == 0) {
+      settle();
+    }
   }
   return updates[static_cast<std::size_t>(heaviest)];
 }
@@ -94,7 +97,7 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
     return {};
   }
   before_.push_back(state());
-  if (before_.size() > static_cast<std::size_t>(change.longest)) {
+  if (std::ssize(before_) > change.longest) {
     before_.pop_front();
   }
   const AverageState& known = before_.front();

@@ -57,6 +57,12 @@ bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
 
+[change]
+detect = false
+threshold = 12.0
+fraction = 0.2
+forget = 0.1
+
 [vehicle]
 track = 1.08
 """
@@ -110,6 +116,8 @@ def test_defaults_are_those_of_the_core() -> None:
         names = [name for name in dir(one) if not name.startswith("_")]
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
     assert settings.average_settings().share == _core.ModelAverageSettings().share
+    for name in ("detect", "threshold", "fraction", "forget"):
+        assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)
     assert settings.rules() == WindowRules()
     assert load_settings_of_nothing() == settings
 

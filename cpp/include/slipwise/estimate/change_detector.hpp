@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding a change of ground: do the last few segments prefer other slip parameters than those learned before?
+// Finding a change of ground: whether the last segments prefer other slip parameters than those learned before.
 #pragma once
 
 #include <Eigen/Core>
