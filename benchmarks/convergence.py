@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """How long a robot must drive until its model is as good as it gets, on every real log.
 
-Each log is predicted causally by `auto`. The errors are smoothed by the mean over a tenth of the log's
-windows, at least five; the final error is the mean over the last third of the windows. Converged is the
-first moment after which the smoothed error stays, for the rest of the first two thirds, within 10 % above
-the final one. Where slip differs along a log the error never settles; such a log is listed as not converged.
+Each log is predicted causally by `auto`, and by the model that `auto` has learned at its end: the same
+windows, so that what differs is what was known, not how hard the driving was. Converged is the first window
+from which on the mean error is within 10 % of the final model's, both over the next ten windows (this is the
+smoothing: 50 s of driving at 5 s) and over all the rest. The final model has seen those windows, which makes
+the bound strict; where slip differs along a log, it is never met, and the log is listed as not converged.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ Floats = NDArray[np.float64]
 PUBLISHED_SECONDS = 46.0  # DRIVE's calibration drive (Baril et al. 2023)
 WITHIN = 1.10  # of the final error
 FEWEST_WINDOWS = 15
-METHOD = "auto"
+SMOOTHING = 10  # windows
 
 
 @dataclass(frozen=True)
@@ -46,54 +47,45 @@ class Convergence:
     heading: float | None
 
 
-def smoothed(errors: Floats) -> Floats:
-    """Return the mean of each error and those before it, over a tenth of the windows or five, [N]."""
-    width = max(5, len(errors) // 10)
-    sums = np.concatenate(([0.0], np.cumsum(errors)))
-    ends = np.arange(1, len(errors) + 1)
-    begins = np.maximum(ends - width, 0)
-    return np.asarray((sums[ends] - sums[begins]) / (ends - begins))
-
-
-def converged_after(errors: Floats, driven: Floats) -> tuple[float | None, float]:
-    """Return the seconds driven [N] when the errors [N] had converged, and the final error."""
-    last = 2 * len(errors) // 3
-    final = float(errors[last:].mean())
-    outside = np.flatnonzero(smoothed(errors)[:last] > WITHIN * final)
-    first = 0 if not len(outside) else int(outside[-1]) + 1
-    return (float(driven[first]) if first < last else None), final
+def converged_after(errors: Floats, final: Floats, driven: Floats) -> float | None:
+    """Return the seconds driven [N] from which on `errors` [N] are near those of the final model [N]."""
+    for k in range(len(errors) - SMOOTHING + 1):
+        soon, rest = slice(k, k + SMOOTHING), slice(k, None)
+        if all(errors[part].sum() <= WITHIN * final[part].sum() for part in (soon, rest)):
+            return float(driven[k])
+    return None
 
 
 def measure(data: DataSet) -> list[Convergence]:
     """Measure one log with every input that it has."""
     log = slipwise.open_log(data.path)
-    options = EvaluationOptions(horizons=(data.horizon,), methods=("none", METHOD))
     found = []
     for name in ("wheel", "command"):
         if all((run.wheels if name == "wheel" else run.commands) is None for run in log.runs):
             continue
-        (predictions,) = (
-            p
-            for p in slipwise.evaluate(log, input_name=name, options=options).predictions
-            if p.method == METHOD
+        options = EvaluationOptions(
+            horizons=(data.horizon,),
+            methods=("none", "auto", "model"),
+            model=slipwise.calibrate(log, input_name=name).model,
         )
-        if len(predictions) < FEWEST_WINDOWS:
+        evaluation = slipwise.evaluate(log, input_name=name, options=options)
+        by_method = {p.method: p for p in evaluation.predictions}
+        auto, final = by_method["auto"], by_method["model"]
+        if len(auto) < FEWEST_WINDOWS:
             continue
-        length = predictions.t_end - predictions.t_start
+        length = auto.t_end - auto.t_start
         driven = np.cumsum(length) - length
-        position, final_position = converged_after(predictions.position_error, driven)
-        heading, final_heading = converged_after(predictions.heading_error, driven)
         found.append(
             Convergence(
                 log=data.name,
                 input=name,
                 horizon=data.horizon,
                 driven=float(length.sum()),
-                windows=len(predictions),
-                final_position=final_position,
-                final_heading=final_heading,
-                position=position,
-                heading=heading,
+                windows=len(auto),
+                final_position=float(final.position_error.mean()),
+                final_heading=float(final.heading_error.mean()),
+                position=converged_after(auto.position_error, final.position_error, driven),
+                heading=converged_after(auto.heading_error, final.heading_error, driven),
             )
         )
     return found
