@@ -24,7 +24,7 @@ PYTHON_CHECKED := python/slipwise tools
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 .PHONY: help env build demo test test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
-  lint-format lint-tidy format bench clean distclean FORCE
+  lint-format lint-tidy format bench thesis clean distclean FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
@@ -85,6 +85,10 @@ format: $(STAMPS)/dev ## lay out all Python and C++ sources
 bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
 	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
 
+thesis: build ## make the thesis's figures and tables again, and docs/thesis from them
+	@$(VENV)/bin/slipwise reproduce thesis -o build/thesis $(ARGS)
+	@rm -rf docs/thesis && cp -r build/thesis/markdown docs/thesis
+
 clean: ## remove build results and caches; .venv stays
 	rm -rf build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	rm -f $(STAMPS)/slipwise
@@ -101,7 +105,7 @@ $(STAMPS)/env: FORCE
 
 $(STAMPS)/run: $(STAMPS)/env pyproject.toml constraints.txt
 	@echo "installing what slipwise needs"
-	@$(PYTHON_IN) tools/requirements.py build native run gp sim > $(STAMPS)/run.txt
+	@$(PYTHON_IN) tools/requirements.py build native run gp sim thesis > $(STAMPS)/run.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/run.txt
 	@touch $@
 

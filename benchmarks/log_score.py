@@ -7,6 +7,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from uncertainty import chance_of_range, normal_score
+
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.statistics import held_out_half
 from slipwise.evaluation import Evaluation, Score
 
 FEWEST_WINDOWS = 3  # held-out windows; logs with fewer are listed, not averaged
@@ -24,6 +28,10 @@ class MethodScore:
     nis: float  # 3 where the covariance is true
     nis_band: tuple[float, float]
     coverage: tuple[float, float, float]  # of the 50, 90, 95 % ellipsoids
+    normal_nis: float  # the NIS once errors are stretched to normal ones by the predicted t
+    nis_chance: float  # that the mean NIS lies in the range asked for, where the predicted t are true
+    stated_nis: float  # with the usual covariance, that learns nothing from held-out errors
+    stated_coverage: tuple[float, float, float]
     windows: int  # held out
 
 
@@ -69,7 +77,8 @@ class MeanScore:
 
 def log_score(name: str, evaluation: Evaluation, seconds: float) -> LogScore:
     """Take from an evaluation over one horizon what the benchmark keeps."""
-    methods = {score.method: _method_score(score) for score in evaluation.scores}
+    by_name = {p.method: p for p in evaluation.predictions}
+    methods = {score.method: _method_score(score, by_name[score.method]) for score in evaluation.scores}
     held_out, total = methods["none"].windows, len(evaluation.predictions[0])
     return LogScore(name, evaluation.input, evaluation.horizons[0], held_out, total, seconds, methods)
 
@@ -109,7 +118,8 @@ def geometric_mean(ratios: Sequence[float]) -> float:
     return math.exp(sum(map(math.log, defined)) / len(defined)) if defined else math.nan
 
 
-def _method_score(score: Score) -> MethodScore:
+def _method_score(score: Score, predictions: Predictions) -> MethodScore:
+    half = held_out_half(len(predictions))
     return MethodScore(
         causal=score.causal,
         position=score.position.mean,
@@ -119,5 +129,9 @@ def _method_score(score: Score) -> MethodScore:
         nis=score.nis,
         nis_band=score.nis_band,
         coverage=score.coverage,
+        normal_nis=normal_score(predictions.inside[half]),
+        nis_chance=chance_of_range(predictions, half),
+        stated_nis=score.stated_nis,
+        stated_coverage=score.stated_coverage,
         windows=score.windows,
     )

@@ -25,6 +25,7 @@ from real_log_tables import (
     print_window_differences,
 )
 from reference import Comparison, compare, read_reference
+from uncertainty import print_chances, print_coverage
 
 import slipwise
 
@@ -69,6 +70,13 @@ def print_all(scores: Sequence[LogScore], comparisons: tuple[list[Comparison], l
         print("\nGeometric means over logs of the errors relative to the plain model:\n")
         print_means(group, target)
         print_few(group)
+    for name in (*TARGETS, "both"):
+        group = [s for s in scores if name in (s.input, "both")]
+        if group:
+            inputs = f"{name} input" if name in TARGETS else "both inputs"
+            print(f"\n== is the uncertainty true? {inputs}, all held-out windows of all logs ==\n")
+            print_coverage(group, method_names(group))
+            print_chances(group)
     if comparisons is not None:
         print(
             "\n== beside the reference: mean errors, and its best basis of each log, chosen afterwards ==\n"

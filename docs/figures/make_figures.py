@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import slipwise as sw
 from slipwise.logs import Inputs, Log, Poses
 from slipwise.simulation import Scenario, simulate
+from slipwise.student import ellipse_squared
 
 Floats = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ STARTS = np.arange(LEARNED_UNTIL, END - HORIZON, 10.0)  # [s]
 PLAIN, SIMPLE, LEARNED = "none", "edd-2", "auto"
 COLOURS = {PLAIN: "#c1443c", SIMPLE: "#8a8a8a", LEARNED: "#1f6fb2"}
 LABELS = {PLAIN: "as commanded", SIMPLE: "edd-2 with lag and delay", LEARNED: "slipwise"}
-FIVE_PERCENT_OUT = 5.991  # chi-square with 2 degrees of freedom: an ellipse that holds 95 %
+HELD = 0.95  # share of the positions in an ellipse
 
 
 def until(log: Log, t: float) -> Log:
@@ -52,10 +53,10 @@ def pose_at(log: Log, t: float) -> Floats:
     return np.array([poses.x[at], poses.y[at], poses.yaw[at]])
 
 
-def ellipse(centre: Floats, covariance: Floats) -> Ellipse:
-    """Return the ellipse that holds 95 % of a normal distribution."""
+def ellipse(centre: Floats, covariance: Floats, dof: float) -> Ellipse:
+    """Return the ellipse that holds 95 % of a Student t."""
     variances, axes = np.linalg.eigh(covariance)
-    width, height = 2.0 * np.sqrt(FIVE_PERCENT_OUT * variances)
+    width, height = 2.0 * np.sqrt(ellipse_squared(HELD, dof) * variances)
     angle = float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0])))
     centre_xy = (float(centre[0]), float(centre[1]))
     return Ellipse(centre_xy, width, height, angle=angle, color=COLOURS[LEARNED], alpha=0.25, linewidth=0)
@@ -81,7 +82,8 @@ def draw_paths(axes: Axes, log: Log, models: dict[str, sw.Model]) -> None:
             axes.plot(*pose_at(log, start + HORIZON)[:2], "o", color="black", markersize=4, zorder=3)
             label = None
             if method == LEARNED:
-                axes.add_patch(ellipse(points[-1], turn @ path.covariance[-1, :2, :2] @ turn.T))
+                spread = turn @ path.covariance[-1, :2, :2] @ turn.T
+                axes.add_patch(ellipse(points[-1], spread, float(path.dof[-1])))
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_title("The next 5 s, predicted from the commands", fontsize=10)
     axes.set_xlabel("x [m]")

@@ -23,14 +23,29 @@ void bind_actuator(nb::module_& m) {
           "t"_a, "v"_a, "vy"_a, "omega"_a)
       .def("__len__", &InputTrack::size)
       .def("at", &InputTrack::at, "t"_a, "The twist held at time t [s].");
-  nb::class_<CommandChain>(m, "CommandChain", "Lag, delay and clock offset [s].")
-      .def(nb::init<double, double, double, double, double>(), "lag_v"_a, "lag_omega"_a, "delay_v"_a, "delay_omega"_a,
-           "clock_offset"_a)
+  nb::class_<CommandChain>(m, "CommandChain", "Gain, delay, lags [s] per channel, and clock offset [s].")
+      .def(
+          "__init__",
+          [](CommandChain* self, double lag_v, double lag_omega, double delay_v, double delay_omega,
+             double clock_offset) {
+            new (self) CommandChain{.lag_v = lag_v,
+                                    .lag_omega = lag_omega,
+                                    .delay_v = delay_v,
+                                    .delay_omega = delay_omega,
+                                    .clock_offset = clock_offset};
+          },
+          "lag_v"_a, "lag_omega"_a, "delay_v"_a, "delay_omega"_a, "clock_offset"_a)
       .def_ro("lag_v", &CommandChain::lag_v)
       .def_ro("lag_omega", &CommandChain::lag_omega)
       .def_ro("delay_v", &CommandChain::delay_v)
       .def_ro("delay_omega", &CommandChain::delay_omega)
-      .def_ro("clock_offset", &CommandChain::clock_offset);
+      .def_ro("clock_offset", &CommandChain::clock_offset)
+      .def_ro("gain_v", &CommandChain::gain_v)
+      .def_ro("gain_omega", &CommandChain::gain_omega)
+      .def_ro("slow_share_v", &CommandChain::slow_share_v)
+      .def_ro("slow_share_omega", &CommandChain::slow_share_omega)
+      .def_ro("slow_lag_v", &CommandChain::slow_lag_v)
+      .def_ro("slow_lag_omega", &CommandChain::slow_lag_omega);
 }
 
 }  // namespace slipwise::bindings

@@ -14,6 +14,7 @@
 #include "slipwise/estimate/model_average.hpp"
 #include "slipwise/estimate/noise_fit.hpp"
 #include "slipwise/estimate/observability.hpp"
+#include "slipwise/estimate/predictive_score.hpp"
 #include "slipwise/estimate/sliding_mode_observer.hpp"
 #include "slipwise/estimate/slip_rate_fit.hpp"
 #include "slipwise/estimate/slip_ratio_filter.hpp"
@@ -244,15 +245,33 @@ void bind_estimate(nb::module_& m) {
       [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
       "posterior"_a, "prior_std"_a);
   nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of ground.")
+      .def(nb::init<>())
       .def_ro("log_odds", &ChangeTest::log_odds)
       .def_ro("segments", &ChangeTest::segments)
       .def_ro("alarm", &ChangeTest::alarm);
+  m.def(
+      "reweighed",
+      [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const ModelAverageSettings& settings) {
+        return reweighed(weights, log_scores, settings);
+      },
+      "weights"_a, "log_scores"_a, "settings"_a, "The weights after models predicted with these log scores, [M].");
+  m.def(
+      "student_log_score",
+      [](double nis, const Eigen::Matrix3d& covariance) { return student_log_score(nis, covariance); }, "nis"_a,
+      "covariance"_a, "Student-t log density of an innovation, without constants.");
+  nb::class_<ScoredSegment>(m, "ScoredSegment", "A segment as it was predicted.")
+      .def_ro("nis", &ScoredSegment::nis)
+      .def_ro("log_score", &ScoredSegment::log_score);
+  nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")
+      .def(nb::init<const NoiseSettings&>(), "settings"_a)
+      .def("score", &PredictiveScore::score, "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
+      .def_prop_ro("noise_scale", &PredictiveScore::noise_scale);
   nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighed by how well they predict.")
       .def(
           "__init__",
           [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,
              const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
-            new (self) ModelAverage(std::move(name), bases, {dynamics, clock_offset}, filter, settings);
+            new (self) ModelAverage(std::move(name), bases, {dynamics, clock_offset, false}, filter, settings);
           },
           "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)

@@ -3,6 +3,7 @@
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
@@ -74,8 +75,22 @@ void bind_segment(nb::module_& m) {
       .def(
           "__init__",
           [](Segment* self, double start, double end, const Pose2& measured, std::optional<BodyTwist> initial,
-             double gx, double gy) { new (self) Segment{start, end, measured, initial, gx, gy}; },
+             double gx, double gy) {
+            new (self)
+                Segment{.start = start, .end = end, .measured = measured, .initial = initial, .gx = gx, .gy = gy};
+          },
           "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
+      .def(
+          "with_known_drive",
+          [](const Segment& segment, std::shared_ptr<const InputTrack> twist, double until, const BodyTwist& initial) {
+            Segment known = segment;
+            known.initial = initial;
+            known.known = KnownDrive{std::move(twist), until};
+            return known;
+          },
+          "twist"_a, "until"_a, "initial"_a,
+          "The same segment where the drive's twist is known until a moment in input stamps [s], `initial` at that "
+          "moment.")
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
       .def_ro("measured", &Segment::measured);

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from slipwise.errors import SlipwiseError
     from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
     from slipwise.evaluation.result import Evaluation
+    from slipwise.export import ExportOptions, export_model
     from slipwise.logs.log import Log
     from slipwise.logs.open_log import open_log
     from slipwise.logs.options import LogOptions
@@ -22,6 +23,7 @@ __all__ = [
     "Calibration",
     "Evaluation",
     "EvaluationOptions",
+    "ExportOptions",
     "Log",
     "LogOptions",
     "Model",
@@ -30,6 +32,7 @@ __all__ = [
     "SlipwiseError",
     "calibrate",
     "evaluate",
+    "export_model",
     "load_model",
     "load_settings",
     "make_settings",
@@ -43,6 +46,7 @@ _HOMES = {
     "slipwise.calibration": ("Calibration", "Settings", "load_settings", "make_settings"),
     "slipwise.errors": ("SlipwiseError",),
     "slipwise.evaluation": ("Evaluation", "EvaluationOptions", "evaluate"),
+    "slipwise.export": ("ExportOptions", "export_model"),
     "slipwise.logs": ("Log", "LogOptions", "open_log", "save_log"),
     "slipwise.models": ("Model", "load_model"),
     "slipwise.prediction": ("Path", "predict"),

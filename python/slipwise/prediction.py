@@ -12,10 +12,13 @@ from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
+from slipwise.models.schema import Tail
+from slipwise.student import LEAST_DOF, MOST_DOF
 
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, between the poses of a predicted path
+LONGEST_OFFSET = 10.0  # s; no clock offset is longer
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +28,7 @@ class Path:
     t: Floats  # s, in the time of the inputs
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
     covariance: Floats  # [N, 3, 3] parameters, slip noise and the noise of two measured poses
+    dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
 
 
 def predict(
@@ -59,31 +63,50 @@ def predict(
     if initial is not None and not np.isfinite(initial).all():
         raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
     track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    twist = None if initial is None else _core.BodyTwist(initial[0], 0.0, initial[1])
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
-        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
+        segment = _segment(begin, seconds, initial)
         at = _core.linearize_segment(model.motion, model.mean, track, segment)
         poses.append(at.predicted.vector())
         covariance.append(prediction_covariance(model, at, seconds))
-    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance))
+    dof = np.array([tail_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
+    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
+
+
+def _segment(begin: float, seconds: float, initial: tuple[float, float] | None) -> _core.Segment:
+    """A segment from `begin` on; speeds measured there held while the poses, stamped late, were under way."""
+    segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    if initial is None:
+        return segment
+    held = _core.InputTrack(
+        *(np.array([value]) for value in (begin - LONGEST_OFFSET, initial[0], 0.0, initial[1]))
+    )
+    return segment.with_known_drive(held, begin, _core.BodyTwist(initial[0], 0.0, initial[1]))
 
 
 def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:
     """Covariance of one predicted pose, grown as held-out predictions of this horizon [s] needed."""
     scale = np.array(model.content.noise.scale)
     covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
-    return np.asarray(covariance * growth_at(model, horizon), dtype=np.float64)
+    return np.asarray(covariance * tail_at(model, horizon).growth, dtype=np.float64)
 
 
-def growth_at(model: Model, horizon: float) -> float:
-    """Factor of the covariance at a horizon [s], interpolated between those judged; 1 without any."""
-    growth = model.content.noise.growth
-    if not growth:
-        return 1.0
-    seconds = sorted(growth)
-    return float(np.exp(np.interp(horizon, seconds, [np.log(growth[s]) for s in seconds])))
+def tail_at(model: Model, horizon: float) -> Tail:
+    """Growth of the covariance and degrees of freedom at a horizon [s].
+
+    Their logarithms are interpolated between the horizons judged, and kept beyond them; without any, the
+    covariance is taken as stated and nearly normal.
+    """
+    tails = model.content.noise.tails
+    if not tails:
+        return Tail(growth=1.0, dof=MOST_DOF)
+    seconds = sorted(tails)
+    growth, dof = (
+        np.exp(np.interp(horizon, seconds, [np.log(getattr(tails[s], name)) for s in seconds]))
+        for name in ("growth", "dof")
+    )
+    return Tail(growth=float(growth), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
 
 
 def _inputs(commands: ArrayLike) -> Inputs:

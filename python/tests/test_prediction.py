@@ -14,7 +14,9 @@ from slipwise.calibration.plain import plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.models import Model
-from slipwise.prediction import growth_at, predict
+from slipwise.models.schema import Tail
+from slipwise.prediction import predict, tail_at
+from slipwise.student import MOST_DOF
 
 BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
 
@@ -55,7 +57,7 @@ def test_prediction_is_the_cores_linearised_segment(model: Model) -> None:
     assert path.poses[-1].tobytes() == at.predicted.vector().tobytes()
     scale = np.array(model.content.noise.scale)
     covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
-    assert path.covariance[-1] == pytest.approx(covariance * growth_at(model, 2.0))
+    assert path.covariance[-1] == pytest.approx(covariance * tail_at(model, 2.0).growth)
 
 
 def test_uncertainty_grows_along_the_path(model: Model) -> None:
@@ -66,12 +68,22 @@ def test_uncertainty_grows_along_the_path(model: Model) -> None:
     assert (np.linalg.eigvalsh(path.covariance[1:]) > 0.0).all()
 
 
-def test_growth_is_interpolated_and_held_beyond_the_judged_horizons(model: Model) -> None:
-    growth = model.content.noise.growth
-    assert growth_at(model, 1.0) == pytest.approx(growth[1.0])
-    assert growth_at(model, 0.1) == pytest.approx(growth[1.0])
-    assert growth_at(model, 60.0) == pytest.approx(growth[5.0])
-    assert min(growth[2.0], growth[5.0]) <= growth_at(model, 3.0) <= max(growth[2.0], growth[5.0])
+def test_tails_are_interpolated_and_held_beyond_the_judged_horizons(model: Model) -> None:
+    tails = model.content.noise.tails
+    for name in ("growth", "dof"):
+        two, five = getattr(tails[2.0], name), getattr(tails[5.0], name)
+        assert getattr(tail_at(model, 1.0), name) == pytest.approx(getattr(tails[1.0], name))
+        assert getattr(tail_at(model, 0.1), name) == pytest.approx(getattr(tails[1.0], name))
+        assert getattr(tail_at(model, 60.0), name) == pytest.approx(five)
+        assert min(two, five) <= getattr(tail_at(model, 3.0), name) <= max(two, five)
+    assert predict(model, [[0.0, 1.0, 0.0]], horizon=2.0).dof[-1] == pytest.approx(tails[2.0].dof)
+
+
+def test_model_without_judged_horizons_is_nearly_normal_as_stated(model: Model) -> None:
+    bare = Model(
+        model.content.model_copy(update={"noise": model.content.noise.model_copy(update={"tails": {}})})
+    )
+    assert tail_at(bare, 2.0) == Tail(growth=1.0, dof=MOST_DOF)
 
 
 def test_rows_and_inputs_are_the_same_commands(model: Model) -> None:

@@ -12,10 +12,36 @@ namespace slipwise {
 namespace {
 
 using Row = Eigen::Matrix<double, 1, kChainParameters>;
-constexpr Eigen::Index kLagV = 0, kLagOmega = 1, kDelayV = 2, kDelayOmega = 3, kOffset = 4;
 constexpr Eigen::Index kFixed = -1;
+constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kSameStep = 1e-6;    // a stretch longer than whole steps by no more than rounding gets no other step
 constexpr double kSettledLags = 8.0;  // after this many time constants the start of a lag is forgotten (e^-8)
+
+/// Where a channel's parameters stand among the chain's.
+struct ChannelPlaces {
+  Eigen::Index lag, delay, gain, slow_share, slow_lag;
+};
+constexpr ChannelPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
+constexpr ChannelPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
+
+/// How one channel responds.
+struct ChannelResponse {
+  double lag, gain, slow_share, slow_lag;
+  ChannelPlaces places;
+
+  bool has_slow_part() const { return slow_lag > 0.0; }
+  double share() const { return has_slow_part() ? slow_share : 0.0; }
+  double longest_lag() const { return std::max(lag, slow_lag); }
+};
+
+ChannelResponse speed_response(const CommandChain& c) {
+  return {c.lag_v, c.gain_v, c.slow_share_v, c.slow_lag_v, kSpeedPlaces};
+}
+
+ChannelResponse turn_response(const CommandChain& c) {
+  return {c.lag_omega, c.gain_omega, c.slow_share_omega, c.slow_lag_omega, kTurnPlaces};
+}
 
 /// A moment that moves with one of the chain's parameters: later with a delay, earlier with the clock offset.
 struct Moment {
@@ -29,12 +55,6 @@ struct Moment {
     }
     return row;
   }
-};
-
-/// A lag's output with its total derivative.
-struct LagState {
-  double output = 0.0;
-  Row slope = Row::Zero();
 };
 
 /// The samples of one channel as the drive sees them: delayed.
@@ -53,6 +73,13 @@ class DelayedCursor {
   void advance() { ++next_; }
   std::size_t changes_left() const { return end_ - next_; }
 
+  /// Skips samples before `t` that repeat the one held.
+  void skip_repeats(double t) {
+    while (next_ > 0 && next_change() < t && inputs_.sample(next_) == held()) {
+      ++next_;
+    }
+  }
+
  private:
   const InputTrack& inputs_;
   double delay_;
@@ -61,69 +88,181 @@ class DelayedCursor {
   std::size_t end_;
 };
 
+/// A value with its derivative by the chain's parameters.
+struct Sensitive {
+  double value = 0.0;
+  Row slope = Row::Zero();
+};
+
+/// The part of an input that one of a channel's two lags follows: share * gain * input.
+Sensitive part_of(double input, const ChannelResponse& response, bool slow) {
+  const double share = slow ? response.share() : 1.0 - response.share();
+  Sensitive part{.value = share * response.gain * input};
+  part.slope[response.places.gain] = share * input;
+  if (response.has_slow_part()) {
+    part.slope[response.places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
+  }
+  return part;
+}
+
 /// Advances one lag over a step; returns the integral.
-double advance(LagState& state, double input, const LagDecay& decay) {
-  const LagStep step = linearize_lag_step(state.output, input, decay).value;
-  state.output = step.output;
+double advance(Sensitive& state, double input, const LagDecay& decay) {
+  const LagStep step = linearize_lag_step(state.value, input, decay).value;
+  state.value = step.output;
   return step.integral;
 }
 
-/// An integral with its slope.
-struct Integral {
-  double value;
-  Row slope;
-};
-
 /// The same for a step whose duration moves with the parameters.
-Integral advance(LagState& state, double input, const LagDecay& decay, Eigen::Index lag_index,
-                 const Row& duration_slope) {
-  const auto step = linearize_lag_step(state.output, input, decay);
-  Integral integral{step.value.integral,
-                    step.by_duration.integral * duration_slope + step.by_output.integral * state.slope};
+Sensitive advance(Sensitive& state, const Sensitive& input, const LagDecay& decay, Eigen::Index lag_index,
+                  const Row& duration_slope) {
+  const auto step = linearize_lag_step(state.value, input.value, decay);
+  Sensitive integral{step.value.integral, step.by_duration.integral * duration_slope +
+                                              step.by_output.integral * state.slope +
+                                              step.by_input.integral * input.slope};
   integral.slope[lag_index] += step.by_time_constant.integral;
-  state.slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope;
+  state.slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope +
+                step.by_input.output * input.slope;
   state.slope[lag_index] += step.by_time_constant.output;
-  state.output = step.value.output;
+  state.value = step.value.output;
   return integral;
 }
+
+/// How the gaps of a channel's two lags close over a step.
+struct ChannelDecay {
+  LagDecay fast, slow;
+
+  ChannelDecay(const ChannelResponse& response, double duration)
+      : fast(response.lag, duration), slow(response.slow_lag, duration) {}
+};
+
+/// One channel of the drive: two lags side by side.
+class DriveChannel {
+ public:
+  explicit DriveChannel(const ChannelResponse& response) : response_(response) {}
+
+  /// Settled on an input that was held for long.
+  void settle(double input) {
+    fast_ = part_of(input, response_, false);
+    slow_ = response_.has_slow_part() ? part_of(input, response_, true) : Sensitive{};
+  }
+
+  /// The whole was measured: what the fast part does not explain is the slow part's.
+  void measured(double value) {
+    if (response_.has_slow_part()) {
+      slow_ = {value - fast_.value, -fast_.slope};
+    } else {
+      fast_ = {.value = value};
+    }
+  }
+
+  /// Advances over a step; returns the integral.
+  double step(double input, const ChannelDecay& decay) {
+    const double share = response_.share();
+    double integral = advance(fast_, (1.0 - share) * response_.gain * input, decay.fast);
+    if (response_.has_slow_part()) {
+      integral += advance(slow_, share * response_.gain * input, decay.slow);
+    }
+    return integral;
+  }
+
+  Sensitive linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
+    const ChannelPlaces& places = response_.places;
+    Sensitive integral = advance(fast_, part_of(input, response_, false), decay.fast, places.lag, duration_slope);
+    if (response_.has_slow_part()) {
+      const Sensitive slow =
+          advance(slow_, part_of(input, response_, true), decay.slow, places.slow_lag, duration_slope);
+      integral.value += slow.value;
+      integral.slope += slow.slope;
+    }
+    return integral;
+  }
+
+ private:
+  ChannelResponse response_;
+  Sensitive fast_, slow_;
+};
 
 /// Walks over the delayed input changes of a window, with or without slopes.
 class ChainWalk {
  public:
   ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window, bool with_slopes)
       : chain_(chain),
-        longest_step_(window.longest_step),
+        window_(window),
         with_slopes_(with_slopes),
+        speed_(speed_response(chain)),
+        turn_(turn_response(chain)),
         start_(moment_of(window.start)),
         end_(moment_of(window.end)),
-        warm_up_(window.initial ? 0.0 : kSettledLags * std::max(chain.lag_v, chain.lag_omega)),
-        cursor_v_(inputs, chain.delay_v, kDelayV, start_.t - warm_up_, window.end),
-        cursor_omega_(inputs, chain.delay_omega, kDelayOmega, start_.t - warm_up_, window.end) {
-    const BodyTwist begin =
-        window.initial.value_or(BodyTwist{cursor_v_.held().v, cursor_v_.held().vy, cursor_omega_.held().omega});
-    v_.output = begin.v;
-    vy_.output = begin.vy;
-    omega_.output = begin.omega;
+        chain_start_(window.initial && window.known ? Moment{window.known->until, kFixed} : start_),
+        warm_up_(kSettledLags * warm_up_lag()),
+        cursor_v_(inputs, chain.delay_v, kSpeedPlaces.delay, chain_start_.t - warm_up_, window.end),
+        cursor_omega_(inputs, chain.delay_omega, kTurnPlaces.delay, chain_start_.t - warm_up_, window.end),
+        v_(speed_),
+        vy_(speed_),
+        omega_(turn_) {
+    v_.settle(cursor_v_.held().v);
+    vy_.settle(cursor_v_.held().vy);
+    omega_.settle(cursor_omega_.held().omega);
   }
 
   DriveSteps run() {
-    if (warm_up_ > 0.0) {
-      cover({start_.t - warm_up_, kFixed}, start_, nullptr);
-    }
     DriveSteps result;
     const std::size_t steps = cursor_v_.changes_left() + cursor_omega_.changes_left() + 2;
     result.steps.reserve(steps);
     result.jacobians.reserve(with_slopes_ ? steps : 0);
-    cover(start_, end_, &result);
+    if (warm_up_ > 0.0) {
+      cover({chain_start_.t - warm_up_, kFixed}, chain_start_, nullptr);
+    }
+    if (window_.initial) {
+      v_.measured(window_.initial->v);
+      vy_.measured(window_.initial->vy);
+      omega_.measured(window_.initial->omega);
+    }
+    if (start_.t < chain_start_.t) {
+      follow_measured(&result);
+    } else if (start_.t > chain_start_.t) {
+      cover(chain_start_, start_, nullptr);
+    }
+    cover(start_.t < chain_start_.t ? chain_start_ : start_, end_, &result);
     return result;
   }
 
  private:
   Moment moment_of(double stamp) const { return {stamp - chain_.clock_offset, kOffset}; }
 
+  /// The time constant that the drive's state at the start hangs on: none where it was measured whole.
+  double warm_up_lag() const {
+    if (!window_.initial) {
+      return std::max(speed_.longest_lag(), turn_.longest_lag());
+    }
+    return std::max(speed_.has_slow_part() ? speed_.lag : 0.0, turn_.has_slow_part() ? turn_.lag : 0.0);
+  }
+
+  /// Records the drive as it was measured, from the start until the chain takes over.
+  void follow_measured(DriveSteps* out) const {
+    const InputTrack& twist = *window_.known->twist;
+    const Moment until = chain_start_.t < end_.t ? chain_start_ : end_;
+    std::size_t next = twist.count_until(start_.t);
+    for (Moment now = start_; now.t < until.t; ++next) {
+      const bool last = next >= twist.size() || twist.time(next) >= until.t;
+      const Moment then = last ? until : Moment{twist.time(next), kFixed};
+      const BodyTwist held = next == 0 ? BodyTwist{} : twist.sample(next - 1);
+      const double duration = then.t - now.t;
+      const Row slope = then.slope() - now.slope();
+      DriveStepJacobian jacobian;
+      jacobian << slope, held.v * slope, held.vy * slope, held.omega * slope;
+      record({duration, held.v * duration, held.vy * duration, held.omega * duration}, jacobian, out);
+      now = then;
+    }
+  }
+
   /// Steps from `now` to `until`; they are recorded where there is an `out`.
   void cover(Moment now, const Moment& until, DriveSteps* out) {
     while (now.t < until.t) {
+      if (out == nullptr) {
+        cursor_v_.skip_repeats(until.t);
+        cursor_omega_.skip_repeats(until.t);
+      }
       const double change = std::min(cursor_v_.next_change(), cursor_omega_.next_change());
       Moment next = until;
       if (change < until.t) {
@@ -150,12 +289,13 @@ class ChainWalk {
   }
 
   void subdivide(const Moment& from, const Moment& to, DriveSteps* out) {
-    const bool lagging = chain_.lag_v > 0.0 || chain_.lag_omega > 0.0;
-    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / longest_step_))) : 1;
+    const bool lagging = speed_.longest_lag() > 0.0 || turn_.longest_lag() > 0.0;
+    const bool divided = lagging && out != nullptr;  // a lag that nobody sees needs no mean over short steps
+    const int parts =
+        divided ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / window_.longest_step - kSameStep))) : 1;
     const double duration = (to.t - from.t) / parts;
-    const LagDecay decay_v(chain_.lag_v, duration);
-    const LagDecay decay_omega(chain_.lag_omega, duration);
-    // Without lag, only steps whose duration moves have slopes.
+    const ChannelDecay decay_v(speed_, duration);
+    const ChannelDecay decay_omega(turn_, duration);
     if (with_slopes_ && (lagging || from.parameter != to.parameter)) {
       const Row slope = (to.slope() - from.slope()) * (1.0 / parts);
       for (int i = 0; i < parts; ++i) {
@@ -165,10 +305,19 @@ class ChainWalk {
       }
       return;
     }
-    const DriveStepJacobian no_slopes = DriveStepJacobian::Zero();
     for (int i = 0; i < parts; ++i) {
-      record(next_step(decay_v, decay_omega), no_slopes, out);
+      const DriveStep step = next_step(decay_v, decay_omega);
+      record(step, with_slopes_ ? gain_slopes(duration) : DriveStepJacobian(), out);
     }
+  }
+
+  /// Without lag, and where no duration moves, only the gains tell.
+  DriveStepJacobian gain_slopes(double duration) const {
+    DriveStepJacobian jacobian = DriveStepJacobian::Zero();
+    jacobian(1, kSpeedPlaces.gain) = cursor_v_.held().v * duration;
+    jacobian(2, kSpeedPlaces.gain) = cursor_v_.held().vy * duration;
+    jacobian(3, kTurnPlaces.gain) = cursor_omega_.held().omega * duration;
+    return jacobian;
   }
 
   void record(const DriveStep& step, const DriveStepJacobian& jacobian, DriveSteps* out) const {
@@ -180,31 +329,34 @@ class ChainWalk {
     }
   }
 
-  DriveStep next_step(const LagDecay& decay_v, const LagDecay& decay_omega) {
+  DriveStep next_step(const ChannelDecay& decay_v, const ChannelDecay& decay_omega) {
     const BodyTwist linear = cursor_v_.held();
-    return {decay_v.duration, advance(v_, linear.v, decay_v), advance(vy_, linear.vy, decay_v),
-            advance(omega_, cursor_omega_.held().omega, decay_omega)};
+    return {decay_v.fast.duration, v_.step(linear.v, decay_v), vy_.step(linear.vy, decay_v),
+            omega_.step(cursor_omega_.held().omega, decay_omega)};
   }
 
-  DriveStep linearize_step(const LagDecay& decay_v, const LagDecay& decay_omega, const Row& duration_slope,
+  DriveStep linearize_step(const ChannelDecay& decay_v, const ChannelDecay& decay_omega, const Row& duration_slope,
                            DriveStepJacobian& jacobian) {
     const BodyTwist linear = cursor_v_.held();
-    const Integral forward = advance(v_, linear.v, decay_v, kLagV, duration_slope);
-    const Integral left = advance(vy_, linear.vy, decay_v, kLagV, duration_slope);
-    const Integral turn = advance(omega_, cursor_omega_.held().omega, decay_omega, kLagOmega, duration_slope);
+    const Sensitive forward = v_.linearize_step(linear.v, decay_v, duration_slope);
+    const Sensitive left = vy_.linearize_step(linear.vy, decay_v, duration_slope);
+    const Sensitive turn = omega_.linearize_step(cursor_omega_.held().omega, decay_omega, duration_slope);
     jacobian << duration_slope, forward.slope, left.slope, turn.slope;
-    return {decay_v.duration, forward.value, left.value, turn.value};
+    return {decay_v.fast.duration, forward.value, left.value, turn.value};
   }
 
   const CommandChain& chain_;
-  double longest_step_;
+  const DriveWindow& window_;
   bool with_slopes_;
+  ChannelResponse speed_;
+  ChannelResponse turn_;
   Moment start_;
   Moment end_;
+  Moment chain_start_;
   double warm_up_;
   DelayedCursor cursor_v_;
   DelayedCursor cursor_omega_;
-  LagState v_, vy_, omega_;
+  DriveChannel v_, vy_, omega_;
 };
 
 }  // namespace

@@ -2,7 +2,6 @@
 // The causal filter of one model.
 #include "slipwise/estimate/causal_filter.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -16,10 +15,6 @@ constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their
 Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
   const Eigen::Vector3d root = scale.cwiseSqrt();
   return root.asDiagonal() * covariance * root.asDiagonal();
-}
-
-double student_log_score(double nis, const Eigen::Matrix3d& covariance) {
-  return -0.5 * std::log(covariance.determinant()) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);
 }
 
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
@@ -64,17 +59,16 @@ void CausalFilter::forget(double share) {
   noise_scale_.hurry();
 }
 
-Learned CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
+IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
   const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
   const Eigen::Matrix3d expected =
       slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
-  Learned learned{
-      iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_.value()), settings_.iekf), 0.0};
-  learned.log_score = student_log_score(learned.update.nis, learned.update.innovation_covariance);
-  estimate_ = learned.update.estimate;
+  IekfUpdate update =
+      iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_.value()), settings_.iekf);
+  estimate_ = update.estimate;
   noise_scale_.learn(model_, estimate_, inputs, segment, expected.diagonal());
-  return learned;
+  return update;
 }
 
 Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,

@@ -69,6 +69,14 @@ LeastSquaresFit fit_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& desig
                                   const Eigen::Ref<const Eigen::VectorXd>& output,
                                   const Eigen::Ref<const Eigen::VectorXd>& relative_std) {
   check(design, output, relative_std);
+  if (design.cols() == 0) {  // a channel without terms: nothing to fit, all is residual
+    return {.coefficients = Eigen::VectorXd(0),
+            .covariance = Eigen::MatrixXd(0, 0),
+            .undetermined = Eigen::MatrixXd(0, 0),
+            .scale = Eigen::VectorXd(0),
+            .residual = output,
+            .leverage = Eigen::VectorXd::Zero(output.size())};
+  }
   const Eigen::VectorXd weight = relative_std.cwiseInverse();
   const Eigen::VectorXd scale = column_scale(design);
   const Eigen::MatrixXd scaled = weight.asDiagonal() * design * scale.cwiseInverse().asDiagonal();

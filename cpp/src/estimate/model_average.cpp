@@ -3,10 +3,14 @@
 // 2012).
 #include "slipwise/estimate/model_average.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
+#include <string>
 #include <utility>
+
+#include "slipwise/estimate/predictive_score.hpp"
 
 namespace slipwise {
 namespace {
@@ -50,6 +54,20 @@ std::vector<Eigen::Index> changing_terms(const Basis& basis) {
 
 }  // namespace
 
+Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
+                          const ModelAverageSettings& settings) {
+  if (weights.size() != log_scores.size() || weights.size() == 0) {
+    throw std::invalid_argument("each model needs a weight and a log score, got " + std::to_string(weights.size()) +
+                                " weights and " + std::to_string(log_scores.size()) + " scores");
+  }
+  const double equal = 1.0 / static_cast<double>(weights.size());
+  // Shared before the segment speaks, not after: what is spread to models that it refutes never reaches a prediction.
+  const Eigen::ArrayXd shared = (1.0 - settings.share) * weights.array() + settings.share * equal;
+  const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
+  const Eigen::VectorXd heavier = shared * tempered.exp();
+  return heavier / heavier.sum();
+}
+
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
     : model_(averaged_basis(std::move(name), bases), learned),
@@ -70,16 +88,13 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   if (change_.alarm) {
     doubt();
   }
-  Eigen::VectorXd log_scores(weights_.size());
   std::vector<IekfUpdate> updates;
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    Learned learned = filters_[i].learn(inputs, segment, speeds_.reference());
-    log_scores[static_cast<Eigen::Index>(i)] = learned.log_score;
-    updates.push_back(std::move(learned.update));
+  for (CausalFilter& filter : filters_) {
+    updates.push_back(filter.learn(inputs, segment, speeds_.reference()));
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
-  weigh(log_scores);
+  weights_ = reweighed(weights_, log_scores(updates), settings_);
   if (on_trial_ > 0) {
     --on_trial_;
     if (on_trial_ == 0) {
@@ -87,6 +102,21 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
     }
   }
   return updates[static_cast<std::size_t>(heaviest)];
+}
+
+/// All under one covariance, the models' mean: a model is judged by its errors, not by how well it knows their size.
+Eigen::VectorXd ModelAverage::log_scores(const std::vector<IekfUpdate>& updates) const {
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    covariance += weights_[static_cast<Eigen::Index>(i)] * updates[i].innovation_covariance;
+  }
+  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+  Eigen::VectorXd scores(weights_.size());
+  for (std::size_t i = 0; i < updates.size(); ++i) {
+    const Eigen::Vector3d& innovation = updates[i].innovation;
+    scores[static_cast<Eigen::Index>(i)] = student_log_score(innovation.dot(factor.solve(innovation)), covariance);
+  }
+  return scores;
 }
 
 /// By what the average predicted as it was before the segments that are tested together: the noise factors and the
@@ -137,15 +167,6 @@ void ModelAverage::settle() {
 Eigen::VectorXd ModelAverage::basis_weights() const {
   const auto bases = static_cast<Eigen::Index>(places_.size());
   return weights_.reshaped(bases, weights_.size() / bases).rowwise().sum();
-}
-
-void ModelAverage::weigh(const Eigen::VectorXd& log_scores) {
-  const double equal = 1.0 / static_cast<double>(weights_.size());
-  // Shared before the segment speaks, not after: what is spread to models that it refutes never reaches a prediction.
-  const Eigen::ArrayXd shared = (1.0 - settings_.share) * weights_.array() + settings_.share * equal;
-  const Eigen::ArrayXd tempered = settings_.learning_rate * (log_scores.array() - log_scores.maxCoeff());
-  weights_ = shared * tempered.exp();
-  weights_ /= weights_.sum();
 }
 
 AverageState ModelAverage::state() const {

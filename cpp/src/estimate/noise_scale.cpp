@@ -5,6 +5,11 @@
 #include <algorithm>
 
 namespace slipwise {
+namespace {
+
+constexpr double kLeastShare = 0.1;  // of a squared error that is noise, however much the parameters leave open
+
+}  // namespace
 
 void NoiseScale::learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
                        const Segment& segment, const Eigen::Vector3d& expected) {
@@ -14,7 +19,17 @@ void NoiseScale::learn(const MotionModel& model, const Estimate& estimate, const
   const auto at = linearize_segment(model, estimate.mean, inputs, segment);
   const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
   const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
-  const Eigen::Vector3d squared = residual.cwiseAbs2() + open.diagonal();
+  follow(residual.cwiseAbs2() + open.diagonal(), expected);
+}
+
+void NoiseScale::learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open,
+                                  const Eigen::Vector3d& expected) {
+  if (settings_.adapt) {
+    follow((squared - open).cwiseMax(kLeastShare * squared), expected);
+  }
+}
+
+void NoiseScale::follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected) {
   segments_ += 1.0;
   const double gain = std::max(1.0 / (segments_ + settings_.prior_segments), 1.0 / settings_.memory);
   value_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.largest * value_) - value_);

@@ -37,6 +37,14 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
     std.segment<4>(at).setConstant(settings.log_std);
     at += 4;
   }
+  if (model.learned().response) {
+    prior.mean.segment<2>(at).setOnes();
+    std.segment<2>(at).setConstant(settings.gain_std);
+    std.segment<2>(at + 2).setConstant(settings.slow_share_std);
+    prior.mean.segment<2>(at + 4).setConstant(std::log(settings.slow_lag));
+    std.segment<2>(at + 4).setConstant(settings.log_std);
+    at += 6;
+  }
   if (model.learned().clock_offset) {
     std[at] = settings.clock_offset_std;
   }

@@ -18,21 +18,53 @@ ParameterInfo slip_info(const Basis& basis, std::size_t i) {
           "share of " + basis.terms()[i].text() + " in the " + std::string(kSlipRateWords[c]) + " slip rate"};
 }
 
+/// One of the chain's parameters: where it stands, and whether its logarithm is what is learned.
+struct ChainParameter {
+  double CommandChain::* value;
+  bool logarithm;
+  const char* name;
+  const char* unit;
+  const char* description;
+};
+
+/// In CommandChain's order.
+constexpr std::array<ChainParameter, kChainParameters> kChain{{
+    {&CommandChain::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
+    {&CommandChain::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
+    {&CommandChain::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
+    {&CommandChain::delay_omega, true, "log_delay_omega", "ln s", "transport delay of the yaw rate"},
+    {&CommandChain::clock_offset, false, "clock_offset", "s", "lateness of the pose stamps against the input stamps"},
+    {&CommandChain::gain_v, false, "gain_v", "-", "drive over input, of the speed"},
+    {&CommandChain::gain_omega, false, "gain_omega", "-", "drive over input, of the yaw rate"},
+    {&CommandChain::slow_share_v, false, "slow_share_v", "-", "share of the speed that follows slowly"},
+    {&CommandChain::slow_share_omega, false, "slow_share_omega", "-", "share of the yaw rate that follows slowly"},
+    {&CommandChain::slow_lag_v, true, "log_slow_lag_v", "ln s", "slow time constant of the speed"},
+    {&CommandChain::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
+}};
+
+const ChainParameter& chain_parameter(Eigen::Index place) { return kChain[static_cast<std::size_t>(place)]; }
+
 }  // namespace
+
+MotionModel::MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {
+  const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> places) {
+    if (wanted) {
+      chain_places_.insert(chain_places_.end(), places);
+    }
+  };
+  add(learned_.dynamics, {0, 1, 2, 3});
+  add(learned_.response, {5, 6, 7, 8, 9, 10});
+  add(learned_.clock_offset, {4});
+}
 
 std::vector<ParameterInfo> MotionModel::parameters() const {
   std::vector<ParameterInfo> infos;
   for (std::size_t i = 0; i < basis_.size(); ++i) {
     infos.push_back(slip_info(basis_, i));
   }
-  if (learned_.dynamics) {
-    infos.push_back({"log_lag_v", "ln s", "time constant of the speed"});
-    infos.push_back({"log_lag_omega", "ln s", "time constant of the yaw rate"});
-    infos.push_back({"log_delay_v", "ln s", "transport delay of the speed"});
-    infos.push_back({"log_delay_omega", "ln s", "transport delay of the yaw rate"});
-  }
-  if (learned_.clock_offset) {
-    infos.push_back({"clock_offset", "s", "lateness of the pose stamps against the input stamps"});
+  for (const Eigen::Index place : chain_places_) {
+    const ChainParameter& parameter = chain_parameter(place);
+    infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
   return infos;
 }
@@ -40,31 +72,22 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
 CommandChain MotionModel::chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   CommandChain chain;
   Eigen::Index at = slip_size();
-  if (learned_.dynamics) {
-    chain.lag_v = std::exp(parameters[at++]);
-    chain.lag_omega = std::exp(parameters[at++]);
-    chain.delay_v = std::exp(parameters[at++]);
-    chain.delay_omega = std::exp(parameters[at++]);
-  }
-  if (learned_.clock_offset) {
-    chain.clock_offset = parameters[at];
+  for (const Eigen::Index place : chain_places_) {
+    const ChainParameter& parameter = chain_parameter(place);
+    chain.*parameter.value = parameter.logarithm ? std::exp(parameters[at]) : parameters[at];
+    ++at;
   }
   return chain;
 }
 
-Eigen::MatrixXd MotionModel::chain_jacobian(const CommandChain& chain) const {
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(kChainParameters, size() - slip_size());
-  Eigen::Index column = 0;
-  if (learned_.dynamics) {
-    for (const double seconds : {chain.lag_v, chain.lag_omega, chain.delay_v, chain.delay_omega}) {
-      jacobian(column, column) = seconds;  // d exp(log s) / d log s = s
-      ++column;
-    }
+Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
+  Eigen::VectorXd scales(size() - slip_size());
+  Eigen::Index at = 0;
+  for (const Eigen::Index place : chain_places_) {
+    const ChainParameter& parameter = chain_parameter(place);
+    scales[at++] = parameter.logarithm ? chain.*parameter.value : 1.0;
   }
-  if (learned_.clock_offset) {
-    jacobian(kChainParameters - 1, column) = 1.0;
-  }
-  return jacobian;
+  return scales;
 }
 
 void MotionModel::check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {

@@ -10,10 +10,12 @@
 namespace slipwise {
 namespace {
 
-using ChainColumns = Eigen::Matrix<double, 3, kChainParameters>;
+/// One column per learned parameter of the chain.
+using ChainColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kChainParameters>;
+using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kChainParameters>;
 
 DriveWindow window_of(const Segment& segment) {
-  return {.start = segment.start, .end = segment.end, .initial = segment.initial};
+  return {.start = segment.start, .end = segment.end, .initial = segment.initial, .known = segment.known};
 }
 
 /// The mean drive over a step, which its slip depends on.
@@ -24,7 +26,7 @@ SlipState slip_state(const DriveStep& step, const Segment& segment) {
 
 /// The same for a step that has no duration yet gains some with the chain's parameters: its integrals grow with its
 /// twist.
-SlipState slip_state(const DriveStepJacobian& jacobian, const Segment& segment) {
+SlipState slip_state(const LearnedColumns& jacobian, const Segment& segment) {
   const double squared = jacobian.row(0).squaredNorm();
   const double per_duration = squared > 0.0 ? 1.0 / squared : 0.0;
   return {.v = jacobian.row(1).dot(jacobian.row(0)) * per_duration,
@@ -96,7 +98,7 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
 
 /// Derivative of a step's tangent by the chain's parameters: through duration and integrals, and through the slip they
 /// cause.
-ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& jacobian, const Basis& basis,
+ChainColumns tangent_by_chain(const DriveStep& step, const LearnedColumns& jacobian, const Basis& basis,
                               const Eigen::VectorXd& alpha, const Segment& segment) {
   ChainColumns result = jacobian.bottomRows<3>();
   if (!(step.duration > 0.0)) {
@@ -114,9 +116,13 @@ ChainColumns tangent_by_chain(const DriveStep& step, const DriveStepJacobian& ja
 /// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
-  ChainColumns chain = ChainColumns::Zero();
+  ChainColumns chain;
 
-  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()) { slip.setZero(); }
+  explicit SensitivitySums(const MotionModel& model)
+      : slip(3, model.slip_size()), chain(3, model.size() - model.slip_size()) {
+    slip.setZero();
+    chain.setZero();
+  }
 
   /// d(tangent) / d(alpha) is the feature times the duration, in the term's own channel.
   void add_slip(const Basis& basis, const Eigen::Matrix3d& by_tangent, std::span<const double> features,
@@ -136,7 +142,7 @@ struct SensitivitySums {
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
     jacobian.leftCols(model.slip_size()) = phi * slip;
     if (model.size() > model.slip_size()) {
-      jacobian.rightCols(model.size() - model.slip_size()) = phi * chain * model.chain_jacobian(at);
+      jacobian.rightCols(chain.cols()) = phi * chain * model.chain_scales(at).asDiagonal();
     }
     return jacobian;
   }
@@ -180,8 +186,11 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
     const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
     const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
     sums.add_slip(model.basis(), by_tangent, features, step.duration);
-    if (chain_learned && !drive.jacobians[k].isZero(0.0)) {
-      sums.chain += by_tangent * tangent_by_chain(step, drive.jacobians[k], model.basis(), alpha, segment);
+    if (chain_learned) {
+      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
+      if (!learned.isZero(0.0)) {
+        sums.chain += by_tangent * tangent_by_chain(step, learned, model.basis(), alpha, segment);
+      }
     }
   }
   const Pose2 predicted = path.pose();

@@ -2,7 +2,10 @@
 // The command chain: what its steps sum to, causality, and its exact sensitivities.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,7 +19,17 @@ namespace {
 using Chain = Eigen::Matrix<double, kChainParameters, 1>;
 
 CommandChain chain_of(const Eigen::VectorXd& p) {
-  return {.lag_v = p[0], .lag_omega = p[1], .delay_v = p[2], .delay_omega = p[3], .clock_offset = p[4]};
+  return {.lag_v = p[0],
+          .lag_omega = p[1],
+          .delay_v = p[2],
+          .delay_omega = p[3],
+          .clock_offset = p[4],
+          .gain_v = p[5],
+          .gain_omega = p[6],
+          .slow_share_v = p[7],
+          .slow_share_omega = p[8],
+          .slow_lag_v = p[9],
+          .slow_lag_omega = p[10]};
 }
 
 /// Totals of duration, forward, left, turn; and a moment that tells early steps from late ones.
@@ -58,21 +71,43 @@ struct Case {
   Chain parameters;
 };
 
+Chain parameters(std::initializer_list<double> values) {
+  Chain chain;
+  std::ranges::copy(values, chain.begin());
+  return chain;
+}
+
 /// Generic points: no input changes at a window's end, at its start, or together with one of the other channel.
 std::vector<Case> sample_cases() {
-  const Chain lagging(0.31, 0.47, 0.113, 0.071, 0.023);
-  const Chain shorter(0.11, 0.07, 0.2163, 0.1331, -0.0171);
+  const Chain lagging = parameters({0.31, 0.47, 0.113, 0.071, 0.023, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  const Chain shorter = parameters({0.11, 0.07, 0.2163, 0.1331, -0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
+  const Chain slow = parameters({0.11, 0.27, 0.0163, 0.1331, 0.1171, 0.9, 1.1, 0.2, 0.4, 1.3, 2.1});
+  const Chain early = parameters({0.2, 0.3, 0.003, 0.004, -0.33, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
   const BodyTwist moving{0.6, 0.1, -0.3};
+  const auto wheels =
+      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.003, 0.05, 200));
+  const KnownDrive until_now{wheels, 2.013};
   return {
       {"20 Hz, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, lagging},
       {"20 Hz, warmed up", 0.05, {.start = 4.013, .end = 6.487}, lagging},
       {"20 Hz, late inputs clipped", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, shorter},
-      {"20 Hz, clipped by a negative offset",
-       0.05,
-       {.start = 4.013, .end = 6.487},
-       Chain(0.2, 0.3, 0.003, 0.004, -0.33)},
+      {"20 Hz, clipped by a negative offset", 0.05, {.start = 4.013, .end = 6.487}, early},
       {"1 Hz held commands", 1.0137, {.start = 6.31, .end = 11.27, .initial = moving, .longest_step = 0.11}, lagging},
       {"1 Hz held commands, warmed up", 1.0137, {.start = 6.31, .end = 11.27, .longest_step = 0.11}, shorter},
+      {"20 Hz, slow part, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, slow},
+      {"20 Hz, slow part, warmed up", 0.05, {.start = 4.013, .end = 6.487}, slow},
+      {"20 Hz, known until after the start",
+       0.05,
+       {.start = 2.013, .end = 4.487, .initial = moving, .known = until_now},
+       slow},
+      {"20 Hz, known until before the start",
+       0.05,
+       {.start = 2.013, .end = 4.487, .initial = moving, .known = until_now},
+       early},
+      {"20 Hz, known throughout",
+       0.05,
+       {.start = 2.013, .end = 4.487, .initial = moving, .known = KnownDrive{wheels, 5.0}},
+       slow},
   };
 }
 
@@ -84,23 +119,27 @@ TEST_CASE("drive steps are linearised exactly by every parameter of the chain") 
     const DriveSteps linearized = linearize_drive_steps(inputs, chain_of(c.parameters), c.window);
     CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
     const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
-    CHECK(tests::jacobian_error(totals_jacobian(linearized), numeric, 0.1) < tests::kDerivativeTolerance);
+    // Where there is no slow part, its time constants cannot move: it would appear.
+    const Eigen::Index moving = c.parameters.tail<2>().isZero() ? kChainParameters - 2 : kChainParameters;
+    CHECK(tests::jacobian_error(totals_jacobian(linearized).leftCols(moving), numeric.leftCols(moving), 0.1) <
+          tests::kDerivativeTolerance);
   }
 }
 
-TEST_CASE("without lag, delays and the clock offset move distances by the speeds at the ends") {
+TEST_CASE(
+    "without lag, gains scale distances, and delays and the clock offset move distances by the speeds at the ends") {
   const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
   const DriveWindow window{.start = 2.013, .end = 4.487};
   const auto value = [&](const Eigen::VectorXd& p) { return totals(drive_steps(inputs, chain_of(p), window)); };
-  const Chain point(0.0, 0.0, 0.113, 0.0717, 0.0231);
+  const Chain point = parameters({0.0, 0.0, 0.113, 0.0717, 0.0231, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
   const auto linearized = linearize_drive_steps(inputs, chain_of(point), window);
   const auto moving_only = [&](const Eigen::VectorXd& p) {
     Chain all = point;
-    all.tail<3>() = p;
+    all.segment<5>(2) = p;
     return value(all);
   };
-  const auto numeric = tests::finite_difference(moving_only, point.tail<3>(), 1e-4);
-  CHECK(tests::jacobian_error(totals_jacobian(linearized).rightCols<3>(), numeric) < tests::kDerivativeTolerance);
+  const auto numeric = tests::finite_difference(moving_only, point.segment<5>(2), 1e-4);
+  CHECK(tests::jacobian_error(totals_jacobian(linearized).middleCols<5>(2), numeric) < tests::kDerivativeTolerance);
   const double left_behind = inputs.at(2.013 - 0.0231 - 0.113).v - inputs.at(4.487 - 0.0231 - 0.113).v;
   CHECK(totals_jacobian(linearized)(1, 2) == doctest::Approx(left_behind).epsilon(1e-12));
 }
@@ -164,6 +203,58 @@ TEST_CASE("a warmed-up lag forgets where it began") {
   const auto warmed = drive_steps(whole, chain, {.start = 10.0, .end = 15.0});
   const Eigen::Vector3d last = (totals(from_rest) - totals(until_ten)).segment<3>(1);
   CHECK((totals(warmed).segment<3>(1) - last).norm() < 1e-3);
+}
+
+TEST_CASE("a slow part with the lag's own time constant is that lag") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const CommandChain one{.lag_v = 0.8, .lag_omega = 0.6, .delay_v = 0.16};
+  CommandChain two = one;
+  two.slow_share_v = two.slow_share_omega = 0.4;
+  two.slow_lag_v = 0.8;
+  two.slow_lag_omega = 0.6;
+  for (const std::optional<BodyTwist> initial : {std::optional<BodyTwist>{}, std::optional(BodyTwist{0.5, 0.0, 0.2})}) {
+    const DriveWindow window{.start = 8.02, .end = 9.51, .initial = initial};
+    CHECK((totals(drive_steps(inputs, one, window)) - totals(drive_steps(inputs, two, window))).norm() < 1e-9);
+  }
+}
+
+TEST_CASE("a drive that is known throughout is what was measured") {
+  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
+  const auto wheels =
+      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
+  const CommandChain chain{.lag_v = 0.3, .lag_omega = 0.2, .clock_offset = 0.11};
+  const BodyTwist now = wheels->at(5.0);
+  const auto known =
+      drive_steps(commands, chain, {.start = 2.0, .end = 4.0, .initial = now, .known = KnownDrive{wheels, 5.0}});
+  const auto measured = drive_steps(*wheels, {.clock_offset = 0.11}, {.start = 2.0, .end = 4.0});
+  CHECK((totals(known) - totals(measured)).norm() < 1e-12);
+}
+
+TEST_CASE("a drive goes on from where it was known, whatever the clock offset") {
+  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 101);  // until 5.0 s
+  const auto wheels =
+      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
+  const double now = 3.02;
+  for (const double offset : {0.13, -0.13}) {
+    CAPTURE(offset);
+    const CommandChain chain{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.04, .clock_offset = offset};
+    const auto whole =
+        drive_steps(commands, chain,
+                    {.start = now, .end = now + 2.0, .initial = wheels->at(now), .known = KnownDrive{wheels, now}});
+    CommandChain in_step = chain;
+    in_step.clock_offset = 0.0;
+    const double end = now + 2.0 - offset;
+    const auto after = drive_steps(commands, in_step, {.start = now, .end = end, .initial = wheels->at(now)});
+    Eigen::VectorXd expected = totals(after);
+    if (offset > 0.0) {
+      expected.head<4>() += totals(drive_steps(*wheels, {}, {.start = now - offset, .end = now})).head<4>();
+    } else {
+      expected.head<4>() -=
+          totals(drive_steps(commands, in_step, {.start = now, .end = now - offset, .initial = wheels->at(now)}))
+              .head<4>();
+    }
+    CHECK((totals(whole).head<4>() - expected.head<4>()).norm() < 1e-9);
+  }
 }
 
 }  // namespace

@@ -88,17 +88,6 @@ TEST_CASE("forgetting gives slip its prior variance back in part, and nothing to
   CHECK(variance.tail(4) == before.covariance.diagonal().tail(4));
 }
 
-TEST_CASE("a better predicted segment scores higher") {
-  const MotionModel model(named_basis("edd-2"), {});
-  CausalFilter near(model, {});
-  CausalFilter far(model, {});
-  const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
-  const InputTrack inputs(t, v, zero, zero);
-  const Segment as_told{.start = 0.0, .end = 2.0, .measured = {2.0, 0.0, 0.0}};
-  const Segment off{.start = 0.0, .end = 2.0, .measured = {2.0, 0.5, 0.2}};
-  CHECK(near.learn(inputs, as_told, kSpeeds).log_score > far.learn(inputs, off, kSpeeds).log_score);
-}
-
 TEST_CASE("a prediction's covariance has parameters, slip noise and pose noise") {
   const MotionModel model(named_basis("edd-2"), {});
   const std::vector<double> t{0.0}, v{1.0}, zero{0.0};

@@ -108,6 +108,16 @@ TEST_CASE("a spread that is constant is recovered by the log variance within thr
   CHECK(std::log(fit.std(1.75, 0.5) / 0.2) == doctest::Approx(0.0).scale(1.0).epsilon(3.0 * 1.11 / std::sqrt(4000.0)));
 }
 
+TEST_CASE("a channel without terms has no slip, and all of it is residual") {
+  const Eigen::VectorXd output = Eigen::Vector3d(0.1, -0.2, 0.3);
+  const LeastSquaresFit fit = fit_least_squares(Eigen::MatrixXd(3, 0), output, Eigen::VectorXd::Ones(3));
+  CHECK(fit.coefficients.size() == 0);
+  CHECK(fit.rank() == 0);
+  CHECK(fit.residual == output);
+  CHECK(fit.mean_variance(Eigen::VectorXd(0)) == 0.0);
+  CHECK(thesis_std_coefficients(Eigen::MatrixXd(3, 0), fit).size() == 0);
+}
+
 TEST_CASE("wrong input is refused") {
   const Eigen::MatrixXd rows = Eigen::MatrixXd::Ones(3, 2);
   CHECK_THROWS_AS(fit_least_squares(rows, Eigen::VectorXd::Ones(2), Eigen::VectorXd::Ones(3)), std::invalid_argument);

@@ -49,21 +49,29 @@ TEST_CASE("a chain that is not learned is the identity") {
   CHECK(chain.lag_v == 0.0);
   CHECK(chain.delay_omega == 0.0);
   CHECK(chain.clock_offset == 0.0);
+  CHECK(chain.gain_v == 1.0);
+  CHECK(chain.slow_share_omega == 0.0);
 }
 
-TEST_CASE("the chain Jacobian is the derivative of the chain by the model's parameters") {
+TEST_CASE("places and scales are the derivative of the chain by the model's parameters") {
   for (const ChainParameters learned :
-       {ChainParameters{true, true}, ChainParameters{true, false}, ChainParameters{false, true}, ChainParameters{}}) {
+       {ChainParameters{true, true, true}, ChainParameters{true, true}, ChainParameters{true, false},
+        ChainParameters{false, true}, ChainParameters{}}) {
     const MotionModel model(named_basis("edd-2"), learned);
     Eigen::VectorXd p = Eigen::VectorXd::LinSpaced(model.size(), -1.5, -0.4);
     const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
       const CommandChain c = model.chain(at);
       Eigen::VectorXd all(kChainParameters);
-      all << c.lag_v, c.lag_omega, c.delay_v, c.delay_omega, c.clock_offset;
+      all << c.lag_v, c.lag_omega, c.delay_v, c.delay_omega, c.clock_offset, c.gain_v, c.gain_omega, c.slow_share_v,
+          c.slow_share_omega, c.slow_lag_v, c.slow_lag_omega;
       return all;
     };
     const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);
-    const Eigen::MatrixXd analytic = model.chain_jacobian(model.chain(p));
+    Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kChainParameters, model.size() - model.slip_size());
+    const Eigen::VectorXd scales = model.chain_scales(model.chain(p));
+    for (Eigen::Index i = 0; i < scales.size(); ++i) {
+      analytic(model.chain_places()[static_cast<std::size_t>(i)], i) = scales[i];
+    }
     CHECK(tests::jacobian_error(analytic, numeric.rightCols(analytic.cols())) < tests::kDerivativeTolerance);
   }
 }

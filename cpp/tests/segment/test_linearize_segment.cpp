@@ -26,13 +26,15 @@ struct Case {
 std::vector<Case> sample_chains() {
   const double lag_v = std::log(0.31), lag_omega = std::log(0.22), delay_v = std::log(0.0827),
                delay_omega = std::log(0.1133);
-  Eigen::VectorXd dynamics(4), both(5);
+  Eigen::VectorXd dynamics(4), both(5), all(11);
   dynamics << lag_v, lag_omega, delay_v, delay_omega;
   both << lag_v, lag_omega, delay_v, delay_omega, 0.0231;
+  all << lag_v, lag_omega, delay_v, delay_omega, 0.93, 1.12, 0.21, 0.34, std::log(1.31), std::log(0.82), 0.0231;
   return {{"no chain", {}, Eigen::VectorXd(0)},
           {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
           {"dynamics", {.dynamics = true}, dynamics},
-          {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both}};
+          {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
+          {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all}};
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain) {
@@ -89,7 +91,7 @@ TEST_CASE("linearised segments are exact from a measured initial twist and under
 TEST_CASE("the derivative where both channels have the same delay is the limit of a yaw rate slightly later") {
   const Basis basis = named_basis("odd-even-10");
   const MotionModel model(basis, {.dynamics = true, .clock_offset = true});
-  Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains().back().chain);
+  Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains()[3].chain);
   equal[model.slip_size() + 3] = equal[model.slip_size() + 2];
   Eigen::VectorXd later = equal;
   later[model.slip_size() + 3] += 1e-7;

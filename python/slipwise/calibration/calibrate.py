@@ -18,11 +18,12 @@ from slipwise.calibration.drive import (
     collect_windows,
     prepare_drive,
 )
-from slipwise.calibration.forecast import Forecaster, final_growth, forecast, forecast_all
+from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
 from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.structure_choice import StructureChoice, learning_pass
 from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
@@ -38,7 +39,7 @@ class _Learned:
 
     motion: _core.MotionModel
     belief: Belief
-    growth: dict[float, float]
+    tails: dict[float, schema.Tail]
     judgement: Judgement
     verdict: Verdict
 
@@ -73,11 +74,15 @@ def calibrate(
     average = learner.fresh()
     names = tuple(basis.name for basis in learner.bases)
     recorder = HistoryRecorder(average.model, windows, names, progress)
-    causal_pass = CausalPass(average, windows, recorder)
+    passing = (
+        CausalPass(average, windows, recorder)
+        if batch
+        else learning_pass(average, windows, settings, recorder)
+    )
     shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", average.model, shape, causal_pass.belief, learner.dynamics)
-    learned = _judged(forecaster, causal_pass, windows, settings)
-    history = recorder.history
+    forecaster = Forecaster("learned", average.model, shape, passing.belief, learner.dynamics)
+    learned = _judged(forecaster, passing, windows, settings)
+    history = recorder.history if isinstance(passing, CausalPass) else passing.history(recorder.history)
     if batch:
         learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
     model = Model(_content(learned, (log, input_name, settings), windows, history))
@@ -107,20 +112,21 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
 
 
 def _judged(
-    forecaster: Forecaster, causal_pass: CausalPass, windows: WindowSet, settings: Settings
+    forecaster: Forecaster, passing: CausalPass | StructureChoice, windows: WindowSet, settings: Settings
 ) -> _Learned:
     """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    growth = {p.horizon: final_growth(p) for p in predictions} if judged else {}
+    tails = {p.horizon: final_tail(p) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    belief = causal_pass.finish()
-    names = tuple(info.name for info in forecaster.model.parameters)
-    return _Learned(forecaster.model, belief, growth, judgement, give_verdict(judgement, names, belief))
+    belief = passing.finish()
+    motion = belief.motion or forecaster.model
+    names = tuple(info.name for info in motion.parameters)
+    return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))
 
 
 def fit_batch_over(
@@ -129,7 +135,7 @@ def fit_batch_over(
     """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
     noise = learner.settings.filter_settings().noise.shape
     belief = fit_batch(learned.motion, windows, learner.settings, (noise, learned.belief.noise_scale), speeds)
-    return _Learned(learned.motion, belief, learned.growth, learned.judgement, learned.verdict)
+    return _Learned(learned.motion, belief, learned.tails, learned.judgement, learned.verdict)
 
 
 def _content(
@@ -143,6 +149,7 @@ def _content(
         slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
         dynamics=learned.motion.dynamics,
         clock_offset=learned.motion.clock_offset,
+        response=learned.motion.response,
         parameters=_parameters(learned.motion, learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
@@ -189,7 +196,7 @@ def _noise(learned: _Learned, settings: Settings) -> schema.Noise:
         pose_std_xy=shape.pose_std_xy,
         pose_std_yaw=shape.pose_std_yaw,
         scale=learned.belief.noise_scale.tolist(),
-        growth=learned.growth,
+        tails=learned.tails,
     )
 
 

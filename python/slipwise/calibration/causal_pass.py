@@ -76,9 +76,17 @@ class HistoryRecorder:
 
     def __call__(self, i: int, update: _core.IekfUpdate, change: _core.ChangeTest, belief: Belief) -> None:
         """Write the row of window i."""
+        self.record(i, update.nis, update.weight, belief)
+        self.mark(i, change)
+
+    def record(self, i: int, nis: float, weight: float, belief: Belief) -> None:
+        """Write the row of window i: its NIS before it was learned, its weight, the belief after it."""
         rows = self.history
         rows.mean[i], rows.std[i] = belief.mean, np.sqrt(np.diag(belief.covariance))
-        rows.nis[i], rows.weight[i], rows.basis_weight[i] = update.nis, update.weight, belief.weights
-        rows.change[i], rows.alarm[i] = change.log_odds, change.alarm
+        rows.nis[i], rows.weight[i], rows.basis_weight[i] = nis, weight, belief.weights
         if self._progress is not None and i % 50 == 0:
             self._progress((i + 1) / len(rows.t))
+
+    def mark(self, i: int, change: _core.ChangeTest) -> None:
+        """Write into the row of window i whether the ground changed."""
+        self.history.change[i], self.history.alarm[i] = change.log_odds, change.alarm

@@ -100,7 +100,7 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
         inputs = run.commands if input_name == "command" else run.wheels
         if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
             continue
-        track = _track(inputs, rolling=input_name == "wheel")
+        track = input_track(inputs, rolling=input_name == "wheel")
         drive.append(DriveRun(index, run, inputs, track, run.wheels if input_name == "command" else None))
     if not drive:
         raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
@@ -114,7 +114,7 @@ def _in_time(drive: list[DriveRun]) -> list[DriveRun]:
     return drive
 
 
-def _track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
+def input_track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
     """Inputs for the core, which takes them for zero before the first one.
 
     A robot has no commands before its first one, yet wheel speeds may begin while it drives: a clock offset

@@ -42,7 +42,7 @@ class EstimatorPass:
             ValueError: there is no such estimator.
         """
         self._estimator = _core.FollowingEstimator(
-            name, motion, settings.filter_settings(), _core.EstimatorSettings()
+            name, motion, settings.filter_settings(), settings.estimator_settings()
         )
         self._windows, self._fed = windows, windows
         if _core.learns_overlapping_segments(name):

@@ -13,14 +13,11 @@ from slipwise import _core
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
+from slipwise.calibration.tails import learn_tails
+from slipwise.models.schema import Tail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-GROWTH_PRIOR_WINDOWS = 5.0  # the noise shape's own growth counts as much as this many held-out windows
-LARGEST_NIS = (
-    30.0  # a held-out window counts at most this much: one pose jump must not blow up the covariance
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,17 +84,23 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 
 def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
-    at = _core.linearize_segment(forecaster.model, belief.mean, targets.track(i), targets.segments[i])
+    at = _core.linearize_segment(
+        belief.motion or forecaster.model, belief.mean, targets.track(i), targets.segments[i]
+    )
     draft.pose[i] = at.predicted.vector()
     draft.covariance[i] = _core.prediction_covariance(
-        at, belief.covariance, forecaster.noise, belief.noise_scale
+        at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
     )
 
 
 def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     path = _core.integrate_segment(
-        forecaster.model, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
+        belief.motion or forecaster.model,
+        belief.mean,
+        targets.track(i),
+        targets.segments[i],
+        _core.Integrator.Exact,
     )
     draft.in_sample[i] = path.poses[-1]
 
@@ -105,7 +108,7 @@ def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i:
 def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:
     targets, pose = draft.targets, draft.pose
     known = targets.count_until(targets.position, targets.start - targets.length)
-    growth = _causal_growth(known, normalised_squared(residual(targets.measured, pose), draft.covariance))
+    tails = learn_tails(known, normalised_squared(residual(targets.measured, pose), draft.covariance))
     left = residual(targets.measured, draft.in_sample)
     return Predictions(
         method=forecaster.method,
@@ -114,24 +117,19 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         t_start=targets.start,
         t_end=targets.end,
         pose=pose,
-        covariance=draft.covariance * growth[:, None, None],
-        growth=growth,
+        covariance=draft.covariance * tails.growth[:, None, None],
+        growth=tails.growth,
+        dof=tails.dof,
         measured=targets.measured,
         learned_until=_learned_until(forecaster, (learned, draft.counts), (targets, known), targets),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 
 
-def _causal_growth(known: Ints, nis: Floats) -> Floats:
-    """Factor of each target's covariance from the `known` held-out windows before it, [N]."""
-    sums = np.concatenate(([0.0], np.cumsum(np.minimum(nis, LARGEST_NIS) / 3.0)))
-    return np.asarray((sums[known] + GROWTH_PRIOR_WINDOWS) / (known + GROWTH_PRIOR_WINDOWS), dtype=np.float64)
-
-
-def final_growth(predictions: Predictions) -> float:
-    """Factor of the covariance at this horizon from all held-out windows."""
-    nis = np.minimum(predictions.nis * predictions.growth, LARGEST_NIS)
-    return float((nis.sum() / 3.0 + GROWTH_PRIOR_WINDOWS) / (len(predictions) + GROWTH_PRIOR_WINDOWS))
+def final_tail(predictions: Predictions) -> Tail:
+    """Growth and degrees of freedom at this horizon from all held-out windows, for the model file."""
+    tails = learn_tails(np.array([len(predictions)]), predictions.stated_nis)
+    return Tail(growth=float(tails.growth[0]), dof=float(tails.dof[0]))
 
 
 def _learned_until(

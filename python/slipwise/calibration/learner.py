@@ -26,6 +26,8 @@ class Belief:
     prior_std: Floats  # [P]
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
+    motion: _core.MotionModel | None = None  # whose parameters these are, where it is not the forecaster's
+    noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.student import share_inside
+
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -22,8 +24,9 @@ class Predictions:
     t_start: Floats  # s
     t_end: Floats  # s
     pose: Floats  # [N, 3] predicted x, y [m], yaw [rad]
-    covariance: Floats  # [N, 3, 3]
+    covariance: Floats  # [N, 3, 3] of a Student t, growth included
     growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
+    dof: Floats  # [N] degrees of freedom of the t, from the same windows; few are heavy tails
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
     in_sample: Floats  # [N, 2] position [m], heading [rad] error after learning the window (Table 6.2)
@@ -55,6 +58,16 @@ class Predictions:
     def nis(self) -> Floats:
         """Normalised innovation squared, [N]; 3 on average where the covariance is true."""
         return normalised_squared(self.residual, self.covariance)
+
+    @property
+    def stated_nis(self) -> Floats:
+        """The same under the covariance without growth: what a filter states that never looks back, [N]."""
+        return self.nis * self.growth
+
+    @property
+    def inside(self) -> Floats:
+        """Share of the smallest ellipsoid of the predicted t that holds the measured pose, [N], 0 to 1."""
+        return share_inside(self.nis, self.dof)
 
 
 def residual(measured: Floats, predicted: Floats) -> Floats:

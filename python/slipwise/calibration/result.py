@@ -42,6 +42,8 @@ class History:
     basis_weight: Floats  # [W, B] their weights after the window
     change: Floats  # [W] log odds, before the window was learned, that the ground had changed; 0 or more
     alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of ground
+    structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
+    structure_weight: Floats | None = None  # [W, S] their weights after the window
 
     def alarms(self) -> tuple[tuple[int, float], ...]:
         """Return (run, time [s]) of every alarm: the end of the window that raised it."""

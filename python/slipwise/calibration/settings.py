@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -19,6 +19,7 @@ AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-1
 WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
+_ESTIMATORS = _core.EstimatorSettings()
 _AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
 _CHANGE = _core.ChangeSettings()
 
@@ -66,6 +67,28 @@ class NoiseTable(_Section):
     adapt: bool = _NOISE.adapt
 
 
+Jacobian = Literal["exact", "thesis"]
+
+
+def _name(jacobian: _core.SegmentJacobian) -> Jacobian:
+    return cast(Jacobian, jacobian.name.lower())
+
+
+class GradientDescentTable(_Section):
+    """The thesis's gradient descent (6.12)."""
+
+    learning_rate: Positive = _ESTIMATORS.gradient_descent.learning_rate
+    damping: Positive = _ESTIMATORS.gradient_descent.damping
+    jacobian: Jacobian = _name(_ESTIMATORS.gradient_descent.jacobian)
+
+
+class EkfThesisTable(_Section):
+    """The thesis's filter (Table 6.1)."""
+
+    process_std: NotNegative = _ESTIMATORS.ekf_thesis.process_std
+    jacobian: Jacobian = _name(_ESTIMATORS.ekf_thesis.jacobian)
+
+
 class AutoTable(_Section):
     """Averaging of bases by how well they predict."""
 
@@ -111,6 +134,8 @@ class Settings(_Section):
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
     change: ChangeTable = ChangeTable()
+    gradient_descent: GradientDescentTable = GradientDescentTable()
+    ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
 
     def window_length(self, input_name: str) -> float:
@@ -134,6 +159,18 @@ class Settings(_Section):
         )
         noise.adapt = table.adapt
         settings.prior, settings.iekf, settings.noise = prior, iekf, noise
+        return settings
+
+    def estimator_settings(self) -> _core.EstimatorSettings:
+        """Return the core's settings of the thesis's estimators."""
+        settings = _core.EstimatorSettings()
+        descent, kalman = _core.GradientDescentSettings(), _core.EkfThesisSettings()
+        descent.learning_rate = self.gradient_descent.learning_rate
+        descent.damping = self.gradient_descent.damping
+        descent.jacobian = _core.SegmentJacobian[self.gradient_descent.jacobian.capitalize()]
+        kalman.process_std = self.ekf_thesis.process_std
+        kalman.jacobian = _core.SegmentJacobian[self.ekf_thesis.jacobian.capitalize()]
+        settings.gradient_descent, settings.ekf_thesis = descent, kalman
         return settings
 
     def average_settings(self) -> _core.ModelAverageSettings:

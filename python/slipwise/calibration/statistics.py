@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Shares = tuple[float, float, float]  # within the 50, 90 and 95 % ellipsoids
 
 RESAMPLES = 1000
 LARGEST_CHUNK = 1_000_000  # starts of blocks drawn at a time, so that memory does not grow with the log
@@ -85,16 +87,29 @@ def ratio_of_means(errors: Floats, reference: Floats) -> tuple[float, float, flo
 
 
 def nis_band(count: int) -> tuple[float, float]:
-    """Where the mean NIS of `count` independent windows lies with 95 % (chi-square, Wilson-Hilferty)."""
-    degrees = 3.0 * count
-    spread = 2.0 / (9.0 * degrees)
+    """Where the mean NIS of `count` independent windows lies with 95 %."""
+    return chi_square_band(count, 3)
+
+
+def chi_square_band(count: int, degrees: int) -> tuple[float, float]:
+    """Where the mean of `count` independent chi-squares of `degrees` lies with 95 % (Wilson-Hilferty)."""
+    spread = 2.0 / (9.0 * degrees * count)
     low, high = (
-        (1.0 - spread + z * np.sqrt(spread)) ** 3 * 3.0 for z in (-1.959963984540054, 1.959963984540054)
+        (1.0 - spread + z * np.sqrt(spread)) ** 3 * degrees for z in (-1.959963984540054, 1.959963984540054)
     )
     return (float(low), float(high))
 
 
-def coverage(nis: Floats) -> tuple[float, float, float]:
-    """Share of windows inside the 50, 90 and 95 % ellipsoids."""
-    inside = [float(np.mean(nis <= quantile)) for quantile in ELLIPSOIDS.values()]
-    return (inside[0], inside[1], inside[2])
+def coverage(inside: Floats) -> Shares:
+    """Share of windows inside the 50, 90 and 95 % ellipsoids of their t, from `Predictions.inside`."""
+    return _shares(inside, ELLIPSOIDS)
+
+
+def normal_coverage(nis: Floats) -> Shares:
+    """Share of windows inside the 50, 90 and 95 % ellipsoids of a normal distribution."""
+    return _shares(nis, ELLIPSOIDS.values())
+
+
+def _shares(values: Floats, limits: Iterable[float]) -> Shares:
+    half, nine_tenths, most = (float(np.mean(values <= limit)) for limit in limits)
+    return (half, nine_tenths, most)

@@ -46,8 +46,9 @@ def evaluate(
             metavar="NAMES",
             show_default=False,
             help="vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
-            "delayed-state), slip-ratio-ekf or slip-ratio-smo, separated by commas; `none` always is. "
-            "Default: all but estimators and slip ratios.",
+            "delayed-state), slip-ratio-ekf or slip-ratio-smo, surfaces (surface-least-squares, "
+            "surface-gaussian-process, surface-bayesian), separated by commas; `none` always is. "
+            "Default: all but estimators, slip ratios and surfaces.",
         ),
     ] = None,
     vendor_track_multiplier: Annotated[
@@ -80,6 +81,7 @@ def evaluate(
       slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
+      slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
       slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301

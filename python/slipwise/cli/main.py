@@ -14,7 +14,9 @@ from slipwise.cli.convert import convert
 from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
+from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
+from slipwise.cli.reproduce import reproduce
 from slipwise.cli.simulate import simulate
 
 DEBUG = "--debug"
@@ -31,8 +33,10 @@ _COMMANDS = (
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
+    (export, "Write a model into files for other tools."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
+    (reproduce, "Make the thesis's figures and tables again."),
 )
 for _command, _summary in _COMMANDS:
     app.command(_command.__name__, short_help=_summary)(_command)
@@ -55,8 +59,8 @@ def _slipwise(
 ) -> None:
     """Learn a robot's motion model - slip, lag, delay, uncertainty - from what it was told and where it went.
 
-    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use. demo, calibrate and evaluate
-    keep each run with its settings in runs/<UTC time>-<command>; runs/latest is the last one.
+    Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use. demo, calibrate, evaluate
+    and reproduce keep each run in runs/<UTC time>-<command>; runs/latest is the last one.
 
     \b
     Examples:
@@ -64,6 +68,7 @@ def _slipwise(
       slipwise inspect drive.mcap
       slipwise calibrate drive.mcap -o model.yaml
       slipwise evaluate other.mcap --model model.yaml
+      slipwise export model.yaml --to all -o config/
     """  # noqa: D301 - \b keeps the lines below it as they are
 
 

@@ -13,7 +13,14 @@ from slipwise.calibration.drive import WindowSet, choose_input, collect_windows,
 from slipwise.calibration.forecast import forecast_all
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.statistics import coverage, held_out_half, nis_band, ratio_of_means, summarise
+from slipwise.calibration.statistics import (
+    coverage,
+    held_out_half,
+    nis_band,
+    normal_coverage,
+    ratio_of_means,
+    summarise,
+)
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.methods import Contest, method_info, method_names
 from slipwise.evaluation.result import Evaluation, Score
@@ -149,7 +156,9 @@ def _score(predictions: Predictions, group: Sequence[Predictions], distance: flo
         in_sample_heading=float(predictions.in_sample[half, 1].mean()),
         nis=float(nis.mean()),
         nis_band=nis_band(len(nis)),
-        coverage=coverage(nis),
+        coverage=coverage(predictions.inside[half]),
+        stated_nis=float(predictions.stated_nis[half].mean()),
+        stated_coverage=normal_coverage(predictions.stated_nis[half]),
     )
 
 

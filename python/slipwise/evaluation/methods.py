@@ -17,8 +17,10 @@ from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.structure_choice import learning_pass
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
+from slipwise.evaluation.slip_surfaces import surface_forecaster
 from slipwise.models.model import Model
 
 BATCH_BASIS = "odd-even-10"
@@ -79,6 +81,11 @@ def method_info(name: str) -> MethodInfo:
             lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows),
             "the same by a sliding-mode observer; its covariance is the noise shape alone",
         ),
+        "surface-least-squares": MethodInfo(_surface, "slip surface by least squares (thesis 5.5)"),
+        "surface-gaussian-process": MethodInfo(
+            _surface, "slip surface by a Gaussian process (thesis Table 5.1), as terms of the settings' basis"
+        ),
+        "surface-bayesian": MethodInfo(_surface, "slip surface by Bayesian linear regression (thesis 5.13)"),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in special:
@@ -92,11 +99,12 @@ def method_info(name: str) -> MethodInfo:
 
 
 def _learned(name: str, contest: Contest) -> Forecaster:
-    learner = make_learner(contest.settings.model_copy(update={"basis": name}), contest.input_name)
+    settings = contest.settings.model_copy(update={"basis": name})
+    learner = make_learner(settings, contest.input_name)
     average = learner.fresh()
-    shape = contest.settings.filter_settings().noise.shape
-    causal_pass = CausalPass(average, contest.windows)
-    return Forecaster(name, average.model, shape, causal_pass.belief, learner.dynamics)
+    shape = settings.filter_settings().noise.shape
+    passing = learning_pass(average, contest.windows, settings)
+    return Forecaster(name, average.model, shape, passing.belief, learner.dynamics)
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:
@@ -104,6 +112,10 @@ def _estimator(name: str, contest: Contest) -> Forecaster:
     passing = EstimatorPass(name, motion, contest.settings, contest.windows)
     shape = contest.settings.filter_settings().noise.shape
     return Forecaster(name, motion, shape, passing.belief, motion.dynamics)
+
+
+def _surface(name: str, contest: Contest) -> Forecaster:
+    return surface_forecaster(name, contest.input_name, contest.settings, contest.windows)
 
 
 def _vendor(name: str, contest: Contest) -> Forecaster:

@@ -15,7 +15,7 @@ from slipwise.files import write_whole
 
 COLUMNS = (
     *("run", "method", "t_start", "t_end", "horizon", "dx", "dy", "dyaw"),
-    *("cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "learned_until"),
+    *("cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "learned_until", "dof"),
 )
 
 
@@ -57,6 +57,7 @@ def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: st
             "t_end": p.t_end,
             "horizon": np.full(size, p.horizon),
             "learned_until": p.learned_until,
+            "dof": p.dof,
             **dict(zip(("dx", "dy", "dyaw"), p.pose.T, strict=True)),
         }
         upper = (("xx", 0, 0), ("xy", 0, 1), ("xt", 0, 2), ("yy", 1, 1), ("yt", 1, 2), ("tt", 2, 2))

@@ -30,6 +30,8 @@ class Score:
     nis: float  # mean normalised innovation squared; 3 where the covariance is true
     nis_band: tuple[float, float]  # where its mean should lie with 95 %
     coverage: tuple[float, float, float]  # share of windows inside the 50, 90, 95 % ellipsoids
+    stated_nis: float  # the same two where no growth and no tails are learned from earlier errors:
+    stated_coverage: tuple[float, float, float]  # a filter's usual covariance, and normal ellipsoids
 
 
 @dataclass(frozen=True, eq=False)

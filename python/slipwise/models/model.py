@@ -64,6 +64,8 @@ class Model:
             basis = _core.Basis(slip.basis, slip.lon, slip.lat, slip.ang)
         except ValueError as problem:
             raise ModelError(str(problem), advice="calibrate again, or restore the file") from problem
+        if self.content.response:
+            return _core.MotionModel.with_response(basis, self.content.clock_offset)
         return _core.MotionModel(basis, self.content.dynamics, self.content.clock_offset)
 
     @property

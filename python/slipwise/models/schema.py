@@ -7,7 +7,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
-SCHEMA_VERSION = 1
+from slipwise.student import LEAST_DOF, MOST_DOF
+
+SCHEMA_VERSION = 2
 
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
@@ -22,6 +24,7 @@ Number = Annotated[float, BeforeValidator(_refuse_flag)]
 Finite = Annotated[Number, Field(ge=-LARGEST, le=LARGEST, allow_inf_nan=False)]
 NotNegative = Annotated[Number, Field(ge=0.0, le=LARGEST, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0, le=LARGEST, allow_inf_nan=False)]
+Dof = Annotated[Number, Field(ge=LEAST_DOF, le=MOST_DOF, allow_inf_nan=False)]
 Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 InputName = Literal["command", "wheel"]
@@ -51,6 +54,13 @@ class Parameter(_Section):
     determined: bool  # the log told more about it than the prior did
 
 
+class Tail(_Section):
+    """What held-out errors of one horizon say of the predicted distribution, a Student t."""
+
+    growth: Positive  # factor of the covariance [-]
+    dof: Dof  # degrees of freedom; few are heavy tails [-]
+
+
 class Noise(_Section):
     """Noise of the slip rates (lon, lat, ang) and the poses; `scale` multiplies variances of (x, y, yaw)."""
 
@@ -60,9 +70,7 @@ class Noise(_Section):
     pose_std_xy: NotNegative  # [m]
     pose_std_yaw: NotNegative  # [rad]
     scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
-    growth: dict[
-        NotNegative, Positive
-    ] = {}  # horizon [s] -> factor of the variances that held-out errors need
+    tails: dict[NotNegative, Tail] = {}  # by horizon [s]
 
 
 class Range(_Section):
@@ -114,11 +122,12 @@ class VerdictSection(_Section):
 class ModelFile(_Section):
     """Everything that crosses from learning to using."""
 
-    slipwise_model: Literal[1]
+    slipwise_model: Literal[2]
     input: InputName
     slip: Slip
     dynamics: bool  # lag and delay are parameters
     clock_offset: bool  # the offset between inputs and poses is a parameter
+    response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise

@@ -56,7 +56,7 @@ def scrolling(html: str) -> str:
 
 
 def legend(entries: Iterable[tuple[str, str, str]]) -> str:
-    """Return a line of (label, colour, kind of mark), kinds being line, dash, dot, mark and area."""
+    """Return a line of (label, colour, kind of mark), kinds being line, dash, dot, mark, ring and area."""
     items = (
         f'<li><span class="key {kind}" style="color:{colour}"></span>{escape(label)}</li>'
         for label, colour, kind in entries

@@ -16,8 +16,7 @@ from slipwise.reporting.section import Section
 
 
 def page(contents: Contents, sections: Sequence[Section]) -> str:
-    """Return the whole page; only Plotly and the page's own script may run, nothing may be fetched."""
-    plotly, script = get_plotlyjs(), _asset("report.js")
+    """Return the report's page; only Plotly and the page's own script may run, nothing may be fetched."""
     bodies = [
         _section(f"section-{place}", section, contents) for place, section in enumerate(sections, start=1)
     ]
@@ -25,14 +24,27 @@ def page(contents: Contents, sections: Sequence[Section]) -> str:
         f'<a href="#section-{place}">{escape(section.title)}</a>'
         for place, section in enumerate(sections, start=1)
     )
+    body = f"<nav>{links}</nav>\n<main>\n" + "\n".join(bodies) + "\n</main>"
+    return document(contents.title, "slipwise motion model report", body)
+
+
+def document(title: str, kicker: str, body: str) -> str:
+    """Return a whole document around HTML with figures.
+
+    Args:
+        title: heading of the page, any text.
+        kicker: a few words above the heading.
+        body: HTML that follows the heading.
+    """
+    plotly, script = get_plotlyjs(), _asset("report.js")
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(plotly, script)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         '<link rel="icon" href="data:,">\n'
-        f"<title>{escape(contents.title)}</title>\n<style>{_asset('report.css')}</style>\n</head>\n<body>\n"
-        f"<header><p>slipwise motion model report</p><h1>{escape(contents.title)}</h1></header>\n"
-        f"<nav>{links}</nav>\n<main>\n" + "\n".join(bodies) + "\n</main>\n"
+        f"<title>{escape(title)}</title>\n<style>{_asset('report.css')}</style>\n</head>\n<body>\n"
+        f"<header><p>{escape(kicker)}</p><h1>{escape(title)}</h1></header>\n"
+        f"{body}\n"
         f"<script>{plotly}</script>\n<script>{script}</script>\n</body>\n</html>\n"
     )
 

@@ -12,7 +12,13 @@ MEASURED = "#1b2430"
 BAND = "#c3cad3"
 ALARM_COLOUR = "#e69f00"  # a change of ground
 # Slip: red negative, white none, blue positive (ColorBrewer RdBu without its dark ends: labels stay legible).
-DIVERGING = [[0.0, "#d6604d"], [0.25, "#f4a582"], [0.5, "#f7f7f7"], [0.75, "#92c5de"], [1.0, "#4393c3"]]
+DIVERGING: list[tuple[float, str]] = [
+    (0.0, "#d6604d"),
+    (0.25, "#f4a582"),
+    (0.5, "#f7f7f7"),
+    (0.75, "#92c5de"),
+    (1.0, "#4393c3"),
+]
 SEQUENTIAL = "Viridis"  # time and amounts
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the figures of the report one after the other, and notes on the html element what went wrong:
-// data-figures (how many there are), data-drawn (how many are drawn), data-errors (messages, empty when all is well).
+// data-figures (how many there are), data-drawn (how often one was drawn), data-errors (messages, empty when all is well).
 "use strict";
 (() => {
   const state = document.documentElement.dataset;
@@ -40,8 +40,25 @@
       note(source.dataset.figure + ": " + problem);
     }
   };
+  // A browser keeps about sixteen drawings in three dimensions; where there are more, only those near the window are.
+  const scenes = sources.filter((source) => JSON.parse(source.textContent).layout.scene);
+  const passing = new Set(scenes.length > 8 ? scenes : []);
+  const nearby = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) {
+        Plotly.purge(target);
+      } else if (!target.querySelector(".main-svg")) {
+        draw(document.querySelector(`script[data-figure="${target.id}"]`));
+      }
+    }
+  }, { rootMargin: "300px" });
+
   const drawAll = async () => {
     for (const source of sources) {
+      if (passing.has(source)) {
+        nearby.observe(document.getElementById(source.dataset.figure));
+        continue;
+      }
       await draw(source);
       await new Promise((resume) => setTimeout(resume)); // lets the page scroll meanwhile
     }

@@ -57,10 +57,11 @@ class Windows:
         return len(self.start)
 
     def segments(self, wheels: Inputs | None, unknown_after: float) -> list[_core.Segment]:
-        """Return the core's segments; with `wheels`, each starts from the twist measured there."""
+        """Return the core's segments; with `wheels`, the drive is known until each starts."""
         initial = _initial_twists(self.start, wheels, unknown_after)
+        known = None if wheels is None else _core.InputTrack(wheels.t, wheels.v, wheels.vy, wheels.omega)
         return [
-            _core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy)
+            _known(_core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy), known, twist)
             for start, end, (x, y, yaw), twist, (gx, gy) in zip(
                 self.start.tolist(),
                 self.end.tolist(),
@@ -230,6 +231,14 @@ def _gravity(poses: Poses, i: Ints) -> Floats:
         return np.zeros((len(i), 2))
     roll, pitch = np.nan_to_num(poses.roll[i]), np.nan_to_num(poses.pitch[i])
     return STANDARD_GRAVITY * np.column_stack((np.sin(pitch), -np.cos(pitch) * np.sin(roll)))
+
+
+def _known(
+    segment: _core.Segment, drive: _core.InputTrack | None, twist: _core.BodyTwist | None
+) -> _core.Segment:
+    if drive is None or twist is None:
+        return segment
+    return segment.with_known_drive(drive, segment.start, twist)
 
 
 def _initial_twists(

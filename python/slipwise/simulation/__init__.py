@@ -3,6 +3,7 @@
 
 from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.perturbation import Perturbation
 from slipwise.simulation.physics import GroundChange
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
 from slipwise.simulation.traction_law import TractionLaw, traction_force
@@ -13,6 +14,7 @@ __all__ = [
     "DRIVES",
     "GroundChange",
     "LandTamer",
+    "Perturbation",
     "Scenario",
     "Simulation",
     "TractionLaw",

@@ -12,6 +12,7 @@ from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
+from slipwise.simulation.perturbation import Perturbation, perturbed_truth
 from slipwise.simulation.physics import GROUNDS, GroundChange, Progress, Sampling, World, run_physics
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
@@ -30,6 +31,7 @@ class Scenario:
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
     change: GroundChange | None = None  # of a tyre-force ground, while driving
+    perturbation: Perturbation | None = None  # slip surfaces in place of ground and physics
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
@@ -49,7 +51,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
 
     Args:
         scenario: what is simulated.
-        seed: of the command script and, independently, of the pose noise.
+        seed: of the command script and, independently, of the pose noise and of the surfaces' noise.
         progress: called now and then with the fraction done.
 
     Raises:
@@ -60,12 +62,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
     commands = scenario.commands
     if commands is None:
         commands = DRIVES[scenario.drive](seed, scenario.duration)
-    truth = run_physics(
-        World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction, scenario.change),
-        commands,
-        Sampling.over(scenario.duration, scenario.pose_rate),
-        progress=progress,
-    )
+    truth = _drive(scenario, commands, seed, progress)
     run = Run(
         name="simulation",
         commands=commands,
@@ -73,8 +70,24 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
         poses=_measure(scenario, truth, seed),
         extra={},
     )
-    note = f"simulated: {scenario.ground} ground, {scenario.duration:g} s, seed {seed}"
+    ground = f"{scenario.ground} ground" if scenario.perturbation is None else "slip surfaces"
+    note = f"simulated: {ground}, {scenario.duration:g} s, seed {seed}"
     return Simulation(log=Log(runs=(run,), sources=(), left_out=(), notes=(note,)), truth=truth)
+
+
+def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress | None) -> Truth:
+    sampling = Sampling.over(scenario.duration, scenario.pose_rate)
+    if scenario.perturbation is None:
+        world = World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction, scenario.change)
+        return run_physics(world, commands, sampling, progress=progress)
+    times = np.arange(sampling.count) / sampling.rate
+    stream = _stream(seed, 1)
+    return perturbed_truth(scenario.perturbation, scenario.vehicle, commands, times, random=stream)
+
+
+def _stream(seed: int, number: int) -> np.random.Generator:
+    """Random numbers that are not those of the command script: 0 of the pose noise, 1 of the slip."""
+    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed).spawn(number + 1)[number]))
 
 
 def _wheels(vehicle: LandTamer, truth: Truth) -> Inputs:
@@ -84,8 +97,7 @@ def _wheels(vehicle: LandTamer, truth: Truth) -> Inputs:
 
 def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
     """Poses with white noise and late stamps; heading wrapped as a receiver gives it."""
-    stream = np.random.SeedSequence(seed).spawn(1)[0]  # not the command script's stream
-    noise = np.random.Generator(np.random.PCG64(stream)).standard_normal((3, truth.t.size))
+    noise = _stream(seed, 0).standard_normal((3, truth.t.size))
     yaw = truth.yaw + scenario.std_yaw * noise[2]
     return Poses(
         t=truth.t + scenario.pose_delay,
@@ -124,6 +136,9 @@ def _check(scenario: Scenario, seed: int) -> None:
 
 
 def _check_change(scenario: Scenario, change: GroundChange) -> None:
+    if scenario.perturbation is not None:
+        advice = "leave out one of the two"
+        raise SettingsError("slip surfaces cannot change while driving", where="change", advice=advice)
     if scenario.ground != "tyre-force":
         advice = 'use the ground "tyre-force"'
         raise SettingsError(f"a {scenario.ground} ground cannot change", where="change", advice=advice)

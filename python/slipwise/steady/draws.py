@@ -73,5 +73,6 @@ def _check(noise: _core.SteadyNoise, rules: DrawRules) -> None:
         value = getattr(rules, name)
         if not (math.isfinite(value) and value > 0):
             raise SettingsError(f"{name} is {value}", where=name, advice="give a positive number of seconds")
-    if min(*noise.psd, *noise.start) < 0:
-        raise SettingsError("a variance is negative", where="noise", advice="give zero or more")
+    variances = np.concatenate((noise.psd, noise.start))
+    if not (np.isfinite(variances).all() and variances.min() >= 0):
+        raise SettingsError("a variance is negative or not finite", where="noise", advice="give zero or more")

@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from slipwise import _core
+from slipwise.errors import LogError, SettingsError
 from slipwise.steady.paths import SteadyPath
 
 
@@ -48,12 +49,34 @@ class SteadyGroup:
         return f"{self.v:.3g} m/s, curvature {self.curvature:.3g} 1/m"
 
     def core(self) -> list[_core.SteadySegment]:
-        """Return the core's segments, each with its own command."""
+        """Return the core's segments, each with its own command.
+
+        Raises:
+            LogError: a segment is there twice: it would count as two that agree.
+        """
+        seen: set[tuple[float, bytes, bytes]] = set()
+        for path in self.paths:
+            key = (path.start, path.times.tobytes(), path.poses.tobytes())
+            if key in seen:
+                raise LogError(
+                    f"segments are duplicates, such as that at {path.start:.3f} s of run {path.run}",
+                    where=self.name,
+                    advice="give each log once",
+                )
+            seen.add(key)
         return [path.core() for path in self.paths]
 
 
 def group_paths(paths: Iterable[SteadyPath], rules: GroupRules = GroupRules()) -> tuple[SteadyGroup, ...]:
-    """Group segments, ordered by turns in place first, then speed and curvature."""
+    """Group segments, ordered by turns in place first, then speed and curvature.
+
+    Raises:
+        SettingsError: a rule is negative or not finite.
+    """
+    for field in fields(rules):
+        value = getattr(rules, field.name)
+        if not (np.isfinite(value) and value >= 0):
+            raise SettingsError(f"{field.name} is {value}", where=field.name, advice="give zero or more")
     gathered: list[tuple[tuple[bool, float, float], list[SteadyPath]]] = []
     for path in paths:
         key = _key(path, rules)

@@ -77,8 +77,10 @@ def fit_group_noise(groups: Sequence[SteadyGroup], rules: NoiseRules = NoiseRule
 
     Raises:
         LogError: no group has three segments, or the segments do not scatter.
-        SettingsError: there are fewer than two times.
+        SettingsError: there are fewer than two times, or a standard deviation is negative or not finite.
     """
+    if not all(np.isfinite(std) and std >= 0 for std in rules.pose_std):
+        raise SettingsError(f"pose_std is {rules.pose_std}", where="pose_std", advice="give zero or more")
     usable = [group for group in groups if len(group) >= LEAST_SEGMENTS] or list(groups[:1])
     if not usable:
         raise LogError("there are no groups", advice="look for held commands, or allow shorter segments")

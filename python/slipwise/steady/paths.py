@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +93,8 @@ def _check(rules: PathRules) -> None:
     for name, value in positive.items():
         if not (np.isfinite(value) and value > 0):
             raise SettingsError(f"{name} is {value}", where=name, advice="give a positive number of seconds")
-    for name, value in {"settle": rules.settle, "least_distance": rules.least_distance}.items():
+    held = {f"hold.{field.name}": getattr(rules.hold, field.name) for field in fields(rules.hold)}
+    for name, value in ({"settle": rules.settle, "least_distance": rules.least_distance} | held).items():
         if not (np.isfinite(value) and value >= 0):
             raise SettingsError(f"{name} is {value}", where=name, advice="give zero or a positive number")
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.errors import LogError
+from slipwise.errors import LogError, SettingsError
 from slipwise.steady.groups import SteadyGroup
 
 Floats = NDArray[np.float64]
@@ -55,8 +55,14 @@ def fit_slip(group: SteadyGroup, rules: SlipFitRules = SlipFitRules()) -> _core.
     """Fit the slip rates of one group. For overlapping segments, multiply the covariance by `group.overlap`.
 
     Raises:
-        LogError: the group has one segment and no noise is given, or a segment has one pose.
+        LogError: the group has one segment and no noise is given, a segment is there twice, or has one pose.
+        SettingsError: the noise is not finite.
     """
+    if (
+        rules.noise is not None
+        and not np.isfinite([rules.noise.psd, rules.noise.start, rules.noise.pose]).all()
+    ):
+        raise SettingsError("a variance is not finite", where="noise", advice="give zero or more")
     settings = _core.SlipRateSettings()
     settings.length, settings.angular, settings.noise = rules.length, rules.angular, rules.noise
     try:
@@ -72,10 +78,13 @@ def compare_fits(group: SteadyGroup, *, length: float = 1.0, points: int = 31) -
 
     Raises:
         LogError: as `fit_slip`.
+        SettingsError: there are fewer than two points.
     """
-    times = np.linspace(0.0, min(float(path.times[-1]) for path in group.paths), points)
+    if points < 2:
+        raise SettingsError(f"{points} points", where="points", advice="a curve needs at least two")
     translation = fit_slip(group, SlipFitRules(length=length, angular=False))
     full = fit_slip(group, SlipFitRules(length=length))
+    times = np.linspace(0.0, min(float(path.times[-1]) for path in group.paths), points)
     curves = []
     for name, slip in (
         ("no slip", np.zeros(3)),

@@ -15,6 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.models.schema import (
     LARGEST,
+    SCHEMA_VERSION,
     ModelFile,
     Noise,
     Parameter,
@@ -23,7 +24,13 @@ from slipwise.models.schema import (
     Slip,
     VerdictSection,
 )
-from slipwise.surfaces.basis_slip import BasisSlip, block_covariance, channel_designs
+from slipwise.surfaces.basis_slip import (
+    BasisSlip,
+    block_covariance,
+    channel_designs,
+    channel_slices,
+    scaled_svd,
+)
 from slipwise.surfaces.bayesian import BayesianSurface
 from slipwise.surfaces.examples import SlipExamples
 from slipwise.surfaces.gaussian_process import GaussianProcessSurface
@@ -83,7 +90,7 @@ def as_basis_model(
     basis = slip.basis
     return Model(
         ModelFile(
-            slipwise_model=1,
+            slipwise_model=SCHEMA_VERSION,
             input=segments.input_name,
             slip=Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
             dynamics=False,
@@ -102,15 +109,23 @@ def as_basis_model(
     )
 
 
-def project_on_basis(surface: GaussianProcessSurface, basis: _core.Basis) -> BasisSlip:
+def project_on_basis(
+    surface: GaussianProcessSurface, basis: _core.Basis, *, prior_std: Floats | None = None
+) -> BasisSlip:
     """Fit the terms of a basis to the mean of a Gaussian process over the range of its examples.
 
     The projection is least squares over a grid of speeds and yaw rates. It carries the covariance of the
     process's mean over to the parameters, and states what it misses: root mean square and largest
     difference. A basis has no slip at rest, so the projection also takes out what the process has there.
 
+    Args:
+        surface: fitted.
+        basis: its terms.
+        prior_std: of the parameters, [p]; what the range of the examples does not determine keeps it.
+
     Raises:
-        SettingsError: the examples lie at one speed or one yaw rate that leaves terms apart by nothing.
+        SettingsError: the examples lie at one speed or one yaw rate that leaves terms apart by nothing, and
+            there is no prior.
     """
     (slow, fast), (right, left) = surface.range
     v, omega = (
@@ -119,22 +134,23 @@ def project_on_basis(surface: GaussianProcessSurface, basis: _core.Basis) -> Bas
     )
     mean, joint = surface.predict(v, omega).mean, surface.mean_covariance(v, omega)
     alpha, blocks, missed = [], [], []
-    for channel, design in enumerate(channel_designs(basis, v, omega)):
-        if np.linalg.matrix_rank(design) < design.shape[1]:
+    designs = channel_designs(basis, v, omega)
+    for channel, (design, part) in enumerate(zip(designs, channel_slices(basis), strict=True)):
+        if prior_std is None and np.linalg.matrix_rank(design) < design.shape[1]:
             raise SettingsError(
                 f"the range of the examples does not determine the terms of {basis.name}",
                 advice="drive at more speeds and curvatures, or project on fewer terms",
             )
-        inverse = np.linalg.pinv(design)
+        inverse, rest = scaled_svd(design, np.ones(design.shape[1]) if prior_std is None else prior_std[part])
         alpha.append(inverse @ mean[:, channel])
-        blocks.append(inverse @ joint[channel] @ inverse.T)
+        blocks.append(inverse @ joint[channel] @ inverse.T + rest)
         missed.append(mean[:, channel] - design @ alpha[-1])
     difference = np.column_stack(missed)
     return BasisSlip(
         basis,
         np.concatenate(alpha),
         block_covariance(basis, [0.5 * (block + block.T) for block in blocks]),
-        np.full(basis.size, np.inf),
+        np.full(basis.size, np.inf) if prior_std is None else prior_std,
         surface.noise_std,
         np.sqrt(np.mean(np.square(difference), axis=0)),
         np.abs(difference).max(axis=0),

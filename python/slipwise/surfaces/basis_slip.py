@@ -13,6 +13,8 @@ from slipwise.surfaces.examples import CHANNELS, SlipExamples
 
 Floats = NDArray[np.float64]
 
+_NEGLIGIBLE = 1e-9  # a singular value smaller than this part of the largest one counts as zero
+
 
 @dataclass(frozen=True, eq=False)
 class BasisSlip:
@@ -50,6 +52,22 @@ def block_covariance(basis: _core.Basis, blocks: list[Floats]) -> Floats:
     for part, block in zip(channel_slices(basis), blocks, strict=True):
         covariance[part, part] = block
     return covariance
+
+
+def scaled_svd(design: Floats, prior_std: Floats) -> tuple[Floats, Floats]:
+    """Split what the rows of a design [N, d] determine from what they do not, in units of the prior.
+
+    Returns:
+        The pseudo-inverse [d, N], and the covariance [d, d] that a prior of `prior_std` [d] leaves the rest.
+    """
+    rows, terms = design.shape
+    if terms == 0:
+        return np.zeros((0, rows)), np.zeros((0, 0))
+    scaled = np.vstack((design * prior_std, np.zeros((max(0, terms - rows), terms))))
+    u, size, vt = np.linalg.svd(scaled, full_matrices=False)
+    rank = int(np.sum(size > _NEGLIGIBLE * size.max()))
+    known, rest = prior_std[:, None] * vt[:rank].T, prior_std[:, None] * vt[rank:].T
+    return known / size[:rank] @ u[:rows, :rank].T, rest @ rest.T
 
 
 def undetermined(basis: _core.Basis, examples: SlipExamples) -> list[str]:

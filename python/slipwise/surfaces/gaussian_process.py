@@ -194,6 +194,11 @@ def _kernel(name: str) -> Any:
     return ConstantKernel(1.0, (1e-4, 1e4)) * shape + WhiteKernel(0.1, (1e-8, 1e1))
 
 
+def require_scikit_learn() -> None:
+    """Raise SettingsError where scikit-learn is missing."""
+    _regressor_class()
+
+
 def _regressor_class() -> Any:
     try:
         from sklearn.gaussian_process import GaussianProcessRegressor

@@ -14,6 +14,8 @@ from slipwise.surfaces.basis_slip import (
     BasisSlip,
     block_covariance,
     channel_designs,
+    channel_slices,
+    scaled_svd,
     undetermined,
 )
 from slipwise.surfaces.examples import CHANNELS, SlipExamples
@@ -96,26 +98,39 @@ class LeastSquaresSurface:
         noise = np.array([spread.std(v, omega) for v, omega in drive.tolist()])
         return np.asarray(np.sqrt(np.square(noise) + fit.mean_variances(design)), dtype=np.float64)
 
-    def basis_slip(self) -> BasisSlip:
+    def basis_slip(self, *, prior_std: Floats | None = None) -> BasisSlip:
         """Return the surface as parameters, exactly.
 
+        Args:
+            prior_std: of the parameters, [p]; what the examples do not determine keeps it, with mean zero.
+
         Raises:
-            SettingsError: nothing was learned, or a direction is not determined.
+            SettingsError: nothing was learned, or a direction is not determined and has no prior.
         """
         if self._examples is None:
             raise not_fitted()
-        if self._notes:
+        if self._notes and prior_std is None:
             raise SettingsError(
                 "the examples do not determine the surface",
                 where="; ".join(self._notes),
                 advice="drive at more speeds and curvatures, use fewer terms, or the bayesian surface",
             )
         noise = [np.sqrt(np.sum(np.square(f.residual)) / (len(f.residual) - f.rank)) for f in self._fits]
+        blocks = [np.array(fit.covariance) for fit in self._fits]
+        alpha = [np.array(fit.coefficients) for fit in self._fits]
+        if self._notes and prior_std is not None:
+            designs = channel_designs(self.basis, self._examples.v, self._examples.omega)
+            for channel, part in enumerate(channel_slices(self.basis)):
+                design = designs[channel]
+                inverse, rest = scaled_svd(design, prior_std[part])
+                alpha[channel] = inverse @ (design @ alpha[channel])
+                seen = inverse @ design
+                blocks[channel] = seen @ blocks[channel] @ seen.T + rest
         return BasisSlip(
             self.basis,
-            np.concatenate([fit.coefficients for fit in self._fits]),
-            block_covariance(self.basis, [fit.covariance for fit in self._fits]),
-            np.full(self.basis.size, np.inf),
+            np.concatenate(alpha),
+            block_covariance(self.basis, blocks),
+            np.full(self.basis.size, np.inf) if prior_std is None else prior_std,
             np.array(noise),
         )
 

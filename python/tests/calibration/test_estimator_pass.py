@@ -89,3 +89,26 @@ def test_an_unknown_estimator_is_refused_by_name(settings: Settings, windows: Wi
     known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state"
     with pytest.raises(ValueError, match=known):
         EstimatorPass("magic", motion, settings, windows)
+
+
+@pytest.mark.parametrize(
+    ("name", "table", "other"),
+    [
+        ("ekf-thesis", "ekf_thesis", {"jacobian": "exact"}),
+        ("ekf-thesis", "ekf_thesis", {"process_std": 0.1}),
+        ("gradient-descent", "gradient_descent", {"jacobian": "thesis"}),
+        ("gradient-descent", "gradient_descent", {"learning_rate": 0.02}),
+    ],
+)
+def test_settings_reach_the_estimators_of_the_thesis(
+    name: str, table: str, other: dict[str, object], windows: WindowSet
+) -> None:
+    given = {"basis": "edd-2", "learn_clock_offset": False}
+    usual = make_settings(given)
+    before = EstimatorPass(name, estimator_motion(name, usual, "wheel"), usual, windows).belief(10)
+    same = make_settings(given | {table: getattr(usual, table).model_dump()})
+    again = EstimatorPass(name, estimator_motion(name, same, "wheel"), same, windows).belief(10)
+    changed = make_settings(given | {table: other})
+    after = EstimatorPass(name, estimator_motion(name, changed, "wheel"), changed, windows).belief(10)
+    assert np.array_equal(before.mean, again.mean)
+    assert not np.array_equal(before.mean, after.mean)

@@ -8,7 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slipwise.calibration import calibrate, make_settings
+from slipwise.calibration import Settings, calibrate, make_settings
+from slipwise.calibration.calibrate import learning_windows
+from slipwise.calibration.cascade_pass import CascadePass
+from slipwise.calibration.drive import prepare_drive
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
 
@@ -41,6 +44,15 @@ def test_step_of_yaw_slip_is_found_within_three_windows(changing: Log) -> None:
     (alarm,) = history.alarms()
     assert alarm[0] == 0
     assert CHANGE < alarm[1] <= CHANGE + 3.2
+
+
+def test_step_is_told_where_slip_is_learned_in_cascade(changing: Log) -> None:
+    settings = Settings()
+    windows = learning_windows(prepare_drive(changing, "command"), "command", settings)
+    passing = CascadePass(windows, settings)
+    passing.belief(len(windows), np.ones(3))
+    (found,) = (i for i in range(len(windows)) if passing.change(i).alarm)
+    assert CHANGE < windows.end[found] <= CHANGE + 5.0
 
 
 def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:

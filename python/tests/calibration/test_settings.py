@@ -63,6 +63,15 @@ threshold = 12.0
 fraction = 0.2
 forget = 0.1
 
+[gradient_descent]
+learning_rate = 0.2
+damping = 0.1
+jacobian = "thesis"
+
+[ekf_thesis]
+process_std = 0.01
+jacobian = "exact"
+
 [vehicle]
 track = 1.08
 """
@@ -95,6 +104,11 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
     assert settings.vehicle.track == 1.08
+    estimators = settings.estimator_settings()
+    descent, kalman = estimators.gradient_descent, estimators.ekf_thesis
+    assert (descent.learning_rate, descent.damping, kalman.process_std) == (0.2, 0.1, 0.01)
+    assert descent.jacobian == _core.SegmentJacobian.Thesis
+    assert kalman.jacobian == _core.SegmentJacobian.Exact
     average = settings.average_settings()
     assert (average.learning_rate, average.share) == (0.7, 0.01)
     (basis,) = settings.bases()

@@ -3,11 +3,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.statistics import coverage, nis_band, ratio_of_means, summarise
+from slipwise.calibration.statistics import (
+    coverage,
+    nis_band,
+    normal_coverage,
+    ratio_of_means,
+    summarise,
+)
+from slipwise.student import MOST_DOF
 
 
 def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) -> Predictions:
@@ -22,6 +31,7 @@ def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) 
         pose=pose,
         covariance=covariance,
         growth=np.ones(size),
+        dof=np.full(size, MOST_DOF),
         measured=measured,
         learned_until=t,
         in_sample=np.zeros((size, 2)),
@@ -127,10 +137,26 @@ def test_gaussian_residuals_are_covered_as_often_as_stated() -> None:
     covariance = np.tile(root @ root.T, (count, 1, 1))
     residuals = rng.standard_normal((count, 3)) @ root.T
     p = predictions(residuals, np.zeros((count, 3)), covariance)
-    for share, stated in zip(coverage(p.nis), (0.5, 0.9, 0.95), strict=True):
+    for share, stated in zip(normal_coverage(p.stated_nis), (0.5, 0.9, 0.95), strict=True):
         assert share == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
     low, high = nis_band(count)
     assert low < p.nis.mean() < high
+
+
+def test_residuals_of_a_t_are_covered_as_often_as_it_states() -> None:
+    rng, count, dof = np.random.default_rng(12), 4000, 4.0
+    covariance = np.tile(np.diag([0.04, 0.09, 0.01]), (count, 1, 1))
+    spread = np.sqrt((dof - 2.0) / rng.chisquare(dof, (count, 1))) * np.array([0.2, 0.3, 0.1])
+    residuals = rng.standard_normal((count, 3)) * spread
+    p = replace(predictions(residuals, np.zeros((count, 3)), covariance), dof=np.full(count, dof))
+    for share, stated in zip(coverage(p.inside), (0.5, 0.9, 0.95), strict=True):
+        assert share == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
+    assert normal_coverage(p.nis)[0] > 0.6, "a normal distribution of the same covariance is too wide inside"
+
+
+def test_stated_nis_is_that_of_the_covariance_without_growth() -> None:
+    p = predictions(np.full((3, 3), 0.1), np.zeros((3, 3)), np.tile(np.eye(3), (3, 1, 1)))
+    assert replace(p, growth=np.full(3, 4.0)).stated_nis == pytest.approx(4.0 * p.nis)
 
 
 @pytest.mark.parametrize("count", [3, 10, 100])
@@ -141,4 +167,5 @@ def test_nis_band_holds_the_mean_of_independent_windows_in_95_of_100_cases(count
 
 
 def test_coverage_counts_the_ellipsoids_edge_as_inside() -> None:
-    assert coverage(np.array([0.0, 2.3659738843753377, 6.0, 7.0])) == (0.5, 0.75, 1.0)
+    assert normal_coverage(np.array([0.0, 2.3659738843753377, 6.0, 7.0])) == (0.5, 0.75, 1.0)
+    assert coverage(np.array([0.0, 0.5, 0.9, 0.94])) == (0.5, 0.75, 1.0)

@@ -90,7 +90,7 @@ def test_longest_horizon_with_enough_windows_is_judged() -> None:
     assert held_out is not None
     assert (held_out.horizon, held_out.windows) == (2.0, 5)
     assert held_out.windows >= FEWEST_WINDOWS
-    assert set(result.model.content.noise.growth) == {1.0, 2.0, 5.0}
+    assert set(result.model.content.noise.tails) == {1.0, 2.0, 5.0}
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ from slipwise import load_model, load_settings, open_log
 
 Slipwise = Callable[..., Result]
 
-COMMANDS = ("demo", "inspect", "calibrate", "evaluate", "simulate", "convert")
+COMMANDS = ("demo", "inspect", "calibrate", "evaluate", "export", "simulate", "convert", "reproduce")
 
 
 @pytest.fixture

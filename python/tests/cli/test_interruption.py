@@ -60,6 +60,27 @@ def test_ctrl_c_while_simulating_leaves_nothing(interrupted: Slipwise, folder: P
     assert left_in(folder) == set()
 
 
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_the_workers_of_a_reproduction_too(
+    interrupted: Slipwise, folder: Path, sent: signal.Signals
+) -> None:
+    for library in ("mujoco", "matplotlib", "sklearn"):
+        pytest.importorskip(library)
+    workers: set[int] = set()
+
+    def simulating(pid: int) -> bool:
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        workers.update(int(c) for c in children if "libmujoco" in Path(f"/proc/{c}/maps").read_text())
+        return bool(workers)
+
+    if not Path("/proc/self/maps").exists():
+        pytest.skip("no /proc to see whether the workers have begun")
+    result = interrupted("reproduce", "thesis", "--only", "chapter-4", at_work=simulating, sent=sent)
+    assert (result.code, result.out, result.line) == (2, "", STOPPED)
+    assert left_in(folder) == set()
+    assert not any(Path(f"/proc/{worker}").exists() for worker in workers)
+
+
 def test_ctrl_c_while_writing_leaves_the_old_file(interrupted: Slipwise, long_csv: Path) -> None:
     old = long_csv.parent / "long.mcap"
     old.write_text("old")

@@ -5,10 +5,11 @@ import re
 import tomllib
 from typing import Any
 
+import numpy as np
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
-from slipwise import _core
-from slipwise.calibration import forecast, statistics, verdict
+from slipwise import _core, student
+from slipwise.calibration import statistics, tails, verdict
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
@@ -136,8 +137,18 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
 
 def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     derivations = read("derivations.md")
-    prior, largest = forecast.GROWTH_PRIOR_WINDOWS, forecast.LARGEST_NIS
-    assert f"growth = (Σ min(NIS_j, {largest:g})/3 + {prior:g}) / (m + {prior:g})" in derivations
+    flowing = " ".join(derivations.split())
+    scale, dof = tails.PRIOR_SCALE, tails.PRIOR_DOF
+    assert f"ln c normal about ln {scale:g} with standard deviation {tails.PRIOR_SCALE_STD:g}" in flowing
+    assert f"ln ν about ln {dof:g} with {tails.PRIOR_DOF_STD:g}" in flowing
+    assert f"ν lies between {student.LEAST_DOF:g} and {student.MOST_DOF:g}" in flowing
+    prior = tails.learn_tails(np.array([0]), np.empty(0))
+    assert f"with no window at all, ν is about {prior.dof[0]:.1f}" in flowing
+    limits = f"prior: growth {prior.growth[0]:.1f}, dof {prior.dof[0]:.1f}"
+    assert limits in " ".join(read("statistics.md").split())
+    assert f"{student.ellipse_squared(0.95, 10.0):.1f} for 95 % and dof = 10" in " ".join(
+        read("statistics.md").split()
+    )
     assert f"from {statistics.RESAMPLES} samples of moving blocks" in derivations
     assert f"undetermined above a ratio of {verdict.UNDETERMINED_RATIO:g}" in " ".join(derivations.split())
     assert f"fewer than {verdict.FEWEST_WINDOWS} held-out windows" in read("getting-started.md")

@@ -19,7 +19,8 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.logs import Inputs, Log, Poses, Run, open_log
 
-OPTIONS = EvaluationOptions(methods=("none", "edd-2", "auto"))
+METHODS = ("none", "edd-2", "auto", "surface-least-squares", "surface-bayesian")
+OPTIONS = EvaluationOptions(methods=METHODS)
 REAL = "warthog/grass_7_29_14h46s15.csv.gz"
 SLIP = _core.named_basis("full-linear-6")
 
@@ -90,7 +91,7 @@ def chosen(predictions: Predictions) -> list[int]:
 
 def same(one: Predictions, i: int, other: Predictions, j: int) -> None:
     """Both hold the same prediction, to the last bit."""
-    for name in ("t_start", "t_end", "pose", "covariance", "growth", "learned_until"):
+    for name in ("t_start", "t_end", "pose", "covariance", "growth", "dof", "learned_until"):
         a, b = np.asarray(getattr(one, name)[i]), np.asarray(getattr(other, name)[j])
         assert a.tobytes() == b.tobytes(), (one.method, name, float(one.t_start[i]))
 

@@ -16,7 +16,7 @@ from slipwise.logs import Log
 
 HEADER = [
     *("run", "method", "t_start", "t_end", "horizon", "dx", "dy", "dyaw"),
-    *("cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "learned_until"),
+    *("cov_xx", "cov_xy", "cov_xt", "cov_yy", "cov_yt", "cov_tt", "learned_until", "dof"),
 ]
 
 
@@ -51,6 +51,7 @@ def test_every_number_is_read_back_exactly(evaluation: Evaluation, tmp_path: Pat
             assert [float(row[name]) for name in HEADER[2:8]] == numbers
             upper = p.covariance[i][np.triu_indices(3)].tolist()
             assert [float(row[name]) for name in HEADER[8:14]] == upper
+            assert float(row["dof"]) == p.dof[i]
             assert float(row["learned_until"]) == p.learned_until[i] <= p.t_start[i]
 
 

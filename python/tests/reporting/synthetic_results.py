@@ -84,7 +84,7 @@ def _run(place: int, name: str) -> Run:
 def _calibration(runs: int) -> Calibration:
     content = ModelFile.model_validate(
         {
-            "slipwise_model": 1,
+            "slipwise_model": 2,
             "input": "command",
             "slip": {"basis": "edd-2", "lon": ["V"], "lat": [], "ang": ["w"]},
             "dynamics": False,
@@ -193,6 +193,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         pose=np.array(poses),
         covariance=np.array(covariances),
         growth=np.ones(len(rows)),
+        dof=np.full(len(rows), 5.0),
         measured=measured,
         learned_until=t_start,
         in_sample=np.full((len(rows), 2), 0.01),
@@ -226,6 +227,8 @@ def _score(part: Predictions, group: tuple[Predictions, ...]) -> Score:
         nis=float(part.nis.mean()),
         nis_band=(2.2, 3.9),
         coverage=(0.48, 0.91, 0.96),
+        stated_nis=float(part.nis.mean()),
+        stated_coverage=(0.6, 0.8, 0.85),
     )
 
 

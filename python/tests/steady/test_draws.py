@@ -54,3 +54,5 @@ def test_rules_that_make_no_sense_are_refused() -> None:
             draw_paths(TWIST, NOISE, seed=1, rules=rules)
     with pytest.raises(SettingsError, match="negative"):
         draw_paths(TWIST, _core.SteadyNoise(-PSD, START, NOTHING), seed=1)
+    with pytest.raises(SettingsError, match="not finite"):
+        draw_paths(TWIST, _core.SteadyNoise(PSD, START * np.nan, NOTHING), seed=1)

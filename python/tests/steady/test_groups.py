@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slipwise.steady import SteadyPath, group_paths
+from slipwise.errors import SettingsError
+from slipwise.steady import GroupRules, SteadyPath, group_paths
 
 
 def path(v: float, omega: float) -> SteadyPath:
@@ -29,3 +30,9 @@ def test_curvature_at_zero_speed_is_undefined_and_grouped_as_a_turn_in_place() -
 
 def test_no_segments_make_no_groups() -> None:
     assert group_paths([]) == ()
+
+
+@pytest.mark.parametrize("rules", [GroupRules(speed=-1.0), GroupRules(curvature=np.nan)])
+def test_rules_that_make_no_sense_are_refused(rules: GroupRules) -> None:
+    with pytest.raises(SettingsError):
+        group_paths([path(1.0, 0.5)], rules)

@@ -64,3 +64,9 @@ def test_duplicate_segments_are_refused_and_a_scatter_of_short_rank_is_named() -
 def test_one_time_is_refused() -> None:
     with pytest.raises(SettingsError, match="at least two"):
         fit_group_noise([drawn_group(seed=1)], NoiseRules(times=1))
+
+
+@pytest.mark.parametrize("std", [-0.01, np.nan, np.inf])
+def test_a_standard_deviation_of_poses_that_makes_no_sense_is_refused(std: float) -> None:
+    with pytest.raises(SettingsError, match="pose_std"):
+        fit_group_noise([drawn_group(seed=1, count=3)], NoiseRules(pose_std=(std, 0.0, 0.0)))

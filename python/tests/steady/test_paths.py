@@ -11,7 +11,7 @@ import pytest
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs import Inputs, Poses, Run
-from slipwise.steady import PathRules, SteadyPaths, cut_paths
+from slipwise.steady import HoldRules, PathRules, SteadyPaths, cut_paths
 
 RULES = PathRules(settle=0.0, least_distance=0.0)
 
@@ -96,7 +96,15 @@ def test_no_segment_crosses_frames() -> None:
     assert [round(path.start, 6) for path in paths] == [0.0, 4.1]
 
 
-@pytest.mark.parametrize("rules", [PathRules(length=0.0), PathRules(stride=-1.0), PathRules(settle=np.nan)])
+@pytest.mark.parametrize(
+    "rules",
+    [
+        PathRules(length=0.0),
+        PathRules(stride=-1.0),
+        PathRules(settle=np.nan),
+        PathRules(hold=HoldRules(speed=-0.1)),
+    ],
+)
 def test_rules_that_make_no_sense_are_refused(rules: PathRules) -> None:
     with pytest.raises(SettingsError):
         cut(steady_run(1.0, 0.0, 6.0), rules)

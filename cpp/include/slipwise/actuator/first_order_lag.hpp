@@ -18,6 +18,7 @@ struct LagStepLinearization {
   LagStep value;
   LagStep by_duration;       ///< by the step's duration
   LagStep by_output;         ///< by V at the step's start
+  LagStep by_input;          ///< by the held input
   LagStep by_time_constant;  ///< by the time constant
 };
 
@@ -46,6 +47,7 @@ inline LagStepLinearization linearize_lag_step(double output, double input, cons
   LagStepLinearization step{.value = {input + gap * decay.left, input * decay.duration + gap * lag * decay.gone},
                             .by_duration = {0.0, input + gap * decay.left},
                             .by_output = {decay.left, lag * decay.gone},
+                            .by_input = {decay.gone, decay.duration - lag * decay.gone},
                             .by_time_constant = {0.0, 0.0}};
   if (decay.left > 0.0) {
     step.by_duration.output = -gap * decay.left / lag;

@@ -17,18 +17,12 @@ struct CausalFilterSettings {
   NoiseSettings noise = {};
 };
 
-/// A segment as learned, and how well it had been predicted.
-struct Learned {
-  IekfUpdate update;
-  double log_score;  ///< Student-t log density of the innovation before the update, without constants
-};
-
 class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
   /// Learns one segment. `speeds` are those seen up to the segment's end.
-  Learned learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
 
   /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
   /// robot's, not the ground's: they stay as learned.

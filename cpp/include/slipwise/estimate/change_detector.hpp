@@ -35,7 +35,7 @@ struct ChangeFit {
 };
 
 /// `residuals` are whitened, [3 n]; the columns of `by_change` are their derivatives by independent changes in units of
-/// their usual size, [3 n, changes]. Residuals and changes have heavy tails (derivations.md, section 14).
+/// their usual size, [3 n, changes]. Residuals and changes have heavy tails (derivations.md, section 15).
 ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
 
 /// A generalised likelihood ratio over the last segments, weighed against what is usual on this ground: neighbouring

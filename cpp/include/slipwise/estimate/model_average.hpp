@@ -20,6 +20,11 @@ struct ModelAverageSettings {
   ChangeSettings change = {};
 };
 
+/// The weights after models predicted a segment with these log scores (derivations.md, section 7).
+/// \throws std::invalid_argument when there is not one score per weight.
+Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
+                          const ModelAverageSettings& settings);
+
 /// Parameters, covariance and noise of the average, over the union of all terms.
 struct AverageState {
   Estimate estimate;
@@ -53,8 +58,8 @@ class ModelAverage {
   void doubt();
   void settle();
   Eigen::VectorXd basis_weights() const;
+  Eigen::VectorXd log_scores(const std::vector<IekfUpdate>& updates) const;
   Eigen::VectorXd variance_ratio() const;
-  void weigh(const Eigen::VectorXd& log_scores);
 
   MotionModel model_;
   std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none

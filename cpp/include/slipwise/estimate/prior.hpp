@@ -22,7 +22,10 @@ struct PriorSettings {
   double clock_offset_std = 0.2;  ///< [s]
   double lag = 0.3;               ///< median time constant [s]
   double delay = 0.1;             ///< median transport delay [s]
-  double log_std = 0.8;           ///< standard deviation of the logarithms of lag and delay [-]
+  double log_std = 0.8;           ///< standard deviation of the logarithms of lags and delays [-]
+  double gain_std = 0.2;          ///< of the drive over the input, about 1 [-]
+  double slow_share_std = 0.3;    ///< of the share of the drive that follows slowly, about 0 [-]
+  double slow_lag = 2.0;          ///< median slow time constant [s]
 };
 
 /// Standard deviation of each slip parameter: fraction * reference of its channel / |term at the reference speeds|.

@@ -9,6 +9,8 @@ struct BodyTwist {
   double v = 0.0;      ///< forward [m/s]
   double vy = 0.0;     ///< to the left [m/s]; zero but for omnidirectional drives
   double omega = 0.0;  ///< yaw rate [rad/s]
+
+  bool operator==(const BodyTwist&) const = default;
 };
 
 }  // namespace slipwise

@@ -16,23 +16,27 @@ namespace slipwise {
 struct ChainParameters {
   bool dynamics = false;      ///< lag and delay per channel
   bool clock_offset = false;  ///< offset between inputs and poses
+  bool response = false;      ///< gain, and a slow part with its share and time constant, per channel
 };
 
-/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then clock
-/// offset [s]. Logarithms keep lags and delays positive.
+/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
+/// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
+/// [s]. Logarithms keep lags and delays positive.
 class MotionModel {
  public:
-  MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {}
+  MotionModel(Basis basis, ChainParameters learned);
 
   const Basis& basis() const { return basis_; }
   ChainParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
-  Eigen::Index size() const { return slip_size() + (learned_.dynamics ? 4 : 0) + (learned_.clock_offset ? 1 : 0); }
+  Eigen::Index size() const { return slip_size() + static_cast<Eigen::Index>(chain_places().size()); }
   std::vector<ParameterInfo> parameters() const;
 
   CommandChain chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
-  /// Derivative of the chain's parameters (rows, in CommandChain's order) by the model's chain parameters (columns).
-  Eigen::MatrixXd chain_jacobian(const CommandChain& chain) const;
+  /// Which of the chain's parameters (in CommandChain's order) the model's chain parameters are, one after the other.
+  const std::vector<Eigen::Index>& chain_places() const { return chain_places_; }
+  /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
+  Eigen::VectorXd chain_scales(const CommandChain& chain) const;
 
   /// \throws std::invalid_argument when the length is not size() or a value is not finite.
   void check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
@@ -40,6 +44,7 @@ class MotionModel {
  private:
   Basis basis_;
   ChainParameters learned_;
+  std::vector<Eigen::Index> chain_places_;
 };
 
 }  // namespace slipwise

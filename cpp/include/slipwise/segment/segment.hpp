@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "slipwise/actuator/command_chain.hpp"
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/lie/se2.hpp"
 
@@ -13,9 +14,10 @@ struct Segment {
   double start;                           ///< stamp of the first pose [s]
   double end;                             ///< stamp of the second pose [s]
   Pose2 measured = {};                    ///< T_start_end, heading unwrapped
-  std::optional<BodyTwist> initial = {};  ///< the drive's measured twist at the start
+  std::optional<BodyTwist> initial = {};  ///< the drive's measured twist at the start, or where `known` ends
   double gx = 0.0;                        ///< body-frame gravity at the start [m/s^2]
   double gy = 0.0;                        ///< [m/s^2]
+  std::optional<KnownDrive> known = {};   ///< what was measured of the drive; `initial` is where it ends
 };
 
 }  // namespace slipwise

@@ -15,7 +15,7 @@ from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 from slipwise.reporting.markup import details, legend, missing, number, paragraph, table
-from slipwise.reporting.palette import ALARM_COLOUR, LEARNED_STROKE, stroke_of, transparent
+from slipwise.reporting.palette import ALARM_COLOUR, LEARNED_STROKE, Stroke, stroke_of, transparent
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
@@ -197,29 +197,43 @@ def _weights(contents: Contents, history: History) -> str:
         return paragraph(
             f"One basis was used: {', '.join(history.bases) or contents.calibration.model.motion.basis.name}."
         )
-    timeline, keep = Timeline.of(contents.log), thinned(len(history.t))
-    x = timeline.at(history.run[keep], history.t[keep])
-    methods = contents.evaluation.methods
     # The bases of an average are methods too and have their colours.
-    strokes = {name: stroke_of(name, (*methods, *history.bases)) for name in history.bases}
+    strokes = {
+        name: stroke_of(name, (*contents.evaluation.methods, *history.bases)) for name in history.bases
+    }
+    html = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
+    if history.structure_weight is None:
+        return html
+    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
+    shown = (strokes, history.structure_weight)
+    return html + _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+
+
+def _weights_figure(
+    contents: Contents, history: History, names: tuple[str, str], shown: tuple[dict[str, Stroke], Floats]
+) -> str:
+    """Draw weights [W, N] over time, stacked; `names` are the figure's key and what is weighed."""
+    key, what = names
+    strokes, weights = shown
+    timeline, keep = Timeline.of(contents.log), thinned(len(history.t))
     traces = [
         {
             "type": "scatter",
             "mode": "lines",
             "name": plain_label(name),
-            "x": numbers(x),
-            "y": numbers(history.basis_weight[keep, place]),
+            "x": numbers(timeline.at(history.run[keep], history.t[keep])),
+            "y": numbers(weights[keep, place]),
             "stackgroup": "weights",
-            "line": {"color": strokes[name].colour, "width": 0.5},
-            "fillcolor": transparent(strokes[name].colour, 0.75),
+            "line": {"color": stroke.colour, "width": 0.5},
+            "fillcolor": transparent(stroke.colour, 0.75),
             "hovertemplate": "%{fullData.name}: %{y:.2f}<br>%{x:.1f} s<extra></extra>",
         }
-        for place, name in enumerate(history.bases)
+        for place, (name, stroke) in enumerate(strokes.items())
     ]
     figure = Figure(
-        key="weights",
-        label="Weights of the slip bases over time",
-        heading="Weights of the slip bases",
+        key=key,
+        label=f"Weights of the {what} over time",
+        heading=f"Weights of the {what}",
         traces=traces,
         layout={
             "xaxis": axis(timeline.title),
@@ -228,4 +242,4 @@ def _weights(contents: Contents, history: History) -> str:
         },
         height=280,
     )
-    return legend((name, strokes[name].colour, "line") for name in history.bases) + figure.html()
+    return legend((name, stroke.colour, "line") for name, stroke in strokes.items()) + figure.html()

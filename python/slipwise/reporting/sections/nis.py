@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,15 +17,16 @@ from slipwise.reporting.markup import legend, missing
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED, transparent
 from slipwise.reporting.thinning import thinned, thinning_note
 from slipwise.reporting.timeline import Timeline
+from slipwise.student import ellipsoid_squared
 
 _MEAN_OVER = 20  # windows of the moving mean
 _TRUE_MEAN = 3.0  # of the NIS of x, y, yaw
 # 2.5 and 97.5 % quantiles of chi-square with 3 degrees of freedom, from tables.
-_WINDOW_BAND = (0.2157952826, 9.3484036045)
+_NORMAL_BAND = (0.2157952826, 9.3484036045)
+_BAND_ENDS = (0.025, 0.975)
 _MEAN_COLOUR = "#b8860b"
 _MEAN_BAND = "#e6d6ad"  # the same on white with an opacity of 0.35
 Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class NisSection:
@@ -43,15 +45,14 @@ class NisSection:
         predictions = contents.predictions(contents.learned_method, contents.longest_horizon)
         if predictions is not None:
             heading = f"Predictions of {predictions.method} over {predictions.horizon:g} s"
-            figures.append(
-                _figure(
-                    "predictions", heading, timeline, predictions.run, predictions.t_start, _nis(predictions)
-                )
-            )
+            place = timeline.at(predictions.run, predictions.t_start)
+            band = _band_of(predictions)
+            figures.append(_figure(timeline, _Series("predictions", heading, place, _nis(predictions), band)))
         history = contents.calibration.history
         if history is not None and len(history.t):
             heading = "Windows before they were learned"
-            figures.append(_figure("learning", heading, timeline, history.run, history.t, history.nis))
+            place = timeline.at(history.run, history.t)
+            figures.append(_figure(timeline, _Series("learning", heading, place, history.nis, _NORMAL_BAND)))
         drawn = [figure for figure in figures if figure is not None]
         if not drawn:
             return missing("No window has a predicted covariance, so its truth cannot be judged.")
@@ -70,6 +71,12 @@ def _legend() -> str:
     )
 
 
+def _band_of(predictions: Predictions) -> tuple[float, float]:
+    """Where the NIS of 95 % of the windows should lie, for the middle of their degrees of freedom."""
+    low, high = (ellipsoid_squared(share, float(np.median(predictions.dof))) for share in _BAND_ENDS)
+    return low, high
+
+
 def _nis(predictions: Predictions) -> Floats:
     """Return the NIS of each window [N], NaN where the covariances cannot be inverted."""
     try:
@@ -78,21 +85,30 @@ def _nis(predictions: Predictions) -> Floats:
         return np.full(len(predictions), np.nan)
 
 
-def _figure(  # noqa: PLR0913 - a series and its names
-    key: str, heading: str, timeline: Timeline, run: Ints, t: Floats, nis: Floats
-) -> Figure | None:
-    good = np.isfinite(nis) & (nis > 0.0)
+@dataclass(frozen=True, eq=False)
+class _Series:
+    """What one figure shows, [N]."""
+
+    key: str
+    heading: str
+    x: Floats  # place on the timeline
+    nis: Floats
+    band: tuple[float, float]  # where 95 % of the windows should lie
+
+
+def _figure(timeline: Timeline, series: _Series) -> Figure | None:
+    good = np.isfinite(series.nis) & (series.nis > 0.0)
     if not good.any():
         return None
-    x, y = timeline.at(run[good], t[good]), nis[good]
+    x, y, heading, band = series.x[good], series.nis[good], series.heading, series.band
     keep = thinned(len(y))
     low, high = nis_band(min(_MEAN_OVER, len(y)))
-    outside = float(np.mean((y < _WINDOW_BAND[0]) | (y > _WINDOW_BAND[1])))
+    outside = float(np.mean((y < band[0]) | (y > band[1])))
     exponents = np.log10([min(float(y.min()), 0.1), max(float(y.max()), 20.0)])
     share = f"{100.0 * outside:.0f} % lie outside their band (5 % expected)"
     caption = f"Mean of all {len(y)} windows {y.mean():.2f}; {share}."
     return Figure(
-        key=f"nis-{key}",
+        key=f"nis-{series.key}",
         label=f"{heading}: normalised innovation squared over time",
         heading=heading,
         traces=[_dots(x[keep], y[keep]), *_mean_line(x, y)],
@@ -105,7 +121,7 @@ def _figure(  # noqa: PLR0913 - a series and its names
                 dtick=1,
             ),
             "shapes": [
-                *_band(*_WINDOW_BAND, transparent(LEARNED_STROKE.colour, 0.13)),
+                *_band(*band, transparent(LEARNED_STROKE.colour, 0.13)),
                 *_band(low, high, _MEAN_BAND),
                 _level(_TRUE_MEAN),
                 *timeline.shapes(),

@@ -84,7 +84,7 @@ def _figure(contents: Contents, window: ChosenWindow, path: WindowPaths, predict
     plain, ours = stroke_of(PLAIN, methods), stroke_of(predictions.method, methods)
     end, measured = predictions.pose[window.row], predictions.measured[window.row]
     traces = [
-        *_ellipse(end, predictions.covariance[window.row], ours.colour),
+        *_ellipse(predictions, window.row, ours.colour),
         _line(path.plain, PLAIN, plain.colour, "dash", 2.0),
         _line(path.measured, "measured", MEASURED, "solid", 2.5),
         _line(path.predicted, "predicted", ours.colour, "solid", 2.0),
@@ -146,8 +146,9 @@ def _off(pose: NDArray[np.float64], measured: NDArray[np.float64]) -> str:
     return f"{number(float(np.hypot(error[0], error[1])), 2)} m and {number(angle, 2)}°"
 
 
-def _ellipse(end: NDArray[np.float64], covariance: NDArray[np.float64], colour: str) -> list[dict[str, Any]]:
-    outline = ellipse(end[:2], covariance[:2, :2])
+def _ellipse(predictions: Predictions, row: int, colour: str) -> list[dict[str, Any]]:
+    covariance = predictions.covariance[row, :2, :2]
+    outline = ellipse(predictions.pose[row, :2], covariance, float(predictions.dof[row]))
     if outline is None:
         return []
     return [

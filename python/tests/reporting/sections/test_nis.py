@@ -11,6 +11,7 @@ from reporting.synthetic_results import make_results, without_history
 
 from slipwise.calibration.statistics import nis_band
 from slipwise.reporting.sections.nis import NisSection
+from slipwise.student import share_inside
 
 
 def test_predictions_and_learning_windows_are_shown_with_both_bands() -> None:
@@ -29,6 +30,13 @@ def test_predictions_and_learning_windows_are_shown_with_both_bands() -> None:
 def test_band_of_one_window_holds_95_percent_of_true_windows() -> None:
     nis = np.random.default_rng(3).chisquare(3.0, 200_000)
     assert abs(np.mean((nis > 0.2157952826) & (nis < 9.3484036045)) - 0.95) < 0.002
+
+
+def test_band_of_predictions_is_that_of_their_t() -> None:
+    contents = contents_of(make_results())
+    figure = figures_of(NisSection().html(contents))["figure-nis-predictions"]
+    window = figure["layout"]["shapes"][0]
+    assert np.allclose(share_inside([window["y0"], window["y1"]], 5.0), [0.025, 0.975], atol=1e-4)
 
 
 def test_moving_mean_is_that_of_the_last_twenty() -> None:

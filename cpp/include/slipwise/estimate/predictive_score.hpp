@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well a model predicts segments: a log score with heavy tails, under noise whose size is learned.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/estimate/noise_scale.hpp"
+
+namespace slipwise {
+
+/// Student-t log density of an innovation, without constants: real residuals have heavy tails (derivations.md, section
+/// 7).
+double student_log_score(double nis, const Eigen::Matrix3d& covariance);
+
+/// A segment as it was predicted.
+struct ScoredSegment {
+  double nis;        ///< innovation^T S^-1 innovation
+  double log_score;  ///< of the innovation
+};
+
+/// Scores a model that is learned elsewhere on segments that it has not learned, and learns the size of the noise.
+class PredictiveScore {
+ public:
+  explicit PredictiveScore(const NoiseSettings& settings) : settings_(settings), noise_scale_(settings) {}
+
+  /// Scores the prediction of a segment, then learns the noise from its residual.
+  ScoredSegment score(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+                      const Segment& segment);
+  /// Learned factor of the noise variances of (x, y, theta).
+  const Eigen::Vector3d& noise_scale() const { return noise_scale_.value(); }
+
+ private:
+  NoiseSettings settings_;
+  NoiseScale noise_scale_;
+};
+
+}  // namespace slipwise

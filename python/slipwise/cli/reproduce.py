@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise reproduce`: the thesis's figures and tables, made again."""
+
+from __future__ import annotations
+
+import contextlib
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from slipwise.cli.options import Json, Runs
+
+if TYPE_CHECKING:
+    from slipwise.reproduction import ChapterResult
+
+
+class WorkName(StrEnum):
+    """What can be reproduced."""
+
+    thesis = "thesis"
+
+
+def reproduce(
+    work: Annotated[WorkName, typer.Argument(help="What to reproduce.", show_default=False)],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            show_default=False,
+            help="Write here, not into a new folder below `runs`.",
+        ),
+    ] = None,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CHAPTER", show_default=False, help="This chapter alone; may be given again."),
+    ] = None,
+    seed: Annotated[int, typer.Option(metavar="N", help="Of the simulated drives.")] = 1,
+    data: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR", envvar="SLIPWISE_DATA", show_default=False, help="Folder of the real logs."
+        ),
+    ] = None,
+    runs: Runs = Path("runs"),
+    json: Json = None,
+) -> int:
+    """Make every figure and table of the thesis again, each with what agrees, what differs and why.
+
+    Writes index.html, and markdown/README.md with its pictures. Without a real log, what is made from it is
+    left out and counted. The same seed and logs give the same files, but for times that are measured.
+
+    \b
+    Examples:
+      slipwise reproduce thesis -o thesis
+      slipwise reproduce thesis --only chapter-4 --seed 7
+      SLIPWISE_DATA=logs slipwise reproduce thesis -o thesis
+    """  # noqa: D301
+    from slipwise.cli.output import Output
+    from slipwise.cli.progress import progress_bar
+    from slipwise.cli.run_folder import run_folder
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.reproduction import reproduce as make_again
+    from slipwise.reproduction import write_reproduction
+    from slipwise.reproduction.extras import refuse_missing_extras
+    from slipwise.reproduction.reproduce import BenchPlan, chosen_chapters
+
+    del work
+    out = Output(json)
+    chapters = chosen_chapters(only or [])
+    refuse_missing_extras()
+    refuse_unwritable(out.written_file, output and output / "index.html")
+    with progress_bar("simulating") as update:
+        place = run_folder(runs, "reproduce") if output is None else contextlib.nullcontext(output)
+        with place as folder:
+            made = make_again(BenchPlan(seed, data), chapters=chapters, progress=update)
+            files = write_reproduction(folder, made)
+            out.document(_document(made, files, seed))
+    _show(out, made, files)
+    return 0
+
+
+def _document(made: tuple[ChapterResult, ...], files: dict[str, Path], seed: int) -> dict[str, Any]:
+    from slipwise.cli.document import head
+
+    exhibits = [
+        {
+            "chapter": chapter.key,
+            "key": exhibit.key,
+            "thesis": exhibit.thesis,
+            "title": exhibit.title,
+            "agrees": exhibit.agrees,
+            "differs": exhibit.differs,
+            "source": exhibit.source,
+            "missing": exhibit.missing or None,
+        }
+        for chapter in made
+        for exhibit in chapter.exhibits
+    ]
+    return head("reproduce") | {"exit_code": 0, "seed": seed, "files": files, "exhibits": exhibits}
+
+
+def _show(out: Any, made: tuple[ChapterResult, ...], files: dict[str, Path]) -> None:
+    from slipwise.cli.output import Column
+    from slipwise.cli.tables import show_files
+
+    columns = [
+        Column("chapter", whole=True),
+        Column("in the thesis", whole=True),
+        Column("exhibit"),
+        Column(""),
+    ]
+    rows = [
+        (chapter.key, exhibit.thesis, exhibit.title, "missing" if exhibit.missing else "")
+        for chapter in made
+        for exhibit in chapter.exhibits
+    ]
+    missing = [exhibit.missing for chapter in made for exhibit in chapter.exhibits if exhibit.missing]
+    caption = f"{len(rows) - len(missing)} exhibits were made, {len(missing)} could not be."
+    out.table("The thesis, made again", columns, rows, caption=caption)
+    for sentence in dict.fromkeys(missing):
+        out.line(sentence)
+    show_files(out, files)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How the body moves for what the drive does, over the range of the log, and straight lines through that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.models.model import Model
+
+Floats = NDArray[np.float64]
+
+_GRID = 21  # speeds, and as many yaw rates
+
+
+@dataclass(frozen=True)
+class BodyTwists:
+    """The drive's speed and yaw rate [N] and the body's twist (forward, left, yaw) then, once settled."""
+
+    v: Floats
+    w: Floats
+    mean: Floats  # [N, 3]
+    features: Floats  # [N, 3, slip parameters], derivative of `mean`
+
+
+def body_twists(model: Model) -> BodyTwists:
+    """Return the body's twists on a grid over the range of validity."""
+    span = model.content.range
+    v, w = np.meshgrid(*(np.linspace(low, high, _GRID) for low, high in (span.speed, span.yaw_rate)))
+    return _twists(model, v.ravel(), w.ravel())
+
+
+def turning_twists(model: Model, radius: float) -> BodyTwists:
+    """Return the body's twists while turning at `radius` [m] to either side, as fast as the log went."""
+    span = model.content.range
+    fastest = min(max(map(abs, span.speed)), radius * max(map(abs, span.yaw_rate)))
+    v = np.repeat(np.linspace(fastest / _GRID, fastest, _GRID), 2)
+    return _twists(model, v, v / radius * np.tile((1.0, -1.0), _GRID))
+
+
+def straight_line(inputs: Floats, output: Floats, features: Floats) -> tuple[Floats, Floats]:
+    """Return the least-squares coefficients [K] of inputs [N, K] for an output [N], and their derivative.
+
+    `features` [N, parameters] is the derivative of the output; that of the coefficients is [K, parameters].
+    An input that is always zero gets the coefficient 0.
+    """
+    solve = np.linalg.pinv(inputs)
+    return solve @ output, solve @ features
+
+
+def body_gains(twists: BodyTwists) -> tuple[float, float]:
+    """Return body speed per speed and body yaw rate per yaw rate, by least squares."""
+    speed, _ = straight_line(twists.v[:, None], twists.mean[:, 0], twists.features[:, 0])
+    yaw, _ = straight_line(twists.w[:, None], twists.mean[:, 2], twists.features[:, 2])
+    return float(speed[0]), float(yaw[0])
+
+
+def _twists(model: Model, v: Floats, w: Floats) -> BodyTwists:
+    basis = model.motion.basis
+    channel = np.repeat(np.arange(3), (len(basis.lon), len(basis.lat), len(basis.ang)))
+    features = np.zeros((len(v), 3, basis.size))
+    for i, (speed, rate) in enumerate(zip(v.tolist(), w.tolist(), strict=True)):
+        features[i, channel, np.arange(basis.size)] = basis.features(_core.SlipState(speed, rate, 0.0, 0.0))
+    mean = np.column_stack((v, np.zeros_like(v), w)) + features @ model.mean[: basis.size]
+    return BodyTwists(v, w, mean, features)

@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A C header with the model as constants and a prediction that needs nothing but <math.h>."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from slipwise import _core
+from slipwise.export.chain import chain_of
+from slipwise.models.model import Model
+
+_TEMPLATE = "model_template.h"
+_QUANTITIES = {
+    "V": "v",
+    "w": "w",
+    "abs(V)": "abs_v",
+    "abs(w)": "abs_w",
+    "sgn(V)": "sgn_v",
+    "kappa": "kappa",
+    "gx": "gx",
+    "gy": "gy",
+}
+_MADE = {
+    "abs_v": "SLIPWISE_MATH(fabs)(v)",
+    "abs_w": "SLIPWISE_MATH(fabs)(w)",
+    "sgn_v": "SLIPWISE_R((v > 0) - (v < 0))",
+    "kappa": "w * v / (v * v + SLIPWISE_R({regular}))",
+}
+_PROBE = 2.0**-30  # m/s, far below the speed that regularises the curvature
+
+
+def c_header(model: Model, origin: list[str]) -> str:
+    """Return the header.
+
+    Args:
+        model: the model.
+        origin: lines of the comment on top.
+
+    Raises:
+        ModelError: the command chain has a part that is not known.
+    """
+    template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
+    inputs = "commanded speeds" if model.content.input == "command" else "wheel speeds"
+    parts = {
+        "ORIGIN": "\n".join(("/*", *(f" * {line}" for line in origin), " */")),
+        "INPUT": inputs,
+        "CONSTANTS": _constants(model),
+        "RANGE": _range(model),
+        "LIBRARY": _library(model),
+        "SLIP": "\n".join(f"  {line}" for line in _slip(model)),
+    }
+    for name, text in parts.items():
+        template = template.replace(f"@{name}@", text)
+    return template
+
+
+def _define(name: str, value: float, comment: str) -> str:
+    return f"#define SLIPWISE_{name} SLIPWISE_R({value!r})  /* {comment} */"
+
+
+def _constants(model: Model) -> str:
+    chain = chain_of(model)
+    lines = []
+    for place, what, channel in (("V", "speed", chain.v), ("OMEGA", "yaw rate", chain.omega)):
+        lines += [
+            _define(f"DELAY_{place}", channel.delay, f"[s] transport delay of the {what}"),
+            _define(f"GAIN_{place}", channel.gain, f"drive over input, of the {what}"),
+            _define(f"LAG_{place}", channel.lag, f"[s] time constant of the {what}"),
+            _define(f"SLOW_SHARE_{place}", channel.slow_share, f"share of the {what} that follows slowly"),
+            _define(f"SLOW_LAG_{place}", channel.slow_lag, "[s] its time constant; 0 where there is none"),
+        ]
+    offset = "[s] poses are stamped this much later than the inputs"
+    lines.append(_define("CLOCK_OFFSET", chain.clock_offset, offset))
+    slip = model.content.parameters[: model.motion.slip_size]
+    lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}], +- {p.std:.2g}") for i, p in enumerate(slip)]
+    return "\n".join(lines)
+
+
+def _range(model: Model) -> str:
+    span = model.content.range
+    rows = (
+        ("SPEED_MIN", span.speed[0], "[m/s]"),
+        ("SPEED_MAX", span.speed[1], "[m/s]"),
+        ("YAW_RATE_MIN", span.yaw_rate[0], "[rad/s]"),
+        ("YAW_RATE_MAX", span.yaw_rate[1], "[rad/s]"),
+    )
+    return "\n".join(_define(*row) for row in rows)
+
+
+def _library(model: Model) -> str:
+    """Return what slipwise::MotionModel is made from; the lists go between braces."""
+    basis, motion = model.motion.basis, model.motion
+    channels = (("LON", basis.lon), ("LAT", basis.lat), ("ANG", basis.ang))
+    lists = [(f"TERMS_{name}", ", ".join(f'"{term}"' for term in terms)) for name, terms in channels]
+    lists.append(("PARAMETERS", ", ".join(map(repr, model.mean.tolist()))))
+    flags = [
+        ("HAS_DYNAMICS", motion.dynamics),
+        ("HAS_RESPONSE", motion.response),
+        ("HAS_CLOCK_OFFSET", motion.clock_offset),
+    ]
+    lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
+    return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(flag)}" for name, flag in flags)])
+
+
+def _slip(model: Model) -> list[str]:
+    """Return the body of the function of slip rates."""
+    basis = model.motion.basis
+    coefficients = _coefficients(basis)
+    used: set[str] = set()
+    sums: list[str] = []
+    at = 0
+    for channel, terms in enumerate((basis.lon, basis.lat, basis.ang)):
+        products = []
+        for term in terms:
+            factors = _factors(term)
+            used |= set(factors)
+            scale = [] if coefficients[at] == 1.0 else [f"SLIPWISE_R({coefficients[at]!r})"]
+            products.append(" * ".join((f"SLIPWISE_P{at}", *scale, *factors)))
+            at += 1
+        sums.append(f"rate[{channel}] = {' + '.join(products) or '0'};")
+    regular = repr(_regular_curvature())
+    made = [
+        f"const slipwise_real {name} = {text.format(regular=regular)};"
+        for name, text in _MADE.items()
+        if name in used
+    ]
+    given = [
+        f"(void){name};" for name in ("v", "w", "gx", "gy") if not any(name in line.split() for line in made)
+    ]
+    return [*made, *given, *_parked(used), *sums]
+
+
+def _parked(used: set[str]) -> list[str]:
+    """Return the lines that keep a parked robot from sliding down a slope."""
+    slopes = sorted(used & {"gx", "gy"})
+    if not slopes:
+        return []
+    return ["if (!(v < 0 || v > 0 || w < 0 || w > 0)) {", *(f"  {name} = 0;" for name in slopes), "}"]
+
+
+def _factors(term: str) -> list[str]:
+    """Return the quantities of a term in its canonical spelling, each as often as its power says."""
+    factors = []
+    for part in term.removesuffix("/g").split("*"):
+        name, _, power = part.partition("^")
+        if name in _QUANTITIES:
+            factors += [_QUANTITIES[name]] * int(power or 1)
+    return factors
+
+
+def _coefficients(basis: _core.Basis) -> list[float]:
+    """Return the number that each term starts with: its value where every quantity but the curvature is 1."""
+    curvature = float(_curvature().features(_core.SlipState(1.0, 1.0, 0.0, 0.0))[0])
+    values = basis.features(_core.SlipState(1.0, 1.0, 1.0, 1.0)).tolist()
+    terms = (*basis.lon, *basis.lat, *basis.ang)
+    plain = [
+        value / curvature ** _factors(term).count("kappa") for value, term in zip(values, terms, strict=True)
+    ]
+    return [1.0 if abs(value - 1.0) < 1e-12 else value for value in plain]
+
+
+def _curvature() -> _core.Basis:
+    return _core.Basis("curvature", ["kappa"], [], [])
+
+
+def _regular_curvature() -> float:
+    """Return v0^2 of kappa = w V / (V^2 + v0^2) [m^2/s^2], as the core has it."""
+    slow = float(_curvature().features(_core.SlipState(_PROBE, 1.0, 0.0, 0.0))[0])
+    return _PROBE / slow - _PROBE**2

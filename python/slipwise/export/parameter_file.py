@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A ROS parameter file: entries with a comment each, written as YAML that both PyYAML and rcl read alike."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+_ROW = 15  # numbers on a line
+
+Value = bool | float | str | list[bool] | list[float] | list[str]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One parameter. `key` is its path below `ros__parameters`; a dot within a part is part of its name."""
+
+    key: tuple[str, ...]
+    value: Value
+    meaning: str
+
+    @property
+    def name(self) -> str:
+        """The parameter's full name, as ROS spells it."""
+        return ".".join(self.key)
+
+
+@dataclass(frozen=True)
+class ParameterFile:
+    """What one node is to be given."""
+
+    node: str
+    entries: Sequence[Entry]
+    notes: Sequence[str] = ()  # about the whole file, one paragraph each
+
+    def text(self, origin: Sequence[str]) -> str:
+        """Return the file, with `origin` on top as a comment."""
+        lines = [f"# {line}" for line in origin]
+        for note in self.notes:
+            lines += ["#", *(f"# {line}" for line in note.splitlines())]
+        lines += [f"{self.node}:", "  ros__parameters:"]
+        open_parts: tuple[str, ...] = ()
+        for entry in self.entries:
+            *parents, last = entry.key
+            for depth, part in enumerate(parents):
+                if open_parts[: depth + 1] != tuple(parents[: depth + 1]):
+                    lines.append(f"{_indent(depth)}{part}:")
+            open_parts = tuple(parents)
+            indent = _indent(len(parents))
+            lines += [f"{indent}# {line}" for line in entry.meaning.splitlines()]
+            lines.append(f"{indent}{last}: {_wrapped(entry.value, indent)}")
+        return "\n".join(lines) + "\n"
+
+    def values(self) -> dict[str, Value]:
+        """Return the values by their full names."""
+        return {entry.name: entry.value for entry in self.entries}
+
+
+def yaml_value(value: Value) -> str:
+    """Return a value as YAML. A float always has a point: to ROS, `1` and `1.0` are of different types."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        return _float_text(value)
+    if isinstance(value, str):
+        return f'"{value}"'
+    return f"[{', '.join(yaml_value(item) for item in value)}]"
+
+
+def _wrapped(value: Value, indent: str) -> str:
+    """Return a value as YAML, a matrix of the EKF's state row by row."""
+    if not isinstance(value, list) or len(value) <= _ROW:
+        return yaml_value(value)
+    texts = [yaml_value(item) for item in value]
+    rows = (", ".join(texts[at : at + _ROW]) for at in range(0, len(texts), _ROW))
+    return "[\n" + ",\n".join(f"{indent}  {row}" for row in rows) + f"\n{indent}]"
+
+
+def _float_text(value: float) -> str:
+    mantissa, _, exponent = f"{value:.6g}".partition("e")
+    if "." not in mantissa:
+        mantissa += ".0"
+    return f"{mantissa}e{exponent}" if exponent else mantissa
+
+
+def _indent(depth: int) -> str:
+    return "  " * (depth + 2)

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How noisy a robot drives by its model: at which speeds that is asked, and the answer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.errors import ModelError
+from slipwise.models.model import Model
+from slipwise.prediction import tail_at
+
+Floats = NDArray[np.float64]
+
+REFERENCE_SHARE = 0.5  # of the fastest speed and yaw rate that the log holds
+_SETTLED = 16384.0  # s after a command; no chain is slower
+_BRIEF = 2.0**-10  # s; the robot hardly turns in it
+_NO_NOISE = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class ReferenceDrive:
+    """The speed [m/s] and yaw rate [rad/s] at which noise is stated, half of the fastest in the log."""
+
+    speed: float
+    yaw_rate: float
+
+
+def reference_drive(model: Model) -> ReferenceDrive:
+    """Return where the model's noise is to be stated.
+
+    Raises:
+        ModelError: the robot never drove, or never turned.
+    """
+    span = model.content.range
+    speed = REFERENCE_SHARE * max(map(abs, span.speed))
+    yaw_rate = REFERENCE_SHARE * max(map(abs, span.yaw_rate))
+    if not (speed > 0.0 and yaw_rate > 0.0):
+        raise ModelError(
+            "the range of validity has no speed or no yaw rate, so noise cannot be stated",
+            advice="calibrate with a log in which the robot drives and turns",
+        )
+    return ReferenceDrive(speed, yaw_rate)
+
+
+def motion_covariance(model: Model, drive: tuple[float, float], seconds: float) -> Floats:
+    """Return the covariance [3, 3] of the pose (x, y, yaw) after `seconds` at (v, omega), settled.
+
+    It is what `predict` says, less the noise of the two measured poses.
+    """
+    noise = model.noise
+    slip_only = _core.MotionNoise(noise.psd_time, noise.psd_motion, noise.fraction, 0.0, 0.0)
+    covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance)
+    return np.asarray(covariance * tail_at(model, seconds).growth, dtype=np.float64)
+
+
+def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Floats:
+    """Return white noise of the slip rates [3] (m^2/s, m^2/s, rad^2/s) that is as large after `seconds`.
+
+    What is white already keeps its density. What lasts, the constant slip and the parameters' error, has a
+    variance of c t^2, and counts as density c * seconds.
+    """
+    noise = model.noise
+    white = _core.MotionNoise(noise.psd_time, noise.psd_motion, _NO_NOISE, 0.0, 0.0)
+    lasting = _core.MotionNoise(_NO_NOISE, _NO_NOISE, noise.fraction, 0.0, 0.0)
+    at = _settled(model, drive, _BRIEF)
+    density = np.diag(_spread(model, at, white, np.zeros_like(model.covariance))) / _BRIEF
+    density = density + np.diag(_spread(model, at, lasting, model.covariance)) / _BRIEF**2 * seconds
+    return np.asarray(density * tail_at(model, seconds).growth, dtype=np.float64)
+
+
+def _settled(model: Model, drive: tuple[float, float], seconds: float) -> _core.SegmentLinearization:
+    """Return a stretch of a drive whose command was given long before."""
+    v, omega = drive
+    track = _core.InputTrack(*(np.array([value]) for value in (0.0, v, 0.0, omega)))
+    segment = _core.Segment(_SETTLED, _SETTLED + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    return _core.linearize_segment(model.motion, model.mean, track, segment)
+
+
+def _spread(
+    model: Model, at: _core.SegmentLinearization, noise: _core.MotionNoise, parameters: Floats
+) -> Floats:
+    scale = np.array(model.content.noise.scale)
+    return np.asarray(_core.prediction_covariance(at, parameters, noise, scale), dtype=np.float64)

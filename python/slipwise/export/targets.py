@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The tools that a model can be exported for, and the text of their files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from slipwise.errors import ModelError, SettingsError
+from slipwise.export.amcl import amcl
+from slipwise.export.c_header import c_header
+from slipwise.export.diff_drive import diff_drive
+from slipwise.export.mppi import mppi
+from slipwise.export.options import ExportOptions
+from slipwise.export.origin import origin_lines
+from slipwise.export.parameter_file import ParameterFile, Value
+from slipwise.export.robot_localization import robot_localization
+from slipwise.models.model import Model
+
+
+@dataclass(frozen=True)
+class Exported:
+    """The text of one file, and the values in it by their names."""
+
+    text: str
+    values: dict[str, Value]
+
+
+@dataclass(frozen=True)
+class Target:
+    """A tool, the usual name of its file, and how the file is made."""
+
+    name: str
+    file_name: str
+    make: Callable[[Model, ExportOptions, list[str]], Exported]
+
+
+def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
+    def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
+        file = make(model, options)
+        return Exported(file.text(origin), file.values())
+
+    return write
+
+
+def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
+    return Exported(c_header(model, origin), {p.name: p.value for p in model.content.parameters})
+
+
+TARGETS = (
+    Target("diff-drive", "diff_drive_controller.yaml", _parameters(diff_drive)),
+    Target("mppi", "nav2_mppi.yaml", _parameters(mppi)),
+    Target("amcl", "nav2_amcl.yaml", _parameters(amcl)),
+    Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization)),
+    Target("c-header", "model.h", _c_header),
+)
+
+
+def find_target(name: str) -> Target:
+    """Return a target by its name.
+
+    Raises:
+        SettingsError: there is none.
+    """
+    for target in TARGETS:
+        if target.name == name:
+            return target
+    raise SettingsError(f"unknown target '{name}'", advice=f"one of {', '.join(t.name for t in TARGETS)}")
+
+
+def export_model(
+    model: Model, target: str, *, name: str, options: ExportOptions | None = None, force: bool = False
+) -> Exported:
+    """Return the file of one target.
+
+    Args:
+        model: a learned model.
+        target: whose file, such as `diff-drive`.
+        name: of the model file, for the comment on top.
+        options: what the model does not hold.
+        force: export a model whose verdict is bad, too.
+
+    Raises:
+        ModelError: the verdict is bad, or the model does not fit the target.
+        SettingsError: there is no such target.
+    """
+    made = find_target(target)
+    if not force:
+        refuse_bad_verdict(model)
+    return made.make(model, options or ExportOptions(), origin_lines(model, name))
+
+
+def refuse_bad_verdict(model: Model) -> None:
+    """Raise for a model that is not good enough.
+
+    Raises:
+        ModelError: the verdict is bad.
+    """
+    verdict = model.content.verdict
+    if not verdict.good:
+        raise ModelError(
+            f"the model's verdict is bad: {verdict.sentence}",
+            advice="learn from a better log, or use --force to export it all the same",
+        )

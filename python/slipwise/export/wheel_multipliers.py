@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The wheel radius and separation multipliers closest to a learned slip, and by how much they miss."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import ModelError
+from slipwise.export.body_gains import body_twists, straight_line
+from slipwise.export.options import ExportOptions
+from slipwise.models.model import Model
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WheelMultipliers:
+    """Factors of the nominal radii and separation, and what they leave over."""
+
+    left_radius: float
+    right_radius: float
+    radius_std: float
+    separation: float
+    separation_std: float
+    speed_gain: float  # body speed per wheel speed, as the log had them
+    yaw_gain: float
+    residual: tuple[float, float, float]  # RMS over the range: forward, sideways [m/s], yaw [rad/s]
+
+
+def wheel_multipliers(model: Model, options: ExportOptions) -> WheelMultipliers:
+    """Fit body speed = g V and yaw rate = h w (+ k V with a separation) over the range of validity.
+
+    With the wheels' twist V = r (R + L)/2, w = r (R - L)/b, the radius multiplier is g and the separation
+    multiplier g/h. Unequal radii turn a robot whose wheels go straight: k = (right - left)/(b g/h). The basis
+    edd-2 is matched exactly.
+
+    Raises:
+        ModelError: the robot stands, or turns the other way, by the model.
+    """
+    body = body_twists(model)
+    v, w = body.v, body.w
+    g, g_by_parameter = straight_line(v[:, None], body.mean[:, 0], body.features[:, 0])
+    inputs = np.column_stack((w, v)) if options.wheel_separation is not None else w[:, None]
+    h, h_by_parameter = straight_line(inputs, body.mean[:, 2], body.features[:, 2])
+    if not (g[0] > 0.0 and h[0] > 0.0):
+        raise ModelError(
+            f"wheels that drive forward move the robot by a factor of {g[0]:.3g}, and turn it by {h[0]:.3g}",
+            advice="these must be positive: check the signs of the log and calibrate again",
+        )
+    covariance = model.covariance[: model.motion.slip_size, : model.motion.slip_size]
+    ratio = g[0] / h[0]
+    ratio_by_parameter = (g_by_parameter[0] - ratio * h_by_parameter[0]) / h[0]
+    half = 0.0
+    if options.wheel_separation is not None:
+        half = h[1] * ratio * options.wheel_separation * options.logged_separation_multiplier / 2.0
+    left = np.column_stack((v * g[0], np.zeros_like(v), inputs @ h))
+    radius = options.logged_radius_multiplier
+    forward, sideways, yaw = np.sqrt(np.mean(np.square(body.mean - left), axis=0)).tolist()
+    return WheelMultipliers(
+        left_radius=radius * (g[0] - half),
+        right_radius=radius * (g[0] + half),
+        radius_std=radius * _std(g_by_parameter[0], covariance),
+        separation=options.logged_separation_multiplier * ratio,
+        separation_std=options.logged_separation_multiplier * _std(ratio_by_parameter, covariance),
+        speed_gain=float(g[0]),
+        yaw_gain=float(h[0]),
+        residual=(forward, sideways, yaw),
+    )
+
+
+def _std(by_parameter: Floats, covariance: Floats) -> float:
+    return float(np.sqrt(by_parameter @ covariance @ by_parameter))

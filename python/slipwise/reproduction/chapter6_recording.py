@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""An on-line estimator's whole course over a drive: what it believed and how it missed at every update."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration import Settings
+from slipwise.calibration.calibrate import learning_windows
+from slipwise.calibration.drive import DriveRun, WindowSet, collect_windows, prepare_drive
+from slipwise.calibration.estimator_pass import THESIS_STRIDE, THESIS_WINDOW, estimator_motion
+from slipwise.calibration.forecast import Forecaster, forecast
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.predictions import Predictions
+from slipwise.logs import Log
+from slipwise.reproduction.panel import Floats
+
+HORIZON = 5.0  # s, of Table 6.2
+EXACT, THESIS = _core.SegmentJacobian.Exact, _core.SegmentJacobian.Thesis
+
+
+@dataclass(frozen=True)
+class Course:
+    """Which estimator, with what."""
+
+    estimator: str
+    basis: str = "thesis-15"
+    input_name: str = "wheel"
+    jacobian: _core.SegmentJacobian = THESIS  # of `ekf-thesis`
+
+    @property
+    def settings(self) -> Settings:
+        """Settings of learning."""
+        return Settings(basis=self.basis)
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """Beliefs before the first of K updates and after each."""
+
+    course: Course
+    motion: _core.MotionModel
+    windows: WindowSet  # that count as learned, disjoint
+    fed: WindowSet  # that were learned: overlapping for the thesis's estimators
+    t: Floats  # [K + 1] s
+    mean: Floats  # [K + 1, P]
+    covariance: Floats  # [K + 1, P, P]
+    innovation: Floats  # [K, 3] measured minus predicted, before the update
+    noise_scale: Floats  # [K + 1, 3]
+    prior_std: Floats  # [K + 1, P]
+
+    @property
+    def std(self) -> Floats:
+        """Standard deviations, [K + 1, P]."""
+        return np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+
+    def belief(self, count: int) -> Belief:
+        """Return the belief once `count` of the windows have passed."""
+        last = slice(count - 1, count)
+        k = 0
+        if count > 0:
+            k = int(self.fed.count_until(self.windows.position[last], self.windows.end[last])[0])
+        covariance, prior_std = self.covariance[k], self.prior_std[k]
+        ratio = np.diag(covariance) / prior_std**2
+        return Belief(self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1))
+
+    def predictions(self, targets: WindowSet, name: str) -> Predictions:
+        """Predict windows causally, and once more after they were learned."""
+        shape = self.course.settings.filter_settings().noise.shape
+        forecaster = Forecaster(name, self.motion, shape, self.belief, self.motion.dynamics)
+        return forecast(forecaster, self.windows, targets)
+
+
+def drive_windows(log: Log, course: Course, length: float | None = None) -> WindowSet:
+    """Cut a log into disjoint windows: those to learn from, or of a length [s] to predict."""
+    drive = prepare_drive(log, course.input_name)
+    if length is None:
+        return learning_windows(drive, course.input_name, course.settings)
+    return collect_windows(drive, length, course.settings.rules())
+
+
+def overlapping_windows(drive: tuple[DriveRun, ...], course: Course) -> WindowSet:
+    """Cut windows as the thesis does: 5 s each, 20 a second."""
+    rules = replace(course.settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
+    return collect_windows(drive, THESIS_WINDOW, rules)
+
+
+def record(log: Log, course: Course) -> Recording:
+    """Learn a drive from nothing and keep every belief."""
+    motion = estimator_motion(course.estimator, course.settings, course.input_name)
+    settings = _core.EstimatorSettings()
+    settings.ekf_thesis = _with_jacobian(settings.ekf_thesis, course.jacobian)
+    estimator = _core.FollowingEstimator(
+        course.estimator, motion, course.settings.filter_settings(), settings
+    )
+    windows = drive_windows(log, course)
+    overlap = _core.learns_overlapping_segments(course.estimator)
+    fed = overlapping_windows(windows.drive, course) if overlap else windows
+    beliefs = [_now(estimator)]
+    innovation = np.empty((len(fed), 3))
+    for i in range(len(fed)):
+        innovation[i] = estimator.learn(fed.track(i), fed.segments[i]).innovation
+        beliefs.append(_now(estimator))
+    columns = [np.array(column) for column in zip(*beliefs, strict=True)]
+    t = np.concatenate((fed.start[:1], fed.end))
+    return Recording(
+        course, motion, windows, fed, t, columns[0], columns[1], innovation, columns[2], columns[3]
+    )
+
+
+def _now(estimator: _core.FollowingEstimator) -> tuple[Floats, Floats, Floats, Floats]:
+    """Mean, covariance, noise scale and prior standard deviations."""
+    estimate = estimator.estimate()
+    known = (estimate.mean, estimate.covariance, estimator.noise_scale, estimator.prior_std)
+    mean, covariance, scale, prior = (np.array(value) for value in known)
+    return mean, covariance, scale, prior
+
+
+def _with_jacobian(
+    settings: _core.EkfThesisSettings, jacobian: _core.SegmentJacobian
+) -> _core.EkfThesisSettings:
+    settings.jacobian = jacobian
+    return settings

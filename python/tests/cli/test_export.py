@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise export` writes files whole or not at all, says what it left out, and refuses in one line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import yaml
+from cli.conftest import Result, left_in
+from sample_models import make_model, named
+
+Slipwise = Callable[..., Result]
+
+WHEEL = named("edd-2", lon__V=-0.1, ang__w=-0.3)
+ALL_OF_WHEEL = {"diff_drive_controller.yaml", "nav2_amcl.yaml", "robot_localization.yaml", "model.h"}
+
+
+@pytest.fixture
+def wheel(folder: Path) -> Path:
+    return make_model(WHEEL).save(folder / "wheel.yaml")
+
+
+@pytest.fixture
+def command(folder: Path) -> Path:
+    return make_model(replace(WHEEL, commands=True)).save(folder / "command.yaml")
+
+
+@pytest.fixture
+def bad(folder: Path) -> Path:
+    made = replace(WHEEL, good=False, sentence="It does not beat doing nothing.")
+    return make_model(made).save(folder / "bad.yaml")
+
+
+def test_one_target_is_written_to_the_file_that_is_named(slipwise: Slipwise, wheel: Path) -> None:
+    result = slipwise("export", wheel, "--to", "diff-drive", "-o", "robot/dd.yaml")
+    assert (result.code, result.err) == (0, "")
+    parameters = yaml.safe_load(Path("robot/dd.yaml").read_text())["diff_drive_controller"]["ros__parameters"]
+    assert parameters["wheel_separation_multiplier"] == pytest.approx(0.9 / 0.7, rel=1e-5)
+    assert "wheel_separation_multiplier" in result.out
+    assert "1.286" in result.out
+    assert "robot/dd.yaml" in result.out
+
+
+def test_without_an_output_the_file_has_its_usual_name(slipwise: Slipwise, wheel: Path) -> None:
+    assert slipwise("export", wheel, "--to", "c-header").code == 0
+    assert left_in(Path()) == {"wheel.yaml", "model.h"}
+
+
+def test_all_writes_what_fits_and_says_what_does_not(slipwise: Slipwise, wheel: Path) -> None:
+    result = slipwise("export", wheel, "--to", "all", "-o", "config")
+    assert result.code == 0
+    assert left_in(Path("config")) == ALL_OF_WHEEL
+    assert "left out: mppi: " in result.out
+    assert "--input command" in result.out
+
+
+def test_json_holds_files_parameters_and_what_was_left_out(slipwise: Slipwise, command: Path) -> None:
+    document = slipwise("export", command, "--to", "all", "-o", "config", "--json", "-").json
+    assert (document["command"], document["exit_code"]) == ("export", 0)
+    assert set(document["files"]) == {"mppi", "robot-localization", "c-header"}
+    assert set(document["left_out"]) == {"diff-drive", "amcl"}
+    assert document["parameters"]["mppi"]["FollowPath.model_delay_vx"] == pytest.approx(0.5)
+    assert all(Path(path).is_file() for path in document["files"].values())
+
+
+def test_a_bad_verdict_is_refused_with_exit_code_1_and_nothing_is_written(
+    slipwise: Slipwise, bad: Path
+) -> None:
+    result = slipwise("export", bad, "--to", "all", "-o", "config", "--json", "result.json")
+    assert (result.code, result.err) == (1, "")
+    assert "NOT GOOD ENOUGH. It does not beat doing nothing." in result.out
+    assert "--force" in result.out
+    assert left_in(Path()) == {"bad.yaml", "result.json"}
+    assert json.loads(Path("result.json").read_text())["exit_code"] == 1
+
+
+def test_a_bad_verdict_is_exported_with_force(slipwise: Slipwise, bad: Path) -> None:
+    assert slipwise("export", bad, "--to", "amcl", "--force").code == 0
+    assert "NOT GOOD ENOUGH" in Path("nav2_amcl.yaml").read_text()
+
+
+REFUSED = {
+    "commands for wheels": (("command.yaml", "--to", "diff-drive"), "need a model learned from wheel speeds"),
+    "wheels for commands": (("wheel.yaml", "--to", "mppi"), "not learned from commands"),
+    "Ackermann for wheels": (
+        ("wheel.yaml", "--to", "diff-drive", "--min-turning-radius", "1"),
+        "smallest turning radius has no diff_drive_controller",
+    ),
+    "no target": (("wheel.yaml",), "Missing option '--to'"),
+    "unknown target": (("wheel.yaml", "--to", "spot"), "'spot' is not one of"),
+    "no model": (("none.yaml", "--to", "all"), "cannot read"),
+    "other schema": (("other.yaml", "--to", "all"), "schema version 99, this slipwise reads"),
+    "not a model": (("text.yaml", "--to", "all"), "the file holds no keys"),
+    "no horizon": (("wheel.yaml", "--to", "amcl", "--horizon", "0"), "horizon must be positive"),
+    "endless separation": (
+        ("wheel.yaml", "--to", "diff-drive", "--wheel-separation", "inf"),
+        "wheel separation must be positive",
+    ),
+    "into a file's folder": (("wheel.yaml", "--to", "all", "-o", "wheel.yaml/x"), "cannot write"),
+    "onto a folder": (("wheel.yaml", "--to", "all", "-o", "wheel.yaml"), "cannot write"),
+}
+
+
+@pytest.mark.parametrize(("arguments", "message"), REFUSED.values(), ids=REFUSED)
+def test_bad_use_is_one_line_with_exit_code_2_and_leaves_nothing(
+    slipwise: Slipwise, wheel: Path, command: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    Path("other.yaml").write_text(wheel.read_text().replace("slipwise_model: 1", "slipwise_model: 99"))
+    Path("text.yaml").write_text("just words\n")
+    before = left_in(Path())
+    result = slipwise("export", *arguments)
+    assert result.code == 2
+    assert message in result.line
+    assert left_in(Path()) == before
+
+
+def test_files_that_are_there_are_replaced_whole(slipwise: Slipwise, wheel: Path) -> None:
+    Path("model.h").write_text("old\n" * 10_000)
+    assert slipwise("export", wheel, "--to", "c-header").code == 0
+    text = Path("model.h").read_text()
+    assert "old\n" not in text
+    assert text.endswith("#endif /* SLIPWISE_MODEL_H */\n")

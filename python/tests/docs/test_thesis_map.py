@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The page that maps the thesis to the code is complete, and every name on it exists."""
+
+import ast
+import re
+from collections.abc import Iterator
+from importlib import import_module
+
+import pytest
+from python.tests.docs.pages import ROOT, code_words, table_rows
+
+PAGE = ROOT / "docs/thesis-map.md"
+#: How far the thesis numbers its equations, figures and tables, chapter by chapter.
+EQUATIONS = {2: 9, 3: 11, 4: 13, 5: 19, 6: 18}
+FIGURES = {2: 1, 3: 1, 4: 10, 5: 3, 6: 7, 8: 1}
+TABLES = {5: 1, 6: 2}
+SECTIONS = {"8.1", "8.1.1", "8.2", "8.3", "8.4"}
+
+PYTHON = re.compile(r"`(slipwise(?:\.\w+)+)`")
+CPP = re.compile(r"\[`(\w+)`\]\(\.\./(cpp/include/[\w/]+\.hpp)\)")
+EXHIBIT = re.compile(r"exhibit `([a-z0-9-]+)`")
+
+
+def numbered() -> set[str]:
+    """Return every number of the thesis as the page writes it."""
+    found = set(SECTIONS)
+    for pattern, counts in (("({}.{})", EQUATIONS), ("Figure {}.{}", FIGURES), ("Table {}.{}", TABLES)):
+        for chapter, count in counts.items():
+            found |= {pattern.format(chapter, number) for number in range(1, count + 1)}
+    return found
+
+
+def rows() -> Iterator[list[str]]:
+    """Return the rows of all tables: number, what it is, Python, C++, note."""
+    text = PAGE.read_text(encoding="utf-8")
+    for start in re.finditer(r"^\| (?:thesis|section) \|", text, re.MULTILINE):
+        header = text[start.start() : text.index("\n", start.start())]
+        yield from table_rows(text[start.start() :], header)
+
+
+ROWS = list(rows())
+
+
+def test_every_number_of_the_thesis_has_a_row_and_no_other_has() -> None:
+    shown = [row[0] for row in ROWS]
+    assert set(shown) == numbered()
+    twice = {number for number in shown if shown.count(number) > 1}
+    assert twice <= SECTIONS
+
+
+def test_what_has_no_implementation_says_why() -> None:
+    empty = {row[0]: row[4] for row in ROWS if row[2] == "–" and row[3] == "–"}
+    assert empty
+    assert not {number for number, note in empty.items() if not note.startswith("none")}
+    assert not {row[0] for row in ROWS if row[4].startswith("none") and row[0] not in empty}
+
+
+@pytest.mark.parametrize("name", sorted({name for row in ROWS for name in PYTHON.findall(" | ".join(row))}))
+def test_a_python_name_can_be_imported(name: str) -> None:
+    parts = name.split(".")
+    for cut in range(len(parts) - 1, 0, -1):
+        try:
+            found = import_module(".".join(parts[:cut]))
+        except ModuleNotFoundError:
+            continue
+        for part in parts[cut:]:
+            found = getattr(found, part)
+        return
+    pytest.fail(f"no module of {name}")
+
+
+def test_every_python_cell_has_a_name() -> None:
+    assert not [
+        row[0] for row in ROWS if row[2] != "–" and not (PYTHON.findall(row[2]) or EXHIBIT.findall(row[2]))
+    ]
+    assert not [row[0] for row in ROWS if row[3] != "–" and not CPP.findall(row[3])]
+
+
+def test_cpp_names_are_declared_in_their_headers() -> None:
+    named = {pair for row in ROWS for pair in CPP.findall(row[3])}
+    assert len(named) > 40
+    gone = []
+    for name, header in sorted(named):
+        lines = (ROOT / header).read_text(encoding="utf-8").splitlines()
+        code = "\n".join(line.split("//")[0] for line in lines if not line.startswith("#include"))
+        if not re.search(rf"\b{name}\b", code):
+            gone.append(f"{name} in {header}")
+    assert not gone
+
+
+def exhibit_keys_written(key: str) -> bool:
+    """Whether the reproduction's sources write this key, whole or put together of two strings."""
+    sources = sorted((ROOT / "python/slipwise/reproduction").glob("*.py"))
+    nodes = [node for path in sources for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+    texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    joined = [node.values[0] for node in nodes if isinstance(node, ast.JoinedStr) and len(node.values) == 2]
+    starts = [str(first.value) for first in joined if isinstance(first, ast.Constant)]
+    return key in texts or any(key.startswith(s) and s and key.removeprefix(s) in texts for s in starts)
+
+
+def test_every_exhibit_named_is_made_under_the_number_of_its_row() -> None:
+    named = [(key, row[0]) for row in ROWS for key in EXHIBIT.findall(row[2])]
+    assert len(named) > 25
+    for key, number in named:
+        plain = f"equation {number.strip('()')}" if number.startswith("(") else number.lower()
+        assert key.startswith(plain.replace(" ", "-").replace(".", "-")), (key, number)
+    assert not {key for key, _ in named if not exhibit_keys_written(key)}
+    assert not exhibit_keys_written("figure-9-9")
+
+
+def test_exhibits_beyond_the_thesis_are_made() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    named = code_words(text[text.index("## Beyond the thesis") :])
+    assert len(named) > 4
+    assert not {key for key in named if not exhibit_keys_written(key)}
+
+
+def test_every_erratum_is_linked_from_its_number() -> None:
+    text = (ROOT / "docs/derivations.md").read_text(encoding="utf-8")
+    notes = {row[0]: row[4] for row in ROWS}
+    for where, *_ in table_rows(text[text.index("## 9. ") :], "| where | fault |"):
+        for kind, number in re.findall(r"(Table )?(\d\.\d+)", where):
+            key = f"Table {number}" if kind else f"({number})"
+            assert "derivations.md#" in notes[key], f"{key}: {where}"

@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: Apache-2.0
+"""MPPI is told how late the robot answers and how fast it may go, under the names of two Nav2 versions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from sample_models import Made, make_model, named
+
+from slipwise import _core
+from slipwise.errors import ModelError
+from slipwise.export import ExportOptions, export_model
+from slipwise.prediction import predict
+
+LATE = replace(
+    named(
+        "edd-2", lon__V=-0.1, ang__w=-0.4, log_lag_omega=float(np.log(0.5)), log_delay_v=float(np.log(0.1))
+    ),
+    commands=True,
+)
+KILTED = ExportOptions(nav2="kilted")
+
+
+def written(made: Made, options: ExportOptions | None = None) -> dict[str, Any]:
+    text = export_model(make_model(made), "mppi", name="model.yaml", options=options).text
+    parameters: dict[str, Any] = yaml.safe_load(text)["controller_server"]["ros__parameters"]["FollowPath"]
+    return parameters
+
+
+def test_delays_are_delay_plus_lag() -> None:
+    parameters = written(LATE)
+    assert parameters["model_delay_vx"] == pytest.approx(0.1 + 0.3)
+    assert parameters["model_delay_wz"] == pytest.approx(0.2 + 0.5)
+
+
+def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
+    model = make_model(LATE)
+    path = predict(model, [(0.0, 1.0, 0.0)], horizon=8.0, initial=(0.0, 0.0))
+    lost = 0.9 * 8.0 - path.poses[-1, 0]  # 0.9 of the commanded speed is reached
+    assert lost == pytest.approx(0.9 * written(LATE)["model_delay_vx"], rel=1e-3)
+
+
+def test_gain_and_slow_part_count() -> None:
+    made = replace(named("edd-2", ang__w=-0.4), response=True)
+    model, parameters = make_model(made), written(made)
+    assert parameters["model_delay_vx"] == pytest.approx(0.2 + 0.7 * 0.3 + 0.3 * 1.5)
+    assert parameters["vx_max"] == pytest.approx(0.9 * 1.5)
+    assert parameters["wz_max"] == pytest.approx(0.9 * 0.6 * 1.2)
+    path = predict(model, [(-60.0, 0.0, 0.0), (0.0, 1.0, 0.0)], horizon=20.0, start=0.0)
+    lost = 0.9 * 20.0 - path.poses[-1, 0]
+    assert lost == pytest.approx(0.9 * parameters["model_delay_vx"], rel=1e-3)
+
+
+def test_the_delay_is_nearer_to_lag_and_delay_than_nothing_is() -> None:
+    rng = np.random.default_rng(2)
+    model, total = make_model(LATE), written(LATE)["model_delay_vx"]
+    late = LATE.values | {"log_lag_v": -20.0, "log_delay_v": float(np.log(total))}
+    at_once = LATE.values | {"log_lag_v": -20.0, "log_delay_v": -20.0}
+    others = [make_model(replace(LATE, values=values)) for values in (late, at_once)]
+    misses = []
+    for _ in range(10):
+        v = rng.uniform(-0.5, 1.5, 9)
+        commands = np.column_stack((np.arange(9) * 0.35 - 0.7, v, np.zeros(9)))
+        true, *stand_ins = (
+            predict(m, commands, horizon=2.8, start=0.0).poses[:, 0] for m in (model, *others)
+        )
+        misses.append([np.abs(path - true).max() for path in stand_ins])
+    delayed, plain = np.mean(misses, axis=0)
+    assert delayed < 0.6 * plain
+
+
+def test_the_ramp_loses_the_distance_that_lag_and_delay_lose() -> None:
+    parameters = written(LATE, KILTED)
+    fastest = 0.9 * 1.5
+    assert fastest**2 / (2.0 * parameters["ax_max"]) == pytest.approx(fastest * 0.4, rel=1e-5)
+    assert (0.6 * 1.2) ** 2 / (2.0 * parameters["az_max"]) == pytest.approx(0.6 * 1.2 * 0.7, rel=1e-5)
+    assert parameters["ax_min"] == -parameters["ax_max"]
+
+
+def test_speeds_are_the_range_of_the_body() -> None:
+    parameters = written(LATE)
+    assert parameters["vx_max"] == pytest.approx(0.9 * 1.5)
+    assert parameters["vx_min"] == pytest.approx(0.9 * -0.5)
+    assert parameters["wz_max"] == pytest.approx(0.6 * 1.2)
+    assert written(replace(LATE, speed=(0.3, 1.0)))["vx_min"] == 0.0
+
+
+def test_names_are_those_of_the_nav2_asked_for() -> None:
+    new, old = written(LATE), written(LATE, KILTED)
+    assert (new["motion_model"], new["diff_drive"]) == (
+        "diff_drive",
+        {"plugin": "mppi::DiffDriveMotionModel"},
+    )
+    assert old["motion_model"] == "DiffDrive"
+    assert not any(name.startswith("model_delay") for name in old)
+    assert not any(name.startswith("a") for name in new)
+
+
+@pytest.mark.parametrize(
+    ("options", "place", "kind"),
+    [
+        (ExportOptions(min_turning_radius=0.8), "ackermann", "ackermann"),
+        (replace(KILTED, min_turning_radius=0.8), "AckermannConstraints", "Ackermann"),
+    ],
+)
+def test_smallest_turning_radius_is_widened_by_slip(options: ExportOptions, place: str, kind: str) -> None:
+    parameters = written(LATE, options)
+    assert parameters["motion_model"] == kind
+    assert parameters[place]["min_turning_r"] == pytest.approx(0.8 * 0.9 / 0.6)
+
+
+def test_smallest_turning_radius_is_asked_at_speeds_of_the_log() -> None:
+    basis = _core.Basis("understeer", [], [], ["V*V*w"])
+    made = Made(basis, {"ang.V^2*w": -0.2}, commands=True, speed=(0.0, 20.0), yaw_rate=(-1.0, 1.0))
+    radius = written(made, ExportOptions(min_turning_radius=1.0))["ackermann"]["min_turning_r"]
+    assert 1.0 < radius < 1.3  # the log never turned faster than 1 rad/s, so no faster than 1 m/s at 1 m
+
+
+def test_comment_says_what_the_robot_reaches_of_a_command() -> None:
+    text = export_model(make_model(LATE), "mppi", name="model.yaml").text
+    assert "reaches 0.900 of the speed" in text
+    assert "and 0.600 of the yaw rate" in text
+
+
+def test_a_model_from_wheel_speeds_is_refused() -> None:
+    with pytest.raises(ModelError, match="not learned from commands"):
+        written(replace(LATE, commands=False, values={}))
+
+
+def test_a_vehicle_that_does_not_turn_as_steered_is_refused() -> None:
+    with pytest.raises(ModelError, match="does not turn the way it is steered"):
+        written(replace(LATE, values={"ang.w": -1.1}), ExportOptions(min_turning_radius=0.8))

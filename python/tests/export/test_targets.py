@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every target names its origin, refuses a bad verdict, and cannot be tricked by the text of a model file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+import yaml
+from sample_models import Made, make_model, named
+
+from slipwise.calibration import calibrate, make_settings
+from slipwise.errors import ModelError, SettingsError
+from slipwise.export import TARGETS, ExportOptions, Target, export_model
+from slipwise.export.wheel_multipliers import wheel_multipliers
+from slipwise.logs import open_log
+
+FITTING = {
+    "diff-drive": named("edd-2", ang__w=-0.3),
+    "mppi": replace(named("edd-2", ang__w=-0.3), commands=True),
+    "amcl": named("edd-2", ang__w=-0.3),
+    "robot-localization": replace(named("edd-2", ang__w=-0.3), commands=True),
+    "c-header": named("edd-2", ang__w=-0.3),
+}
+
+
+def fitting(target: Target) -> Made:
+    return FITTING[target.name]
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> None:
+    made = replace(fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", determined=False)
+    head = export_model(make_model(made), target.name, name="mine.yaml").text[:1200]
+    for words in (
+        f"slipwise {version('slipwise')}, model mine.yaml",
+        "learned by slipwise 0.1.0",
+        "drives/monday.mcap (sha256 abababababababab)",
+        "verdict: good. It misses by 3 cm.",
+        "speeds -0.5 to 1.5 m/s",
+        "not determined by the log",
+        "ang.w",
+    ):
+        assert words in head
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_a_bad_verdict_is_refused_unless_forced(target: Target) -> None:
+    model = make_model(replace(fitting(target), good=False, sentence="It does not beat doing nothing."))
+    with pytest.raises(ModelError, match="verdict is bad: It does not beat doing nothing") as caught:
+        export_model(model, target.name, name="m.yaml")
+    assert "--force" in caught.value.advice
+    text = export_model(model, target.name, name="m.yaml", force=True).text
+    assert "verdict: NOT GOOD ENOUGH. It does not beat doing nothing." in text
+
+
+HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_text_of_a_model_file_cannot_leave_the_comment(target: Target) -> None:
+    made = fitting(target)
+    plain = export_model(make_model(made), target.name, name="m.yaml").text
+    hostile = export_model(
+        make_model(replace(made, log=HOSTILE, sentence=HOSTILE)), target.name, name="m.yaml"
+    ).text
+    if target.name == "c-header":
+        assert hostile.split("*/", 1)[1] == plain.split("*/", 1)[1]
+        assert "??" not in hostile.split("*/", 1)[0]
+    else:
+        assert yaml.safe_load(hostile) == yaml.safe_load(plain)
+
+
+def test_the_same_model_gives_the_same_bytes() -> None:
+    first, second = (export_model(make_model(FITTING["amcl"]), "amcl", name="m").text for _ in range(2))
+    assert first == second
+
+
+def test_an_unknown_target_is_refused() -> None:
+    with pytest.raises(SettingsError, match="unknown target 'spot'"):
+        export_model(make_model(FITTING["amcl"]), "spot", name="m.yaml")
+
+
+def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
+    log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
+    settings = make_settings({"basis": "full-linear-6"})
+    learned = {
+        name: calibrate(log, input_name=name, settings=settings).model for name in ("wheel", "command")
+    }
+    options = ExportOptions(wheel_separation=0.481)
+    for target in TARGETS:
+        model = learned["command" if fitting(target).commands else "wheel"]
+        exported = export_model(model, target.name, name="husky.yaml", options=options)
+        assert "tile_deflated_tyres.csv.gz" in exported.text
+        if target.name != "c-header":
+            (node,) = yaml.safe_load(exported.text).values()
+            assert node["ros__parameters"]
+    found = wheel_multipliers(learned["wheel"], options)
+    assert 1.7 < found.separation < 2.4  # Clearpath ships 1.875
+    assert 0.9 < found.right_radius < found.left_radius < 1.0  # its tyres were deflated

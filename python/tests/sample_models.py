@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Models for tests, made by hand: any basis, lag and delay, with a covariance and noise."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.models import Model, ModelFile
+
+SPEED = (-0.5, 1.5)
+YAW_RATE = (-1.2, 1.0)
+
+
+@dataclass(frozen=True)
+class Made:
+    """What a model is made of; parameters that are not named are zero, or 0.3 s of lag and 0.2 s of delay."""
+
+    basis: _core.Basis
+    values: Mapping[str, float] = field(default_factory=dict)
+    std: float = 0.01  # of every parameter
+    commands: bool = False
+    response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
+    clock_offset: float | None = None
+    fraction: float = 0.05
+    psd_motion: float = 1e-3
+    psd_time: float = 0.0
+    growth: Mapping[float, float] = field(default_factory=dict)
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    speed: tuple[float, float] = SPEED
+    yaw_rate: tuple[float, float] = YAW_RATE
+    good: bool = True
+    sentence: str = "The learned model misses by 0.1 m after 5 s, where the plain model misses by 0.4 m."
+    log: str = "drives/monday.mcap"
+    determined: bool = True
+
+
+def named(name: str, **values: float) -> Made:
+    """Return a shipped basis with values; dots in names are written as two underscores."""
+    return Made(_core.named_basis(name), {key.replace("__", "."): value for key, value in values.items()})
+
+
+def make_model(made: Made) -> Model:
+    """Return the model."""
+    offset = made.clock_offset is not None
+    if made.response:
+        motion = _core.MotionModel.with_response(made.basis, offset)
+    else:
+        motion = _core.MotionModel(made.basis, made.commands, offset)
+    values = {"clock_offset": made.clock_offset or 0.0}
+    for place in ("v", "omega"):
+        values |= {f"log_lag_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
+        values |= {
+            f"gain_{place}": 0.9,
+            f"slow_share_{place}": 0.3,
+            f"log_slow_lag_{place}": float(np.log(1.5)),
+        }
+    values |= dict(made.values)
+    names = [info.name for info in motion.parameters]
+    assert set(made.values) <= set(names), names
+    parameters = [
+        {
+            "name": info.name,
+            "unit": info.unit,
+            "value": values.get(info.name, 0.0),
+            "std": made.std,
+            "prior_std": 0.3,
+            "determined": made.determined,
+        }
+        for info in motion.parameters
+    ]
+    content = {
+        "slipwise_model": 1,
+        "input": "command" if made.commands or made.response else "wheel",
+        "slip": {
+            "basis": made.basis.name,
+            "lon": made.basis.lon,
+            "lat": made.basis.lat,
+            "ang": made.basis.ang,
+        },
+        "dynamics": made.commands or made.response,
+        "response": made.response,
+        "clock_offset": made.clock_offset is not None,
+        "parameters": parameters,
+        "covariance": (made.std**2 * np.eye(len(names))).tolist(),
+        "noise": {
+            "psd_time": [made.psd_time] * 3,
+            "psd_motion": [made.psd_motion] * 3,
+            "fraction": [made.fraction] * 3,
+            "pose_std_xy": 0.02,
+            "pose_std_yaw": 0.01,
+            "scale": list(made.scale),
+            "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
+        },
+        "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
+        "provenance": {
+            "slipwise_version": "0.1.0",
+            "logs": [{"path": made.log, "sha256": "ab" * 32}],
+            "settings": {},
+            "learned_seconds": 600.0,
+            "learned_windows": 600,
+        },
+        "verdict": {"good": made.good, "sentence": made.sentence},
+    }
+    return Model(ModelFile.model_validate(content))
