@@ -68,6 +68,7 @@ typedef float slipwise_real;
 #define SLIPWISE_HAS_RESPONSE 0
 #define SLIPWISE_HAS_CLOCK_OFFSET 0
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */
+#define SLIPWISE_SAME_STEP SLIPWISE_R(1e-6)    /* of a step: a stretch longer by rounding gets no other step */
 #define SLIPWISE_LONGEST_WINDOW SLIPWISE_R(1e5) /* [s] */
 #define SLIPWISE_SETTLED_LAGS SLIPWISE_R(8.0)  /* after as many time constants the start of a lag is forgotten */
 
@@ -318,7 +319,7 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
     next = other < next ? other : next;
     next = next < until ? next : until;
     if (lagging && moves && next > now) { /* a lag that nobody sees needs no short steps */
-      parts = (int)SLIPWISE_MATH(ceil)((next - now) / SLIPWISE_LONGEST_STEP);
+      parts = (int)SLIPWISE_MATH(ceil)((next - now) / SLIPWISE_LONGEST_STEP - SLIPWISE_SAME_STEP);
       parts = parts < 1 ? 1 : parts;
     }
     for (i = 0; next > now && i < parts; ++i) {

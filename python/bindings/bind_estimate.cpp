@@ -39,7 +39,10 @@ void bind_settings(nb::module_& m) {
       .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
       .def_rw("lag", &PriorSettings::lag)
       .def_rw("delay", &PriorSettings::delay)
-      .def_rw("log_std", &PriorSettings::log_std);
+      .def_rw("log_std", &PriorSettings::log_std)
+      .def_rw("gain_std", &PriorSettings::gain_std)
+      .def_rw("slow_share_std", &PriorSettings::slow_share_std)
+      .def_rw("slow_lag", &PriorSettings::slow_lag);
   nb::class_<NoiseSettings>(m, "NoiseSettings")
       .def(nb::init<>())
       .def_rw("shape", &NoiseSettings::shape)

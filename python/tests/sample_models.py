@@ -73,7 +73,7 @@ def make_model(made: Made) -> Model:
         for info in motion.parameters
     ]
     content = {
-        "slipwise_model": 1,
+        "slipwise_model": 2,
         "input": "command" if made.commands or made.response else "wheel",
         "slip": {
             "basis": made.basis.name,

@@ -118,12 +118,12 @@ def _judged(
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    tails = {p.horizon: final_tail(p) for p in predictions}
+    belief = passing.finish()
+    tails = {p.horizon: final_tail(p, cascade=belief.motion is not None) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    belief = passing.finish()
     motion = belief.motion or forecaster.model
     names = tuple(info.name for info in motion.parameters)
     return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))

@@ -13,11 +13,12 @@ from slipwise import _core
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
-from slipwise.calibration.tails import learn_tails
+from slipwise.calibration.tails import Tails, learn_tails
 from slipwise.models.schema import Tail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +50,7 @@ class _Draft:
     pose: Floats
     covariance: Floats
     in_sample: Floats
+    cascade: Bools  # predicted by the method's other structure: its errors are another population
 
 
 def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> Predictions:
@@ -78,7 +80,13 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
     counts, in_sample_counts = learned_counts(learned, targets)
     size = len(targets)
     return _Draft(
-        targets, counts, in_sample_counts, np.empty((size, 3)), np.empty((size, 3, 3)), np.empty((size, 3))
+        targets,
+        counts,
+        in_sample_counts,
+        np.empty((size, 3)),
+        np.empty((size, 3, 3)),
+        np.empty((size, 3)),
+        np.zeros(size, dtype=bool),
     )
 
 
@@ -87,7 +95,7 @@ def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> N
     at = _core.linearize_segment(
         belief.motion or forecaster.model, belief.mean, targets.track(i), targets.segments[i]
     )
-    draft.pose[i] = at.predicted.vector()
+    draft.pose[i], draft.cascade[i] = at.predicted.vector(), belief.motion is not None
     draft.covariance[i] = _core.prediction_covariance(
         at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
     )
@@ -108,7 +116,8 @@ def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i:
 def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:
     targets, pose = draft.targets, draft.pose
     known = targets.count_until(targets.position, targets.start - targets.length)
-    tails = learn_tails(known, normalised_squared(residual(targets.measured, pose), draft.covariance))
+    squared = normalised_squared(residual(targets.measured, pose), draft.covariance)
+    tails = _tails_of_each(known, squared, draft.cascade)
     left = residual(targets.measured, draft.in_sample)
     return Predictions(
         method=forecaster.method,
@@ -120,15 +129,28 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         covariance=draft.covariance * tails.growth[:, None, None],
         growth=tails.growth,
         dof=tails.dof,
+        cascade=draft.cascade,
         measured=targets.measured,
         learned_until=_learned_until(forecaster, (learned, draft.counts), (targets, known), targets),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 
 
-def final_tail(predictions: Predictions) -> Tail:
-    """Growth and degrees of freedom at this horizon from all held-out windows, for the model file."""
-    tails = learn_tails(np.array([len(predictions)]), predictions.stated_nis)
+def _tails_of_each(known: Ints, squared: Floats, cascade: Bools) -> Tails:
+    """The tails of each structure's predictions, from the errors of that structure alone."""
+    growth, dof = np.empty(len(known)), np.empty(len(known))
+    for structure in (False, True):
+        at = cascade == structure
+        earlier = np.concatenate(([0], np.cumsum(at)))
+        tails = learn_tails(earlier[known[at]], squared[at])
+        growth[at], dof[at] = tails.growth, tails.dof
+    return Tails(growth, dof)
+
+
+def final_tail(predictions: Predictions, *, cascade: bool) -> Tail:
+    """Growth and degrees of freedom at this horizon from all held-out windows of the structure kept."""
+    squared = predictions.stated_nis[predictions.cascade == cascade]
+    tails = learn_tails(np.array([len(squared)]), squared)
     return Tail(growth=float(tails.growth[0]), dof=float(tails.dof[0]))
 
 

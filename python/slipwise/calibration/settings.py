@@ -44,6 +44,9 @@ class PriorTable(_Section):
     lag: Positive = _PRIOR.lag
     delay: Positive = _PRIOR.delay
     log_std: Positive = _PRIOR.log_std
+    gain_std: Positive = _PRIOR.gain_std
+    slow_share_std: Positive = _PRIOR.slow_share_std
+    slow_lag: Positive = _PRIOR.slow_lag
 
 
 class FilterTable(_Section):

@@ -18,6 +18,7 @@ Ints = NDArray[np.int64]
 # The prior: ln(scale) and ln(dof) are normal. A log of some ten held-out windows outweighs it.
 PRIOR_SCALE, PRIOR_SCALE_STD = 1.0, 0.7  # median and standard deviation of the logarithm
 PRIOR_DOF, PRIOR_DOF_STD = 8.0, 0.8
+MEMORY = 100.0  # windows; the covariance that the tails correct changes while the filter learns
 MATCHED = (0.50, 0.95)  # shares whose ellipsoids the point estimate takes over from the posterior
 
 _STEP = 0.1  # of the logarithms of scale and squared distance
@@ -47,17 +48,27 @@ def learn_tails(known: Ints, squared: Floats) -> Tails:
         squared: squared Mahalanobis lengths of the windows' errors in their stated covariances, [M].
     """
     growth, dof = np.empty(len(known)), np.empty(len(known))
-    logarithm = _log_prior()
+    prior = _log_prior()
+    evidence = np.zeros_like(prior)
     for first in range(0, len(squared) + 1, _CHUNK):
-        steps = _log_likelihood(squared[first : first + _CHUNK])
-        after = logarithm + np.concatenate((np.zeros((1, logarithm.size)), np.cumsum(steps, axis=0)))
+        gathered = _gathered(evidence, _log_likelihood(squared[first : first + _CHUNK]))
+        after = prior + gathered
         at = np.flatnonzero((known >= first) & (known < first + _CHUNK))
         if len(at):
             counts, back = np.unique(known[at], return_inverse=True)
             scale, degrees = _with_same_ellipsoids(_normalised(after[counts - first]))
             growth[at], dof[at] = (scale * degrees / (degrees - 2.0))[back], degrees[back]
-        logarithm = after[-1]
+        evidence = gathered[-1]
     return Tails(growth, dof)
+
+
+def _gathered(evidence: Floats, steps: Floats) -> Floats:
+    """Evidence before and after each window [N, S * D], older windows counting less, [N + 1, S * D]."""
+    gathered = np.empty((len(steps) + 1, evidence.size))
+    gathered[0] = evidence
+    for i, step in enumerate(steps):
+        gathered[i + 1] = (1.0 - 1.0 / MEMORY) * gathered[i] + step
+    return gathered
 
 
 def _log_prior() -> Floats:

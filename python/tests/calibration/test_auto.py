@@ -79,7 +79,7 @@ def test_little_data_leaves_the_model_near_the_plain_one() -> None:
     few = calibrate(simulated_log(drive), input_name="wheel").model
     content = few.content
     assert all(abs(p.value) <= 2.0 * p.prior_std for p in content.parameters)
-    assert content.weights["odd-even-10"] < content.weights["edd-2"]
+    assert max(content.weights.values()) < 0.5
     assert not content.verdict.good
 
 
