@@ -36,6 +36,9 @@ clock_offset_std = 0.1
 lag = 0.5
 delay = 0.2
 log_std = 0.5
+gain_std = 0.1
+slow_share_std = 0.2
+slow_lag = 1.5
 
 [filter]
 iterations = 3
@@ -97,6 +100,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     core = settings.filter_settings()
     assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
     assert (core.prior.clock_offset_std, core.prior.log_std) == (0.1, 0.5)
+    assert (core.prior.gain_std, core.prior.slow_share_std, core.prior.slow_lag) == (0.1, 0.2, 1.5)
     assert (core.iekf.iterations, core.iekf.halvings, core.iekf.huber, core.iekf.gate) == (3, 5, 2.5, 50.0)
     assert core.iekf.tolerance == 1e-4
     assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]

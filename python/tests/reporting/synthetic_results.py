@@ -196,6 +196,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         dof=np.full(len(rows), 5.0),
         measured=measured,
         learned_until=t_start,
+        cascade=np.zeros(len(rows), np.bool_),
         in_sample=np.full((len(rows), 2), 0.01),
     )
 
