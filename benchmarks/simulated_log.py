@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,13 +21,24 @@ POSE_STD_XY, POSE_STD_YAW = 0.01, 0.003  # m, rad
 CHUNK = 12_000  # steps integrated at a time
 
 
-def simulated_log(minutes: float, *, seed: int) -> Log:
-    """Return a log of one run: held random wheel speeds, the poses they lead to, and pose noise."""
+SlipNoise = Callable[[int, np.random.Generator], Floats]  # slip rates [N, 3] at every step
+
+
+def simulated_log(
+    minutes: float, *, seed: int, slip_noise: SlipNoise | None = None, slips: Sequence[Floats] = (SLIP,)
+) -> Log:
+    """Return a log of one run: held random wheel speeds, the poses they lead to, and pose noise.
+
+    The slip parameters are `slips` in turn, each for the same share of the time.
+    """
     rng = np.random.default_rng(seed)
     count = round(minutes * 60.0 * RATE)
     t = np.round(np.arange(count) / RATE, 3)
     v, omega = _held_inputs(count, rng)
-    x, y, yaw = _poses(v, omega)
+    twist = np.column_stack((v, np.zeros(count), omega))
+    if slip_noise is not None:
+        twist = twist + slip_noise(count, rng)
+    x, y, yaw = _poses(twist, slips)
     inputs = Inputs(t=t, v=v, vy=np.zeros(count), omega=omega)
     yaw = yaw + POSE_STD_YAW * rng.standard_normal(count)
     poses = Poses(
@@ -46,19 +59,20 @@ def _held_inputs(count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
     return np.repeat(speed, lengths)[:count], np.repeat(turn, lengths)[:count]
 
 
-def _poses(v: Floats, omega: Floats) -> tuple[Floats, Floats, Floats]:
-    """Integrate exactly, in chunks; return x, y [m] and yaw [rad] at every sample."""
+def _poses(twist: Floats, slips: Sequence[Floats]) -> tuple[Floats, Floats, Floats]:
+    """Integrate twists [N, 3] exactly, in chunks; return x, y [m] and yaw [rad] at every sample."""
     model = _core.MotionModel(_core.named_basis(BASIS), False, False)
     parts, origin = [], np.zeros(3)
-    for begin in range(0, len(v), CHUNK):
-        forward, turn = v[begin : begin + CHUNK], omega[begin : begin + CHUNK]
-        t = np.arange(len(forward)) / RATE
-        track = _core.InputTrack(t, forward, np.zeros_like(forward), turn)
-        segment = _core.Segment(0.0, len(forward) / RATE, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-        path = _core.integrate_segment(model, SLIP, track, segment, _core.Integrator.Exact)
-        world = _moved(origin, path.poses)
-        parts.append(world[:-1])
-        origin = world[-1]
+    for slip, share in zip(slips, np.array_split(twist, len(slips)), strict=True):
+        for begin in range(0, len(share), CHUNK):
+            v, vy, omega = share[begin : begin + CHUNK].T.copy()
+            t = np.arange(len(v)) / RATE
+            track = _core.InputTrack(t, v, vy, omega)
+            segment = _core.Segment(0.0, len(v) / RATE, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+            path = _core.integrate_segment(model, slip, track, segment, _core.Integrator.Exact)
+            world = _moved(origin, path.poses)
+            parts.append(world[:-1])
+            origin = world[-1]
     x, y, yaw = np.concatenate(parts).T
     return x, y, yaw
 

@@ -55,10 +55,22 @@ void bind_settings(nb::module_& m) {
       .def_rw("prior", &CausalFilterSettings::prior)
       .def_rw("iekf", &CausalFilterSettings::iekf)
       .def_rw("noise", &CausalFilterSettings::noise);
+  nb::class_<ChangeSettings>(m, "ChangeSettings")
+      .def(nb::init<>())
+      .def_rw("detect", &ChangeSettings::detect)
+      .def_rw("threshold", &ChangeSettings::threshold)
+      .def_rw("shortest", &ChangeSettings::shortest)
+      .def_rw("longest", &ChangeSettings::longest)
+      .def_rw("fraction", &ChangeSettings::fraction)
+      .def_rw("forget", &ChangeSettings::forget)
+      .def_rw("trial", &ChangeSettings::trial)
+      .def_rw("warm_up", &ChangeSettings::warm_up)
+      .def_rw("memory", &ChangeSettings::memory);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
       .def(nb::init<>())
       .def_rw("learning_rate", &ModelAverageSettings::learning_rate)
-      .def_rw("share", &ModelAverageSettings::share);
+      .def_rw("share", &ModelAverageSettings::share)
+      .def_rw("change", &ModelAverageSettings::change);
   nb::class_<BatchSettings>(m, "BatchSettings")
       .def(nb::init<>())
       .def_rw("iterations", &BatchSettings::iterations)
@@ -235,6 +247,11 @@ void bind_estimate(nb::module_& m) {
       "observability",
       [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
       "posterior"_a, "prior_std"_a);
+  nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of ground.")
+      .def(nb::init<>())
+      .def_ro("log_odds", &ChangeTest::log_odds)
+      .def_ro("segments", &ChangeTest::segments)
+      .def_ro("alarm", &ChangeTest::alarm);
   m.def(
       "reweighed",
       [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const ModelAverageSettings& settings) {
@@ -262,6 +279,7 @@ void bind_estimate(nb::module_& m) {
           "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
+      .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })
       .def_prop_ro("model", &ModelAverage::model)
       .def_prop_ro("reference_speeds", [](const ModelAverage& average) {
         const ReferenceSpeeds speeds = average.reference_speeds();

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/estimate/heavy_tails.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -46,6 +48,15 @@ void CausalFilter::follow(const ReferenceSpeeds& speeds) {
 Eigen::VectorXd CausalFilter::prior_std() const {
   Estimate prior = prior_estimate(model_, speeds_, settings_.prior);
   return prior.covariance.diagonal().cwiseSqrt();
+}
+
+void CausalFilter::forget(double share) {
+  const Eigen::Index slip = model_.slip_size();
+  const double keep = std::sqrt(1.0 - share);
+  estimate_.covariance.topRows(slip) *= keep;
+  estimate_.covariance.leftCols(slip) *= keep;
+  estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  noise_scale_.hurry();
 }
 
 IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {

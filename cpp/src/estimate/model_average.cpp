@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@
 
 namespace slipwise {
 namespace {
+
+constexpr double kChanged = 0.2;  // weight of the models that forgot, at first: most disturbances of real drives pass
 
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
@@ -31,6 +34,22 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
     places.push_back(whole.slip_size() + i - part.slip_size());
   }
   return places;
+}
+
+/// The terms linear in V or w, by which every ground can be told; all terms where the basis has none of them.
+std::vector<Eigen::Index> changing_terms(const Basis& basis) {
+  const Basis linear = named_basis("full-linear-6");
+  std::vector<Eigen::Index> all;
+  std::vector<Eigen::Index> found;
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    all.push_back(static_cast<Eigen::Index>(i));
+    for (std::size_t j = 0; j < linear.size(); ++j) {
+      if (basis.parameter_name(i) == linear.parameter_name(j)) {
+        found.push_back(all.back());
+      }
+    }
+  }
+  return found.empty() ? all : found;
 }
 
 }  // namespace
@@ -54,7 +73,9 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
     : model_(averaged_basis(std::move(name), bases), learned),
       settings_(settings),
       weights_(
-          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))) {
+          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))),
+      changing_(changing_terms(model_.basis())),
+      detector_(settings.change) {
   for (const Basis& basis : bases) {
     filters_.emplace_back(MotionModel(basis, learned), filter);
     places_.push_back(places_of(filters_.back().model(), model_));
@@ -63,6 +84,10 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
 
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
   speeds_.see(inputs, segment);
+  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(inputs, segment);
+  if (change_.alarm) {
+    doubt();
+  }
   std::vector<IekfUpdate> updates;
   for (CausalFilter& filter : filters_) {
     updates.push_back(filter.learn(inputs, segment, speeds_.reference()));
@@ -70,6 +95,12 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
   weights_ = reweighed(weights_, log_scores(updates), settings_);
+  if (on_trial_ > 0) {
+    --on_trial_;
+    if (on_trial_ == 0) {
+      settle();
+    }
+  }
   return updates[static_cast<std::size_t>(heaviest)];
 }
 
@@ -88,25 +119,76 @@ Eigen::VectorXd ModelAverage::log_scores(const std::vector<IekfUpdate>& updates)
   return scores;
 }
 
+/// By what the average predicted as it was before the segments that are tested together: the noise factors and the
+/// weights follow a change at once, and would hide it.
+ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment& segment) {
+  const ChangeSettings& change = settings_.change;
+  if (!change.detect) {
+    return {};
+  }
+  before_.push_back(state());
+  if (std::ssize(before_) > change.longest) {
+    before_.pop_front();
+  }
+  const AverageState& known = before_.front();
+  const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
+  const Eigen::Matrix3d covariance =
+      prediction_covariance(at, known.estimate.covariance, filters_.front().noise().shape, known.noise_scale);
+  const Eigen::VectorXd usual = slip_prior_std(model_.basis(), speeds_.reference(), change.fraction);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> by_change =
+      at.by_parameter(Eigen::all, changing_) * usual(changing_).asDiagonal();
+  return detector_.see(segment.measured.vector() - at.predicted.vector(), covariance, by_change);
+}
+
+/// Every model once as if the ground had changed and once as it was: what follows decides between them, so that a
+/// passing disturbance costs little, and the old ground is known at once where it comes back soon.
+void ModelAverage::doubt() {
+  before_.clear();
+  const std::vector<CausalFilter> as_before = filters_;
+  for (CausalFilter& filter : filters_) {
+    filter.forget(settings_.change.forget);
+  }
+  filters_.insert(filters_.end(), as_before.begin(), as_before.end());
+  const Eigen::VectorXd weights = weights_;
+  weights_.resize(2 * weights.size());
+  weights_ << kChanged * weights, (1.0 - kChanged) * weights;
+  on_trial_ = settings_.change.trial;
+}
+
+/// Keeps the models of the ground that predicted better.
+void ModelAverage::settle() {
+  const auto bases = static_cast<std::ptrdiff_t>(places_.size());
+  const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  weights_ = basis_weights();
+  filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
+                 changed ? filters_.end() : filters_.begin() + bases);
+}
+
+Eigen::VectorXd ModelAverage::basis_weights() const {
+  const auto bases = static_cast<Eigen::Index>(places_.size());
+  return weights_.reshaped(bases, weights_.size() / bases).rowwise().sum();
+}
+
 AverageState ModelAverage::state() const {
   const Eigen::Index size = model_.size();
   AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
                      Eigen::VectorXd::Zero(size),
                      variance_ratio(),
                      Eigen::Vector3d::Zero(),
-                     weights_};
+                     basis_weights()};
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const double weight = weights_[static_cast<Eigen::Index>(i)];
+    const std::vector<Eigen::Index>& places = places_[i % places_.size()];
     state.noise_scale += weight * filters_[i].noise_scale();
-    if (places_[i].empty()) {
+    if (places.empty()) {
       continue;  // the plain model: it has no parameters, and adds nothing to any mean
     }
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
-    mean(places_[i]) = filters_[i].estimate().mean;
+    mean(places) = filters_[i].estimate().mean;
     state.estimate.mean += weight * mean;
-    state.estimate.covariance(places_[i], places_[i]) += weight * filters_[i].estimate().covariance;
+    state.estimate.covariance(places, places) += weight * filters_[i].estimate().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
-    state.prior_std(places_[i]) = filters_[i].prior_std();
+    state.prior_std(places) = filters_[i].prior_std();
   }
   state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
   return state;
@@ -120,15 +202,16 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
   Eigen::VectorXd square = having;
   Eigen::VectorXd prior = having;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    if (places_[i].empty()) {
+    const std::vector<Eigen::Index>& places = places_[i % places_.size()];
+    if (places.empty()) {
       continue;
     }
     const double weight = weights_[static_cast<Eigen::Index>(i)];
     const Estimate& estimate = filters_[i].estimate();
-    having(places_[i]).array() += weight;
-    mean(places_[i]) += weight * estimate.mean;
-    square(places_[i]) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());
-    prior(places_[i]) = filters_[i].prior_std().cwiseAbs2();
+    having(places).array() += weight;
+    mean(places) += weight * estimate.mean;
+    square(places) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());
+    prior(places) = filters_[i].prior_std().cwiseAbs2();
   }
   const Eigen::VectorXd variance = square.cwiseQuotient(having) - mean.cwiseQuotient(having).cwiseAbs2();
   return variance.cwiseQuotient(prior);

@@ -7,13 +7,9 @@
 #include <cmath>
 
 #include "slipwise/estimate/causal_filter.hpp"
+#include "slipwise/estimate/heavy_tails.hpp"
 
 namespace slipwise {
-namespace {
-
-constexpr double kTailDegrees = 5.0;  // degrees of freedom of the predictive Student-t: real residuals have heavy tails
-
-}  // namespace
 
 double student_log_score(double nis, const Eigen::Matrix3d& covariance) {
   return -0.5 * std::log(covariance.determinant()) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);

@@ -71,6 +71,23 @@ TEST_CASE("a prior that grows with the speeds gives the answer of knowing the sp
   CHECK(growing.estimate().covariance.isApprox(knowing.estimate().covariance, 0.05));
 }
 
+TEST_CASE("forgetting gives slip its prior variance back in part, and nothing to lag and delay") {
+  const MotionModel model(named_basis("edd-2"), {.dynamics = true});
+  const auto drive = tests::simulate_drive(model, (Eigen::VectorXd(6) << -0.1, -0.3, -1.2, -1.2, -2.3, -2.3).finished(),
+                                           {.seed = 75, .windows = 30});
+  CausalFilter filter(model, {});
+  for (const Segment& segment : drive.segments) {
+    filter.learn(drive.inputs, segment, kSpeeds);
+  }
+  const Estimate before = filter.estimate();
+  filter.forget(0.25);
+  const Eigen::VectorXd variance = filter.estimate().covariance.diagonal();
+  const Eigen::VectorXd prior = filter.prior_std().cwiseAbs2();
+  CHECK(filter.estimate().mean == before.mean);
+  CHECK(variance.head(2).isApprox(0.75 * before.covariance.diagonal().head(2) + 0.25 * prior.head(2)));
+  CHECK(variance.tail(4) == before.covariance.diagonal().tail(4));
+}
+
 TEST_CASE("a prediction's covariance has parameters, slip noise and pose noise") {
   const MotionModel model(named_basis("edd-2"), {});
   const std::vector<double> t{0.0}, v{1.0}, zero{0.0};

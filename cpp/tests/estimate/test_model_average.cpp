@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Eigenvalues>
+#include <cmath>
 #include <stdexcept>
 
 #include "simulated_drive.hpp"
@@ -15,8 +16,9 @@ const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .p
 
 Basis plain() { return {"none", {}, {}, {}}; }
 
-ModelAverage learned(const std::vector<Basis>& bases, const MotionModel& real, const Eigen::VectorXd& truth) {
-  ModelAverage average("auto", bases, {}, {}, {});
+ModelAverage learned(const std::vector<Basis>& bases, const MotionModel& real, const Eigen::VectorXd& truth,
+                     const ModelAverageSettings& settings = {}) {
+  ModelAverage average("auto", bases, {}, {}, settings);
   const auto drive = tests::simulate_drive(real, truth, {.seed = 81, .windows = 80, .window = 2.0, .noise = kNoise});
   for (const Segment& segment : drive.segments) {
     average.learn(drive.inputs, segment);
@@ -34,9 +36,11 @@ TEST_CASE("the weights sum to one and favour the model that is true") {
   CHECK(state.weights[2] > 0.8);
 }
 
-TEST_CASE("a model that was wrong comes back when the ground changes") {
+TEST_CASE("a model that was wrong comes back when the ground changes and nobody notices") {
   const MotionModel real(named_basis("edd-2"), {});
-  ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));
+  ModelAverageSettings blind;
+  blind.change.detect = false;
+  ModelAverage average = learned({plain(), named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4), blind);
   CHECK(average.state().weights[0] < 0.05);
   const auto firm =
       tests::simulate_drive(real, Eigen::Vector2d::Zero(), {.seed = 82, .windows = 30, .window = 2.0, .noise = kNoise});
@@ -82,6 +86,47 @@ TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
   average.learn(inputs, {.start = 0.0, .end = 10.0, .measured = {5.0, 3.0, 2.0}});
   CHECK(average.reference_speeds().v == doctest::Approx(4.0).epsilon(0.05));
   CHECK(average.reference_speeds().omega == doctest::Approx(0.2).epsilon(0.05));
+}
+
+TEST_CASE("a change of ground is found while driving, and learned faster than without") {
+  const MotionModel real(named_basis("edd-2"), {});
+  ModelAverageSettings blind;
+  blind.change.detect = false;
+  ModelAverage seeing("auto", {named_basis("edd-2")}, {}, {}, {});
+  ModelAverage unseeing("auto", {named_basis("edd-2")}, {}, {}, blind);
+  int alarms = 0;
+  for (const double slip : {-0.3, -0.6}) {
+    const std::size_t windows = slip == -0.3 ? 80 : 20;
+    const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.05, slip),
+                                             {.seed = 83, .windows = windows, .window = 2.0, .noise = kNoise});
+    for (std::size_t i = 0; i < windows; ++i) {
+      seeing.learn(drive.inputs, drive.segments[i]);
+      unseeing.learn(drive.inputs, drive.segments[i]);
+      alarms += seeing.change().alarm ? 1 : 0;
+      CHECK_FALSE(unseeing.change().alarm);
+      if (slip == -0.3) {
+        CHECK_FALSE(seeing.change().alarm);
+      } else if (i == 2) {
+        CHECK(alarms == 1);
+      }
+    }
+  }
+  CHECK(std::abs(seeing.state().estimate.mean[1] + 0.6) < 0.5 * std::abs(unseeing.state().estimate.mean[1] + 0.6));
+  CHECK(seeing.state().weights.sum() == doctest::Approx(1.0));
+  CHECK(seeing.state().weights.size() == 1);
+}
+
+TEST_CASE("a parked robot forgets nothing") {
+  const MotionModel real(named_basis("edd-2"), {});
+  ModelAverage average = learned({named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));
+  const Eigen::MatrixXd before = average.state().estimate.covariance;
+  const std::vector<double> t{0.0}, zero{0.0};
+  const InputTrack parked(t, zero, zero, zero);
+  for (int i = 0; i < 50; ++i) {
+    average.learn(parked, {.start = 2.0 * i, .end = 2.0 * i + 2.0, .measured = {0.1, -0.1, 0.05}});
+    CHECK_FALSE(average.change().alarm);
+  }
+  CHECK(average.state().estimate.covariance.isApprox(before));
 }
 
 TEST_CASE("no basis at all is refused") {

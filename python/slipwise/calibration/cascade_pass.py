@@ -30,7 +30,8 @@ class CascadePass:
         self._slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
         self._chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, rules)
         slip = make_learner(settings, "wheel").fresh()
-        self._slip = CausalPass(slip, self._slip_windows)
+        self._slip = CausalPass(slip, self._slip_windows, self._see)
+        self._changes: list[_core.ChangeTest] = []
         self._chain = _chain_estimator(settings)
         self._chain_learned = 0
         self._offset = slip.model.clock_offset
@@ -44,6 +45,15 @@ class CascadePass:
             self._chain.learn(self._chain_windows.track(i), self._chain_windows.segments[i])
         self._chain_learned = max(self._chain_learned, until)
         return self._joined(slip, noise_scale)
+
+    def change(self, i: int) -> _core.ChangeTest:
+        """Return the strongest test for a change of ground while window i of the commands passed."""
+        before, after = (self._passed(self._slip_windows, count) for count in (i, i + 1))
+        tests = self._changes[before:after] or [_core.ChangeTest()]
+        return max(tests, key=lambda test: (test.alarm, test.log_odds))
+
+    def _see(self, _i: int, _update: _core.IekfUpdate, change: _core.ChangeTest, _belief: Belief) -> None:
+        self._changes.append(change)
 
     def _passed(self, windows: WindowSet, count: int) -> int:
         """How many of `windows` had ended when the last of `count` windows of the commands did."""

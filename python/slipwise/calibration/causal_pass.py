@@ -12,7 +12,7 @@ from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief, Progress, belief_of
 from slipwise.calibration.result import History
 
-Observer = Callable[[int, _core.IekfUpdate, Belief], None]
+Observer = Callable[[int, _core.IekfUpdate, _core.ChangeTest, Belief], None]
 
 
 class CausalPass:
@@ -21,7 +21,7 @@ class CausalPass:
     def __init__(
         self, average: _core.ModelAverage, windows: WindowSet, observer: Observer | None = None
     ) -> None:
-        """`observer` is called with the index of each window, its update, and the belief after it."""
+        """`observer` gets each window's index, its update, its test for a change, and the belief after it."""
         self._average, self._windows, self._observer = average, windows, observer
         self._learned = 0
         self._belief: Belief | None = None
@@ -39,7 +39,7 @@ class CausalPass:
             self._belief = None
             self._learned = i + 1
             if self._observer is not None:
-                self._observer(i, update, self._now())
+                self._observer(i, update, self._average.change, self._now())
         return self._now()
 
     def finish(self) -> Belief:
@@ -70,11 +70,14 @@ class HistoryRecorder:
             weight=np.zeros(count),
             bases=bases,
             basis_weight=np.zeros((count, len(bases))),
+            change=np.zeros(count),
+            alarm=np.zeros(count, dtype=np.bool_),
         )
 
-    def __call__(self, i: int, update: _core.IekfUpdate, belief: Belief) -> None:
+    def __call__(self, i: int, update: _core.IekfUpdate, change: _core.ChangeTest, belief: Belief) -> None:
         """Write the row of window i."""
         self.record(i, update.nis, update.weight, belief)
+        self.mark(i, change)
 
     def record(self, i: int, nis: float, weight: float, belief: Belief) -> None:
         """Write the row of window i: its NIS before it was learned, its weight, the belief after it."""
@@ -83,3 +86,7 @@ class HistoryRecorder:
         rows.nis[i], rows.weight[i], rows.basis_weight[i] = nis, weight, belief.weights
         if self._progress is not None and i % 50 == 0:
             self._progress((i + 1) / len(rows.t))
+
+    def mark(self, i: int, change: _core.ChangeTest) -> None:
+        """Write into the row of window i whether the ground changed."""
+        self.history.change[i], self.history.alarm[i] = change.log_odds, change.alarm

@@ -40,8 +40,15 @@ class History:
     weight: Floats  # [W] how much the window counted: 1 full, 0 left out
     bases: tuple[str, ...]  # [B] bases averaged, one where the basis is fixed
     basis_weight: Floats  # [W, B] their weights after the window
+    change: Floats  # [W] log odds, before the window was learned, that the ground had changed; 0 or more
+    alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of ground
     structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
     structure_weight: Floats | None = None  # [W, S] their weights after the window
+
+    def alarms(self) -> tuple[tuple[int, float], ...]:
+        """Return (run, time [s]) of every alarm: the end of the window that raised it."""
+        at = np.flatnonzero(self.alarm)
+        return tuple((int(self.run[i]), float(self.t[i])) for i in at)
 
 
 @dataclass(frozen=True, eq=False)

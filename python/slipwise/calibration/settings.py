@@ -21,6 +21,7 @@ WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer win
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
 _ESTIMATORS = _core.EstimatorSettings()
 _AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
+_CHANGE = _core.ChangeSettings()
 
 
 class _Section(BaseModel):
@@ -100,6 +101,15 @@ class AutoTable(_Section):
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
 
 
+class ChangeTable(_Section):
+    """Finding a change of ground, and what is forgotten then; without one nothing ever is."""
+
+    detect: bool = _CHANGE.detect
+    threshold: Positive = _CHANGE.threshold
+    fraction: Positive = _CHANGE.fraction
+    forget: Annotated[float, Field(ge=0.0, le=1.0)] = _CHANGE.forget
+
+
 class WindowTable(_Section):
     """How the log is cut into windows."""
 
@@ -127,6 +137,7 @@ class Settings(_Section):
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
+    change: ChangeTable = ChangeTable()
     gradient_descent: GradientDescentTable = GradientDescentTable()
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
@@ -167,8 +178,10 @@ class Settings(_Section):
         return settings
 
     def average_settings(self) -> _core.ModelAverageSettings:
-        """Return the core's settings of model averaging."""
-        settings = _core.ModelAverageSettings()
+        """Return the core's settings of model averaging, and of finding a change of ground."""
+        settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
+        _copy(self.change, change)
+        settings.change = change
         settings.learning_rate, settings.share = self.auto.learning_rate, self.auto.share
         return settings
 

@@ -97,8 +97,9 @@ class StructureChoice:
         self._structure_weight[i] = self._weights
         learned = self._cascade.belief(i + 1, np.array(self._score.noise_scale))
         self._cascade_record.record(i, scored.nis, 1.0, learned)
+        self._cascade_record.mark(i, self._cascade.change(i))
 
-    def _see(self, i: int, update: _core.IekfUpdate, belief: Belief) -> None:
+    def _see(self, i: int, update: _core.IekfUpdate, change: _core.ChangeTest, belief: Belief) -> None:
         self._together_score = _core.student_log_score(update.nis, update.innovation_covariance)
         if self._observer is not None:
-            self._observer(i, update, belief)
+            self._observer(i, update, change, belief)

@@ -114,7 +114,14 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
 
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
-    from slipwise.cli.tables import show_files, show_left_out, show_notes, show_parameters, show_verdict
+    from slipwise.cli.tables import (
+        show_alarms,
+        show_files,
+        show_left_out,
+        show_notes,
+        show_parameters,
+        show_verdict,
+    )
 
     content = calibration.model.content
     learned = content.provenance
@@ -124,6 +131,8 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     )
     show_notes(out, calibration.notes)
     show_left_out(out, calibration.left_out)
+    if calibration.history is not None:
+        show_alarms(out, calibration.history)
     show_parameters(out, content.parameters)
     show_verdict(out, calibration.verdict)
     show_files(out, files)

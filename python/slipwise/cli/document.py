@@ -36,7 +36,8 @@ def verdict_part(verdict: Verdict | None) -> dict[str, Any] | None:
 
 def calibration_part(calibration: Calibration) -> dict[str, Any]:
     """Return what was learned, in the units of the model file."""
-    content = calibration.model.content
+    content, history = calibration.model.content, calibration.history
+    alarms = [] if history is None else history.alarms()
     return {
         "input": content.input,
         "basis": content.slip.basis,
@@ -44,6 +45,7 @@ def calibration_part(calibration: Calibration) -> dict[str, Any]:
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
         "learned_windows": content.provenance.learned_windows,
         "learned_seconds": content.provenance.learned_seconds,
+        "ground_changes": [{"run": run, "t": t} for run, t in alarms],
     }
 
 

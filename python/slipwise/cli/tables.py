@@ -12,11 +12,13 @@ from slipwise.cli.output import Column, Output
 from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
-    from slipwise.calibration import Verdict
+    from slipwise.calibration import History, Verdict
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
     from slipwise.models.schema import Parameter
+
+_MOST_ALARMS = 6
 
 
 def show_notes(output: Output, notes: Sequence[str]) -> None:
@@ -32,6 +34,17 @@ def show_left_out(output: Output, left_out: Sequence[LeftOut]) -> None:
         return
     rows = [(str(entry.count), entry.reason, entry.where) for entry in left_out]
     output.table("Left out", (Column("count", True), Column("what"), Column("first at")), rows)
+
+
+def show_alarms(output: Output, history: History) -> None:
+    """Say when the ground seemed to change; nothing where it did not."""
+    alarms = history.alarms()
+    if not alarms:
+        return
+    shown = ", ".join(f"{t:.1f} s of run {run}" for run, t in alarms[:_MOST_ALARMS])
+    more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
+    times = "once" if len(alarms) == 1 else f"{len(alarms)} times"
+    output.line(f"The ground seems to change {times}: at {shown}{more}. What was learned before counts less.")
 
 
 def show_verdict(output: Output, verdict: Verdict) -> None:

@@ -102,7 +102,7 @@ class SurfacePass:
         self._learned = count
         return self._joined(chain)
 
-    def _observe(self, i: int, update: _core.IekfUpdate, _: Belief) -> None:
+    def _observe(self, i: int, update: _core.IekfUpdate, _change: _core.ChangeTest, _: Belief) -> None:
         self._weight[i] = update.weight
 
     def _learn(self, i: int, chain: Belief) -> None:

@@ -5,7 +5,7 @@ from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.live_robot import LiveRobot, LiveState
 from slipwise.simulation.perturbation import Perturbation
-from slipwise.simulation.physics import World
+from slipwise.simulation.physics import GroundChange, World
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
@@ -13,6 +13,7 @@ from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 
 __all__ = [
     "DRIVES",
+    "GroundChange",
     "LandTamer",
     "LiveRobot",
     "LiveState",

@@ -28,6 +28,14 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
+class GroundChange:
+    """A tyre-force ground that becomes another one while the vehicle drives."""
+
+    t: float  # [s]
+    law: TyreLaw
+
+
+@dataclass(frozen=True)
 class World:
     """The vehicle and what it stands on."""
 
@@ -35,6 +43,7 @@ class World:
     ground: str  # one of GROUNDS
     law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
     traction: TractionLaw = TractionLaw()
+    change: GroundChange | None = None
 
     @property
     def force_law(self) -> ForceLaw | None:
@@ -93,6 +102,7 @@ class Physics:
     model: Any
     data: Any
     advance: Callable[[], None]
+    tyres: TyreForceGround | None  # None where MuJoCo's contacts give the forces
 
 
 def start_physics(world: World, time_step: float) -> Physics:
@@ -116,7 +126,7 @@ def start_physics(world: World, time_step: float) -> Physics:
     advance = _stepper(mujoco, model, data, tyres)
     for _ in range(math.ceil(SETTLING_TIME / time_step)):
         advance()
-    return Physics(model, data, advance)
+    return Physics(model, data, advance, tyres)
 
 
 def run_physics(
@@ -137,11 +147,15 @@ def run_physics(
     physics = start_physics(world, sampling.time_step)
     model, data = physics.model, physics.data
     names = wheel_names(world.vehicle)
+    change, tyres = world.change, physics.tyres
+    changes_at = math.ceil(change.t * sampling.rate - 1e-9) if change is not None else sampling.count
     targets = wheel_targets(world.vehicle, commands, sampling)[:, np.arange(len(names)) % 2]
     position = np.empty((sampling.count, model.nq))
     velocity = np.empty((sampling.count, model.nv))
     for sample in range(sampling.count):
         position[sample], velocity[sample] = data.qpos, data.qvel
+        if change is not None and tyres is not None and sample == changes_at:
+            tyres.law = partial(tyre_force, change.law)
         for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
             data.ctrl = target
             physics.advance()

@@ -13,7 +13,7 @@ from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.perturbation import Perturbation, perturbed_truth
-from slipwise.simulation.physics import GROUNDS, Progress, Sampling, World, run_physics
+from slipwise.simulation.physics import GROUNDS, GroundChange, Progress, Sampling, World, run_physics
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
@@ -30,6 +30,7 @@ class Scenario:
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
+    change: GroundChange | None = None  # of a tyre-force ground, while driving
     perturbation: Perturbation | None = None  # slip surfaces in place of ground and physics
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
@@ -77,7 +78,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
 def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress | None) -> Truth:
     sampling = Sampling.over(scenario.duration, scenario.pose_rate)
     if scenario.perturbation is None:
-        world = World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction)
+        world = World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction, scenario.change)
         return run_physics(world, commands, sampling, progress=progress)
     times = np.arange(sampling.count) / sampling.rate
     stream = _stream(seed, 1)
@@ -115,6 +116,8 @@ def _check(scenario: Scenario, seed: int) -> None:
     if scenario.ground not in GROUNDS:
         advice = "choose one of " + ", ".join(GROUNDS)
         raise SettingsError(f"unknown ground {scenario.ground!r}", where="ground", advice=advice)
+    if scenario.change is not None:
+        _check_change(scenario, scenario.change)
     if scenario.commands is not None and len(scenario.commands) == 0:
         raise SettingsError("there are no commands", where="commands", advice="give at least one")
     if scenario.commands is None and scenario.drive not in DRIVES:
@@ -130,3 +133,15 @@ def _check(scenario: Scenario, seed: int) -> None:
             raise SettingsError(f"{name} is {value}", where=name, advice="give zero or a positive number")
     if not math.isfinite(scenario.pose_delay):
         raise SettingsError(f"pose_delay is {scenario.pose_delay}", where="pose_delay", advice="give seconds")
+
+
+def _check_change(scenario: Scenario, change: GroundChange) -> None:
+    if scenario.perturbation is not None:
+        advice = "leave out one of the two"
+        raise SettingsError("slip surfaces cannot change while driving", where="change", advice=advice)
+    if scenario.ground != "tyre-force":
+        advice = 'use the ground "tyre-force"'
+        raise SettingsError(f"a {scenario.ground} ground cannot change", where="change", advice=advice)
+    if not 0.0 <= change.t < scenario.duration:
+        advice = f"let it change within the {scenario.duration:g} s of the drive"
+        raise SettingsError(f"the ground changes at {change.t:g} s", where="change", advice=advice)

@@ -70,7 +70,7 @@ class TyreForceGround:
             model: the mujoco.MjModel made from `land_tamer.mjcf`, with frictionless contacts.
         """
         names = wheel_names(vehicle)
-        self._law = law
+        self.law = law  # may be replaced while driving: another ground
         self._radius = vehicle.wheel_radius
         self._hull = model.body("hull").id
         bodies = [model.body(f"wheel_{name}").id for name in names]
@@ -88,7 +88,7 @@ class TyreForceGround:
         twist = np.concatenate((velocity[:3] @ axes, velocity[3:6]))
         patch_velocity = (self._patch_jacobian @ twist).reshape(2, -1)
         rim_speed = velocity[self._spins] * self._radius
-        force = self._law(data.sensordata, patch_velocity, rim_speed)
+        force = self.law(data.sensordata, patch_velocity, rim_speed)
         forward, left = axes[:, 0], axes[:, 1]
         arm = self._radius
         wrenches = np.concatenate((forward, -arm * left, left, arm * forward)).reshape(2, 6)

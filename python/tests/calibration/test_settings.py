@@ -36,6 +36,9 @@ clock_offset_std = 0.1
 lag = 0.5
 delay = 0.2
 log_std = 0.5
+gain_std = 0.1
+slow_share_std = 0.2
+slow_lag = 1.5
 
 [filter]
 iterations = 3
@@ -56,6 +59,12 @@ adapt = false
 bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
+
+[change]
+detect = false
+threshold = 12.0
+fraction = 0.2
+forget = 0.1
 
 [gradient_descent]
 learning_rate = 0.2
@@ -91,6 +100,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     core = settings.filter_settings()
     assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
     assert (core.prior.clock_offset_std, core.prior.log_std) == (0.1, 0.5)
+    assert (core.prior.gain_std, core.prior.slow_share_std, core.prior.slow_lag) == (0.1, 0.2, 1.5)
     assert (core.iekf.iterations, core.iekf.halvings, core.iekf.huber, core.iekf.gate) == (3, 5, 2.5, 50.0)
     assert core.iekf.tolerance == 1e-4
     assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]
@@ -124,6 +134,8 @@ def test_defaults_are_those_of_the_core() -> None:
         names = [name for name in dir(one) if not name.startswith("_")]
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
     assert settings.average_settings().share == _core.ModelAverageSettings().share
+    for name in ("detect", "threshold", "fraction", "forget"):
+        assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)
     assert settings.rules() == WindowRules()
     assert load_settings_of_nothing() == settings
 

@@ -135,6 +135,7 @@ def _history(runs: int) -> History:
     t = np.arange(2.5, DURATION, 2.5)
     run = np.repeat(np.arange(runs), len(t))
     known = 1.0 - np.exp(-np.arange(1, len(run) + 1) / 5.0)
+    alarm = np.isin(np.arange(len(run)), (20, 21))
     weight = np.column_stack((1.0 - known, 0.7 * known, 0.3 * known))
     return History(
         run=run,
@@ -146,6 +147,8 @@ def _history(runs: int) -> History:
         weight=np.ones(len(run)),
         bases=BASES,
         basis_weight=weight,
+        change=np.where(alarm, 12.0, 0.0),
+        alarm=alarm,
     )
 
 
@@ -193,6 +196,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         dof=np.full(len(rows), 5.0),
         measured=measured,
         learned_until=t_start,
+        cascade=np.zeros(len(rows), np.bool_),
         in_sample=np.full((len(rows), 2), 0.01),
     )
 

@@ -24,6 +24,10 @@ class CausalFilter {
   /// Learns one segment. `speeds` are those seen up to the segment's end.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
 
+  /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
+  /// robot's, not the ground's: they stay as learned.
+  void forget(double share);
+
   const MotionModel& model() const { return model_; }
   const Estimate& estimate() const { return estimate_; }
   /// Standard deviations of the prior now in force, [parameters].

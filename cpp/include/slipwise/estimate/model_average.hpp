@@ -3,10 +3,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <deque>
 #include <string>
 #include <vector>
 
 #include "slipwise/estimate/causal_filter.hpp"
+#include "slipwise/estimate/change_detector.hpp"
 #include "slipwise/estimate/driven_speeds.hpp"
 
 namespace slipwise {
@@ -15,6 +17,7 @@ struct ModelAverageSettings {
   double learning_rate =
       0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
   double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a model can come back [-]
+  ChangeSettings change = {};
 };
 
 /// The weights after models predicted a segment with these log scores (derivations.md, section 7).
@@ -40,23 +43,35 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model. Returns the update of the model that weighed most before.
+  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
+  /// weighed most before.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
+  /// The test of the last segment for a change of ground.
+  const ChangeTest& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
+  ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  void doubt();
+  void settle();
+  Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd log_scores(const std::vector<IekfUpdate>& updates) const;
   Eigen::VectorXd variance_ratio() const;
 
   MotionModel model_;
-  std::vector<CausalFilter> filters_;
+  std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
   Eigen::VectorXd weights_;
   DrivenSpeeds speeds_;
+  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
+  std::deque<AverageState> before_;     ///< before each of the last segments
+  ChangeDetector detector_;
+  ChangeTest change_;
+  int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
 };
 
 }  // namespace slipwise

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "slipwise/estimate/estimate.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
@@ -32,6 +33,8 @@ class NoiseScale {
   /// `expected` are the variances of the shape. Does nothing where the settings say that the noise is known.
   void learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs, const Segment& segment,
              const Eigen::Vector3d& expected);
+  /// Follows the next residuals as fast as those of the first segments, from the present value.
+  void hurry() { segments_ = std::min(segments_, settings_.prior_segments); }
   /// The same for a model that never learns the segment: of its squared error, the parameters explain `open`.
   void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
 

@@ -15,11 +15,12 @@ from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 from slipwise.reporting.markup import details, legend, missing, number, paragraph, table
-from slipwise.reporting.palette import LEARNED_STROKE, Stroke, stroke_of, transparent
+from slipwise.reporting.palette import ALARM_COLOUR, LEARNED_STROKE, Stroke, stroke_of, transparent
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 _MOST_PARAMETERS = 12
+_MOST_ALARMS = 6
 _LOGARITHM = "log_"  # lags and delays are learned as logarithms and shown in seconds
 Floats = NDArray[np.float64]
 
@@ -46,7 +47,9 @@ class ConvergenceSection:
             )
         if not len(history.t):
             return missing("No window was learned, so the parameters are still the prior.") + values
-        return _parameters(contents, history) + values + _weights(contents, history)
+        return (
+            _parameters(contents, history) + _alarms(contents, history) + values + _weights(contents, history)
+        )
 
 
 def _values(model: Model) -> str:
@@ -62,6 +65,30 @@ def _values(model: Model) -> str:
         for parameter in model.content.parameters
     ]
     return table(("parameter", "unit", "value", "± 1 sigma", "± before any data", "determined"), rows)
+
+
+def _alarms(contents: Contents, history: History) -> str:
+    """Say when the ground seemed to change."""
+    alarms = history.alarms()
+    if not alarms:
+        return paragraph("No change of ground was found.")
+    names = [run.name for run in contents.log.runs]
+    shown = ", ".join(f"{t:.1f} s of {names[run] or f'run {run}'}" for run, t in alarms[:_MOST_ALARMS])
+    more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
+    return paragraph(
+        f"The ground seems to change {len(alarms)} time{'s' if len(alarms) > 1 else ''}, marked by an orange "
+        f"line: at {shown}{more}. There, what was learned before counts less."
+    )
+
+
+def _alarm_marks(timeline: Timeline, history: History) -> list[dict[str, Any]]:
+    """Return a vertical line where each change of ground was found."""
+    at = np.flatnonzero(history.alarm)
+    line = {"color": ALARM_COLOUR, "width": 1.5}
+    return [
+        {"type": "line", "xref": "x", "yref": "paper", "x0": x, "x1": x, "y0": 0, "y1": 1, "line": line}
+        for x in timeline.at(history.run[at], history.t[at]).tolist()
+    ]
 
 
 def _order(parameter: Parameter) -> tuple[bool, float]:
@@ -120,7 +147,7 @@ def _figure(contents: Contents, history: History, parameter: Parameter, place: i
         layout={
             "xaxis": axis(timeline.title, nticks=6),
             "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=6),
-            "shapes": timeline.shapes(),
+            "shapes": timeline.shapes() + _alarm_marks(timeline, history),
         },
         height=240,
         caption=shown.final(parameter),
@@ -211,7 +238,7 @@ def _weights_figure(
         layout={
             "xaxis": axis(timeline.title),
             "yaxis": axis("weight, together 1 [-]", range=[0, 1]),
-            "shapes": timeline.shapes(),
+            "shapes": timeline.shapes() + _alarm_marks(timeline, history),
         },
         height=280,
     )

@@ -10,6 +10,7 @@ from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import Results, make_results, with_model, without_history
 
 from slipwise.models.schema import Parameter, Slip
+from slipwise.reporting.palette import ALARM_COLOUR
 from slipwise.reporting.sections.convergence import ConvergenceSection
 
 
@@ -101,3 +102,23 @@ def test_model_without_parameters_gives_a_sentence() -> None:
 
 def _without_slip(results: Results) -> Results:
     return with_model(results, slip=Slip(basis="none", lon=[], lat=[], ang=[]), parameters=[], covariance=[])
+
+
+def test_changes_of_ground_are_told_and_marked() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    html = ConvergenceSection().html(contents_of(results))
+    assert "The ground seems to change 2 times" in text_of(html)
+    shapes = figures_of(html)["figure-parameter-1"]["layout"]["shapes"]
+    marks = [shape["x0"] for shape in shapes if shape["line"]["color"] == ALARM_COLOUR]
+    assert np.allclose(marks, history.t[history.alarm] - history.t[0] + 2.5)
+
+
+def test_one_ground_is_told_too() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    quiet = replace(history, alarm=np.zeros_like(history.alarm))
+    same = replace(results, calibration=replace(results.calibration, history=quiet))
+    assert "No change of ground was found." in text_of(ConvergenceSection().html(contents_of(same)))

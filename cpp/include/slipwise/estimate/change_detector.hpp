@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finding a change of ground: whether the last segments prefer other slip parameters than those learned before.
+#pragma once
+
+#include <Eigen/Core>
+#include <deque>
+#include <vector>
+
+namespace slipwise {
+
+struct ChangeSettings {
+  bool detect = true;
+  double threshold = 9.0;  ///< log odds of a change against none beyond which there is an alarm [-]
+  int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a ground
+  int longest = 4;         ///< segments that are tested together, at most
+  double fraction = 0.1;   ///< usual size of a change of a term's slip, as a fraction of the driven twist [-]
+  double forget = 0.03;    ///< on an alarm, part of the prior variance that the slip parameters get back [-]
+  int trial = 20;          ///< segments after an alarm in which the models as they were compete with those that forgot
+  int warm_up = 20;        ///< segments before the first test, in which the size of the noise is learned
+  double memory = 100.0;   ///< segments over which the usual likeness of neighbouring residuals is averaged [-]
+};
+
+/// The test of one segment together with those just before it.
+struct ChangeTest {
+  double log_odds = 0.0;  ///< of the likeliest change; 0 where nothing speaks for one
+  int segments = 0;       ///< since that change
+  bool alarm = false;
+};
+
+/// Log odds that a change explains residuals, and what the fit of the change expects of unchanged ground.
+struct ChangeFit {
+  double log_odds;
+  double gain;           ///< of the log likelihood, less what the change costs
+  double expected_gain;  ///< of white residuals on unchanged ground
+};
+
+/// `residuals` are whitened, [3 n]; the columns of `by_change` are their derivatives by independent changes in units of
+/// their usual size, [3 n, changes]. Residuals and changes have heavy tails (derivations.md, section 17).
+ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
+
+/// A generalised likelihood ratio over the last segments, weighed against what is usual on this ground: neighbouring
+/// residuals that are always alike (coloured slip) are no change.
+class ChangeDetector {
+ public:
+  explicit ChangeDetector(const ChangeSettings& settings);
+
+  /// Tests whether the ground changed before this segment or one of the last. `innovation` had covariance `covariance`
+  /// under what was learned before; `by_change` is its derivative by changes in units of their usual size. After an
+  /// alarm the test starts anew.
+  ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
+                 const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
+
+ private:
+  struct Whitened {
+    Eigen::Vector3d residual;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> by_change;
+  };
+  ChangeFit fit_last(int segments, double usual) const;
+  void learn_usual(int segments, const ChangeFit& fit);
+
+  ChangeSettings settings_;
+  std::deque<Whitened> recent_;
+  std::vector<double> usual_;  ///< gain over its expectation, by number of segments: 1 where residuals are white
+  double seen_ = 0.0;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the residuals of real segments are taken for: a Student-t, whose tails are heavier than a normal's.
+#pragma once
+
+namespace slipwise {
+
+inline constexpr double kTailDegrees = 5.0;  ///< degrees of freedom of the Student-t
+
+}  // namespace slipwise

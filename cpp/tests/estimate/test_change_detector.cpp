@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// A change of ground is found when residuals agree on it, and not otherwise.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <random>
+#include <stdexcept>
+
+#include "slipwise/estimate/change_detector.hpp"
+
+namespace slipwise {
+namespace {
+
+using ByChange = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+/// One change that turns the heading by `size` sigmas, another hand every other segment.
+ByChange turns(int segment, double size) {
+  ByChange by_change = ByChange::Zero(3, 2);
+  by_change(2, 1) = segment % 2 == 0 ? size : -size;
+  by_change(0, 0) = size;
+  return by_change;
+}
+
+Eigen::Vector3d noise(std::mt19937_64& random) {
+  std::student_t_distribution<double> tail(5.0);
+  const double x = tail(random), y = tail(random);
+  return Eigen::Vector3d(x, y, tail(random)) * std::sqrt(3.0 / 5.0);
+}
+
+TEST_CASE("a change that residuals agree on is found within three segments") {
+  std::mt19937_64 random(151);
+  ChangeDetector detector{ChangeSettings{}};
+  for (int i = 0; i < 60; ++i) {
+    CHECK_FALSE(detector.see(noise(random), Eigen::Matrix3d::Identity(), turns(i, 4.0)).alarm);
+  }
+  bool found = false;
+  for (int i = 0; i < 3 && !found; ++i) {
+    const ByChange by_change = turns(i, 4.0);
+    const ChangeTest test =
+        detector.see(by_change.col(1) * 1.5 + noise(random), Eigen::Matrix3d::Identity(), by_change);
+    found = test.alarm;
+    CHECK(test.segments <= i + 2);
+  }
+  CHECK(found);
+}
+
+TEST_CASE("one outlier is no change of ground, however large") {
+  std::mt19937_64 random(152);
+  ChangeDetector detector{ChangeSettings{}};
+  for (int i = 0; i < 60; ++i) {
+    const Eigen::Vector3d jump = i == 40 ? Eigen::Vector3d(0.0, 0.0, 100.0) : Eigen::Vector3d::Zero();
+    CHECK_FALSE(detector.see(noise(random) + jump, Eigen::Matrix3d::Identity(), turns(i, 4.0)).alarm);
+  }
+}
+
+TEST_CASE("residuals that are always alike are usual on this ground") {
+  std::mt19937_64 random(153);
+  ChangeDetector detector{ChangeSettings{}};
+  double first = 0.0, last = 0.0;
+  Eigen::Vector3d slow = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 2000; ++i) {
+    slow = 0.8 * slow + 0.6 * noise(random);
+    const double odds = detector.see(slow, Eigen::Matrix3d::Identity(), turns(0, 4.0)).log_odds;
+    (i < 200 ? first : last) += odds / (i < 200 ? 200.0 : 1800.0);
+  }
+  CHECK(last < 0.85 * first);
+}
+
+TEST_CASE("heavy-tailed residuals raise at most one alarm in a thousand segments") {
+  std::mt19937_64 random(154);
+  ChangeDetector detector{ChangeSettings{}};
+  int alarms = 0;
+  for (int i = 0; i < 20000; ++i) {
+    alarms += detector.see(noise(random), Eigen::Matrix3d::Identity(), turns(i, 4.0)).alarm ? 1 : 0;
+  }
+  CHECK(alarms <= 20);
+}
+
+TEST_CASE("a parked robot shows no change") {
+  std::mt19937_64 random(155);
+  ChangeDetector detector{ChangeSettings{}};
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d pose_jumps(3.0, -4.0, 2.0);
+    CHECK(detector.see(pose_jumps, Eigen::Matrix3d::Identity(), ByChange::Zero(3, 2)).log_odds == 0.0);
+  }
+}
+
+TEST_CASE("a model without parameters has nothing that could change") {
+  ChangeDetector detector{ChangeSettings{}};
+  CHECK_FALSE(detector.see(Eigen::Vector3d::Ones(), Eigen::Matrix3d::Identity(), ByChange(3, 0)).alarm);
+}
+
+TEST_CASE("a test over no segment is refused") {
+  ChangeSettings settings;
+  settings.longest = settings.shortest - 1;
+  CHECK_THROWS_AS(ChangeDetector{settings}, std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

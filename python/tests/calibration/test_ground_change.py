@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A change of ground is found while learning, told, and learned; without one nothing is forgotten."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from slipwise.calibration import Settings, calibrate, make_settings
+from slipwise.calibration.calibrate import learning_windows
+from slipwise.calibration.cascade_pass import CascadePass
+from slipwise.calibration.drive import prepare_drive
+from slipwise.logs import Log
+from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
+
+pytest.importorskip("mujoco")
+
+CHANGE = 82.0  # s
+OTHER_GROUND = TyreLaw(slip_stiffness=7.0, cornering_stiffness=8.5)  # yaw slip -0.55 where it was -0.37
+
+
+@pytest.fixture(scope="module")
+def changing() -> Log:
+    scenario = Scenario(duration=CHANGE + 25.0, change=GroundChange(CHANGE, OTHER_GROUND))
+    return simulate(scenario, seed=1).log
+
+
+def until(log: Log, t: float) -> Log:
+    run = log.runs[0]
+    poses, keep = run.poses, run.poses.t < t
+    fields = {
+        name: value[keep]
+        for name, value in vars(poses).items()
+        if isinstance(value, np.ndarray) and len(value) == len(keep)
+    }
+    return replace(log, runs=(replace(run, poses=replace(poses, **fields)),))
+
+
+def test_step_of_yaw_slip_is_found_within_three_windows(changing: Log) -> None:
+    history = calibrate(changing, input_name="wheel").history
+    assert history is not None
+    (alarm,) = history.alarms()
+    assert alarm[0] == 0
+    assert CHANGE < alarm[1] <= CHANGE + 3.2
+
+
+def test_step_is_told_where_slip_is_learned_in_cascade(changing: Log) -> None:
+    settings = Settings()
+    windows = learning_windows(prepare_drive(changing, "command"), "command", settings)
+    passing = CascadePass(windows, settings)
+    passing.belief(len(windows), np.ones(3))
+    (found,) = (i for i in range(len(windows)) if passing.change(i).alarm)
+    assert CHANGE < windows.end[found] <= CHANGE + 5.0
+
+
+def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:
+    learned = {}
+    for detect in (True, False):
+        settings = make_settings({"basis": "edd-2", "change": {"detect": detect}})
+        history = calibrate(changing, input_name="wheel", settings=settings).history
+        assert history is not None
+        learned[detect] = history.mean[history.t <= CHANGE + 12.0, history.names.index("ang.w")][-1]
+    assert learned[True] < learned[False] - 0.05
+
+
+def test_drive_over_one_ground_raises_no_alarm(changing: Log) -> None:
+    history = calibrate(until(changing, CHANGE), input_name="wheel").history
+    assert history is not None
+    assert history.alarms() == ()
+    assert (history.change >= 0.0).all()
