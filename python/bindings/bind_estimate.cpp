@@ -263,6 +263,8 @@ void bind_estimate(nb::module_& m) {
       [](double nis, const Eigen::Matrix3d& covariance) { return student_log_score(nis, covariance); }, "nis"_a,
       "covariance"_a, "Student-t log density of an innovation, without constants.");
   nb::class_<ScoredSegment>(m, "ScoredSegment", "A segment as it was predicted.")
+      .def_ro("innovation", &ScoredSegment::innovation)
+      .def_ro("innovation_covariance", &ScoredSegment::innovation_covariance)
       .def_ro("nis", &ScoredSegment::nis)
       .def_ro("log_score", &ScoredSegment::log_score);
   nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")

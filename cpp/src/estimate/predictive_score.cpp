@@ -26,7 +26,7 @@ ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& e
       slip_covariance(at.path, settings_.shape) + pose_noise_covariance(at.predicted, settings_.shape);
   const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
   noise_scale_.learn_prediction(innovation.cwiseAbs2(), open.diagonal(), expected.diagonal());
-  return {nis, student_log_score(nis, covariance)};
+  return {innovation, covariance, nis, student_log_score(nis, covariance)};
 }
 
 }  // namespace slipwise

@@ -13,6 +13,7 @@ from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.causal_pass import CausalPass, HistoryRecorder, Observer
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
+from slipwise.calibration.predictions import normalised_squared
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
@@ -53,7 +54,6 @@ class StructureChoice:
         self._cascade = CascadePass(windows, settings)
         self._score = _core.PredictiveScore(settings.filter_settings().noise)
         self._observer = observer
-        self._together_score = 0.0
         self._weights = np.full(len(STRUCTURES), 1.0 / len(STRUCTURES))
         self._learned = 0
         names = tuple(basis.name for basis in settings.bases())
@@ -92,14 +92,22 @@ class StructureChoice:
             self._cascade.motion, estimate, self._windows.track(i), self._windows.segments[i]
         )
         self._together.belief(i + 1)
-        scores = np.array([self._together_score, scored.log_score])
-        self._weights = np.array(_core.reweighed(self._weights, scores, self._average))
+        self._weights = np.array(_core.reweighed(self._weights, self._scores(scored), self._average))
         self._structure_weight[i] = self._weights
         learned = self._cascade.belief(i + 1, np.array(self._score.noise_scale))
         self._cascade_record.record(i, scored.nis, 1.0, learned)
         self._cascade_record.mark(i, self._cascade.change(i))
 
+    def _scores(self, cascade: _core.ScoredSegment) -> Floats:
+        """Log scores of both under the mean of their covariances: judged by their errors, as bases are."""
+        both = (self._update, cascade)  # of the window that both have just predicted
+        covariance = np.tensordot(self._weights, [seen.innovation_covariance for seen in both], axes=1)
+        lengths = normalised_squared(
+            np.array([seen.innovation for seen in both]), np.broadcast_to(covariance, (len(both), 3, 3))
+        )
+        return np.array([_core.student_log_score(length, covariance) for length in lengths.tolist()])
+
     def _see(self, i: int, update: _core.IekfUpdate, change: _core.ChangeTest, belief: Belief) -> None:
-        self._together_score = _core.student_log_score(update.nis, update.innovation_covariance)
+        self._update = update
         if self._observer is not None:
             self._observer(i, update, change, belief)

@@ -15,8 +15,10 @@ double student_log_score(double nis, const Eigen::Matrix3d& covariance);
 
 /// A segment as it was predicted.
 struct ScoredSegment {
-  double nis;        ///< innovation^T S^-1 innovation
-  double log_score;  ///< of the innovation
+  Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta)
+  Eigen::Matrix3d innovation_covariance;  ///< S, parameters and noise
+  double nis;                             ///< innovation^T S^-1 innovation
+  double log_score;                       ///< of the innovation
 };
 
 /// Scores a model that is learned elsewhere on segments that it has not learned, and learns the size of the noise.
