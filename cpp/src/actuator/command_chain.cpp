@@ -218,8 +218,8 @@ class ChainWalk {
       vy_.measured(window_.initial->vy);
       omega_.measured(window_.initial->omega);
     }
-    if (start_.t < chain_start_.t) {
-      follow_measured(&result);
+    if (window_.known && start_.t < chain_start_.t) {
+      follow_measured(*window_.known->twist, &result);
     } else if (start_.t > chain_start_.t) {
       cover(chain_start_, start_, nullptr);
     }
@@ -239,8 +239,7 @@ class ChainWalk {
   }
 
   /// Records the drive as it was measured, from the start until the chain takes over.
-  void follow_measured(DriveSteps* out) const {
-    const InputTrack& twist = *window_.known->twist;
+  void follow_measured(const InputTrack& twist, DriveSteps* out) const {
     const Moment until = chain_start_.t < end_.t ? chain_start_ : end_;
     std::size_t next = twist.count_until(start_.t);
     for (Moment now = start_; now.t < until.t; ++next) {

@@ -84,7 +84,8 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
   }
   seen_ += 1.0;
   const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
-  recent_.push_back({factor.matrixL().solve(innovation), factor.matrixL().solve(by_change)});
+  const Eigen::Matrix3d whiten = factor.matrixL().solve(Eigen::Matrix3d::Identity());
+  recent_.push_back({whiten * innovation, whiten.lazyProduct(by_change)});
   if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
   }
