@@ -17,7 +17,8 @@ from slipwise import planning
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-model = sw.calibrate(log, input_name="command").model
+settings = sw.make_settings({"auto": {"cascade": False}})  # several manoeuvres in a row need a plain chain
+model = sw.calibrate(log, input_name="command", settings=settings).model
 
 # %% [markdown]
 # One manoeuvre to a pose 6 m ahead and 2 m to the left, facing left. The limits are those that the model
@@ -53,8 +54,8 @@ def plain(model: sw.Model) -> sw.Model:
     content = model.content
     nothing = {"lon": [], "lat": [], "ang": [], "basis": "none"}
     slip = content.slip.model_copy(update=nothing)
-    parts = {"slip": slip, "dynamics": False, "clock_offset": False, "parameters": [], "covariance": []}
-    return sw.Model(content.model_copy(update=parts))
+    parts = {"slip": slip, "dynamics": False, "clock_offset": False, "response": False}
+    return sw.Model(content.model_copy(update={**parts, "parameters": [], "covariance": []}))
 
 
 errors = {}

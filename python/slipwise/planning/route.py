@@ -149,7 +149,21 @@ class RoutePlanner:
                 where=f"goal {pose_text(goal)}",
                 advice="choose a goal with more room, a smaller radius, a larger curvature or more attempts",
             )
-        return self._joined(best, start)
+        return self._checked(self._joined(best, start))
+
+    def _checked(self, route: Route) -> Route:
+        """Refuse a route whose legs, driven one after the other, are not what each was by itself.
+
+        A leg begins with the drive's twist alone; the slow part of a chain remembers more than that.
+        """
+        if route.clearance < 0.0:
+            raise PlanningError(
+                f"driven as a whole, the route of {route.legs} manoeuvres touches an obstacle",
+                where=f"clearance {route.clearance:.2g} m",
+                advice="use a larger radius; where the model has a slow part, learn one without: "
+                "[auto] cascade = false",
+            )
+        return route
 
     def _room(self, poses: Floats) -> float:
         """Least clearance of the robot's disc along poses [N, 3]; negative where it touches something."""

@@ -59,6 +59,7 @@ adapt = false
 bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
+cascade = false
 
 [change]
 detect = false

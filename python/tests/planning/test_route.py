@@ -6,7 +6,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model, walled_map
+from sample_models import Made, make_model
 
+from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.planning import GridMap, RouteOptions, RoutePlanner, TrajectoryOptions
 
@@ -33,6 +35,15 @@ def test_a_route_leads_round_a_wall_to_the_goal_without_touching_it() -> None:
     assert (np.diff(route.trajectory.commands[:, 0]) > 0.0).all()
     spread = route.covariance[:, 0, 0] + route.covariance[:, 1, 1]
     assert spread[-1] > spread[len(spread) // 4] > 0.0
+
+
+def test_a_route_that_touches_an_obstacle_as_a_whole_is_refused() -> None:
+    """Each manoeuvre is free by itself; a chain with a slow part drives them otherwise in a row."""
+    slow = make_model(Made(basis=_core.named_basis("edd-2"), values={"ang.w": -0.3}, response=True))
+    search = RouteOptions(radius=0.3, attempts=800)
+    routes = RoutePlanner(slow, walled_map(), limits=LIMITS, options=OPTIONS, search=search)
+    with pytest.raises(PlanningError, match="driven as a whole"):
+        routes.route((1.5, 2.0, 0.5), (10.0, 2.5, -0.6))
 
 
 @pytest.mark.parametrize(
