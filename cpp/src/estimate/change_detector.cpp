@@ -3,6 +3,7 @@
 #include "slipwise/estimate/change_detector.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -83,8 +84,8 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
     return {};
   }
   seen_ += 1.0;
-  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
-  const Eigen::Matrix3d whiten = factor.matrixL().solve(Eigen::Matrix3d::Identity());
+  // S^-1/2 by eigenvectors: any root serves, and the residuals' order within a segment does not matter.
+  const Eigen::Matrix3d whiten = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorInverseSqrt();
   recent_.push_back({whiten * innovation, whiten.lazyProduct(by_change)});
   if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
