@@ -259,14 +259,17 @@ void bind_estimate(nb::module_& m) {
       },
       "weights"_a, "log_scores"_a, "settings"_a, "The weights after models predicted with these log scores, [M].");
   m.def(
-      "student_log_score",
-      [](double nis, const Eigen::Matrix3d& covariance) { return student_log_score(nis, covariance); }, "nis"_a,
-      "covariance"_a, "Student-t log density of an innovation, without constants.");
+      "common_log_scores",
+      [](const Eigen::VectorXd& weights, const std::vector<Eigen::Vector3d>& innovations,
+         const std::vector<Eigen::Matrix3d>& covariances) {
+        return common_log_scores(weights, innovations, covariances);
+      },
+      "weights"_a, "innovations"_a, "covariances"_a,
+      "Log scores of models that predicted one segment, under the mean of their covariances, [M].");
   nb::class_<ScoredSegment>(m, "ScoredSegment", "A segment as it was predicted.")
       .def_ro("innovation", &ScoredSegment::innovation)
       .def_ro("innovation_covariance", &ScoredSegment::innovation_covariance)
-      .def_ro("nis", &ScoredSegment::nis)
-      .def_ro("log_score", &ScoredSegment::log_score);
+      .def_ro("nis", &ScoredSegment::nis);
   nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")
       .def(nb::init<const NoiseSettings&>(), "settings"_a)
       .def("score", &PredictiveScore::score, "model"_a, "estimate"_a, "inputs"_a, "segment"_a)

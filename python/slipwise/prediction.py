@@ -63,10 +63,13 @@ def predict(
     if initial is not None and not np.isfinite(initial).all():
         raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
     track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    known = _known_drive(begin, initial)
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
-        segment = _segment(begin, seconds, initial)
+        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+        if known is not None:
+            segment = segment.with_known_drive(*known)
         at = _core.linearize_segment(model.motion, model.mean, track, segment)
         poses.append(at.predicted.vector())
         covariance.append(prediction_covariance(model, at, seconds))
@@ -74,15 +77,15 @@ def predict(
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
 
 
-def _segment(begin: float, seconds: float, initial: tuple[float, float] | None) -> _core.Segment:
-    """A segment from `begin` on; speeds measured there held while the poses, stamped late, were under way."""
-    segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+def _known_drive(
+    begin: float, initial: tuple[float, float] | None
+) -> tuple[_core.InputTrack, float, _core.BodyTwist] | None:
+    """Speeds measured at `begin`, held while the poses, stamped late, were under way."""
     if initial is None:
-        return segment
-    held = _core.InputTrack(
-        *(np.array([value]) for value in (begin - LONGEST_OFFSET, initial[0], 0.0, initial[1]))
-    )
-    return segment.with_known_drive(held, begin, _core.BodyTwist(initial[0], 0.0, initial[1]))
+        return None
+    v, omega = initial
+    held = _core.InputTrack(*(np.array([value]) for value in (begin - LONGEST_OFFSET, v, 0.0, omega)))
+    return held, begin, _core.BodyTwist(v, 0.0, omega)
 
 
 def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What all tests share: the folder of real logs, and a count of the tests that went without it."""
+"""What all tests share: the folder of real logs, a browser, and a count of the tests without logs."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from reporting.browser import Browser, find_browser
 
 _NO_DATA = "SLIPWISE_DATA is not set: no real logs"
 
@@ -21,6 +23,19 @@ def real_log_dir() -> Path:
     if os.environ.get("SLIPWISE_REQUIRE_DATA") == "1":
         pytest.fail(f"{reason}, and SLIPWISE_REQUIRE_DATA=1 asks for them", pytrace=False)
     pytest.skip(reason)
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    """Open a browser; skip without one, or fail where SLIPWISE_REQUIRE_BROWSER=1 asks for it."""
+    program = find_browser()
+    if program is None:
+        reason = "there is no Chromium on the PATH (Debian: apt install chromium)"
+        if os.environ.get("SLIPWISE_REQUIRE_BROWSER") == "1":
+            pytest.fail(reason)
+        pytest.skip(reason)
+    with Browser(program, tmp_path_factory.mktemp("profile")) as opened:
+        yield opened
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

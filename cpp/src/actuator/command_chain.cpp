@@ -15,7 +15,6 @@ using Row = Eigen::Matrix<double, 1, kChainParameters>;
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSameStep = 1e-6;    // a stretch longer than whole steps by no more than rounding gets no other step
 constexpr double kSettledLags = 8.0;  // after this many time constants the start of a lag is forgotten (e^-8)
 
 /// Where a channel's parameters stand among the chain's.
@@ -290,8 +289,7 @@ class ChainWalk {
   void subdivide(const Moment& from, const Moment& to, DriveSteps* out) {
     const bool lagging = speed_.longest_lag() > 0.0 || turn_.longest_lag() > 0.0;
     const bool divided = lagging && out != nullptr;  // a lag that nobody sees needs no mean over short steps
-    const int parts =
-        divided ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / window_.longest_step - kSameStep))) : 1;
+    const int parts = divided ? lag_parts(to.t - from.t, window_.longest_step) : 1;
     const double duration = (to.t - from.t) / parts;
     const ChannelDecay decay_v(speed_, duration);
     const ChannelDecay decay_omega(turn_, duration);

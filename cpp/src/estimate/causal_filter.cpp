@@ -12,11 +12,6 @@ namespace {
 
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
-Eigen::Matrix3d scaled(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
-  const Eigen::Vector3d root = scale.cwiseSqrt();
-  return root.asDiagonal() * covariance * root.asDiagonal();
-}
-
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
 
 }  // namespace
@@ -64,8 +59,8 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
   const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
   const Eigen::Matrix3d expected =
       slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
-  IekfUpdate update =
-      iekf_update(model_, estimate_, inputs, segment, scaled(expected, noise_scale_.value()), settings_.iekf);
+  IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, scaled_covariance(expected, noise_scale_.value()),
+                                  settings_.iekf);
   estimate_ = update.estimate;
   noise_scale_.learn(model_, estimate_, inputs, segment, expected.diagonal());
   return update;
@@ -75,7 +70,7 @@ Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
                                       const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
                                       const Eigen::Vector3d& scale) {
   const Eigen::Matrix3d noise = slip_covariance(at.path, shape) + pose_noise_covariance(at.predicted, shape);
-  return at.by_parameter * parameters * at.by_parameter.transpose() + scaled(noise, scale);
+  return at.by_parameter * parameters * at.by_parameter.transpose() + scaled_covariance(noise, scale);
 }
 
 }  // namespace slipwise

@@ -89,12 +89,16 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
     doubt();
   }
   std::vector<IekfUpdate> updates;
+  std::vector<Eigen::Vector3d> innovations;
+  std::vector<Eigen::Matrix3d> covariances;
   for (CausalFilter& filter : filters_) {
     updates.push_back(filter.learn(inputs, segment, speeds_.reference()));
+    innovations.push_back(updates.back().innovation);
+    covariances.push_back(updates.back().innovation_covariance);
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
-  weights_ = reweighed(weights_, log_scores(updates), settings_);
+  weights_ = reweighed(weights_, common_log_scores(weights_, innovations, covariances), settings_);
   if (on_trial_ > 0) {
     --on_trial_;
     if (on_trial_ == 0) {
@@ -102,21 +106,6 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
     }
   }
   return updates[static_cast<std::size_t>(heaviest)];
-}
-
-/// All under one covariance, the models' mean: a model is judged by its errors, not by how well it knows their size.
-Eigen::VectorXd ModelAverage::log_scores(const std::vector<IekfUpdate>& updates) const {
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (std::size_t i = 0; i < updates.size(); ++i) {
-    covariance += weights_[static_cast<Eigen::Index>(i)] * updates[i].innovation_covariance;
-  }
-  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
-  Eigen::VectorXd scores(weights_.size());
-  for (std::size_t i = 0; i < updates.size(); ++i) {
-    const Eigen::Vector3d& innovation = updates[i].innovation;
-    scores[static_cast<Eigen::Index>(i)] = student_log_score(innovation.dot(factor.solve(innovation)), covariance);
-  }
-  return scores;
 }
 
 /// By what the average predicted as it was before the segments that are tested together: the noise factors and the

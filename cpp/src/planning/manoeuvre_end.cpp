@@ -219,7 +219,7 @@ class ManoeuvreWalk {
   template <bool kSlopes>
   void subdivide(const Moment& from, const Moment& to) {
     const bool lagging = speed_answer(chain_).longest_lag() > 0.0 || turn_answer(chain_).longest_lag() > 0.0;
-    const int parts = lagging ? std::max(1, static_cast<int>(std::ceil((to.t - from.t) / kLongestStep))) : 1;
+    const int parts = lagging ? lag_parts(to.t - from.t, kLongestStep) : 1;
     const double duration = (to.t - from.t) / parts;
     for (int i = 0; i < parts; ++i) {
       if constexpr (kSlopes) {

@@ -14,7 +14,6 @@ namespace slipwise {
 namespace {
 
 constexpr double kMostPeriods = 1e6;  // that a command may take to act
-constexpr double kSameStep = 1e-6;    // a stretch longer than whole steps by no more than rounding gets no other step
 constexpr double kSamePart = 1e-9;    // of a period: delays that differ by less act together
 
 /// A channel's delay: whole periods, and the time within a period at which a command begins to act.
@@ -49,8 +48,7 @@ std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool nex
     return {};
   }
   const bool lags = chain.lag_v > 0.0 || chain.lag_omega > 0.0;
-  const int count =
-      lags ? std::max(1, static_cast<int>(std::ceil(duration / DriveWindow{}.longest_step - kSameStep))) : 1;
+  const int count = lags ? lag_parts(duration, DriveWindow{}.longest_step) : 1;
   const double part = duration / count;
   std::vector<PeriodPart> parts(static_cast<std::size_t>(count),
                                 {part, false, false, share_of(chain.lag_v, part), share_of(chain.lag_omega, part)});

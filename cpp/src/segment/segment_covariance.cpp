@@ -51,11 +51,14 @@ Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& 
   return from_start * pose * from_start.transpose() + pose;
 }
 
+Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
+  const Eigen::Vector3d root = scale.cwiseSqrt();
+  return root.asDiagonal() * covariance * root.asDiagonal();
+}
+
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  const Eigen::Vector3d root = scale.cwiseSqrt();
-  return root.asDiagonal() * (slip_covariance(path, noise) + pose_noise_covariance(measured, noise)) *
-         root.asDiagonal();
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise), scale);
 }
 
 }  // namespace slipwise

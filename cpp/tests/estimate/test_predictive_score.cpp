@@ -35,7 +35,7 @@ Scores mean_scores(const Eigen::Vector2d& slip, double noise_std) {
     const Estimate estimate{slip, Eigen::Matrix2d::Zero()};
     const ScoredSegment scored = score.score(model, estimate, inputs, segment);
     mean.nis += i < kSettled ? 0.0 : scored.nis / kSegments;
-    mean.log_score += i < kSettled ? 0.0 : scored.log_score / kSegments;
+    mean.log_score += i < kSettled ? 0.0 : student_log_score(scored.nis, scored.innovation_covariance) / kSegments;
   }
   mean.scale = score.noise_scale();
   return mean;

@@ -13,7 +13,6 @@ from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.causal_pass import CausalPass, HistoryRecorder, Observer
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
-from slipwise.calibration.predictions import normalised_squared
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
@@ -53,6 +52,7 @@ class StructureChoice:
         self._together = CausalPass(average, windows, self._see)
         self._cascade = CascadePass(windows, settings)
         self._score = _core.PredictiveScore(settings.filter_settings().noise)
+        self._believed = self._cascade.belief(0, np.array(self._score.noise_scale))
         self._observer = observer
         self._weights = np.full(len(STRUCTURES), 1.0 / len(STRUCTURES))
         self._learned = 0
@@ -72,7 +72,7 @@ class StructureChoice:
             self._weigh(i)
         self._learned = count
         if self._weights[1] > self._weights[0]:
-            return self._cascade.belief(count, np.array(self._score.noise_scale))
+            return self._believed
         return self._together.belief(count)
 
     def finish(self) -> Belief:
@@ -86,26 +86,23 @@ class StructureChoice:
 
     def _weigh(self, i: int) -> None:
         """Let both predict window i before they learn it."""
-        cascade = self._cascade.belief(i, np.array(self._score.noise_scale))
-        estimate = _core.Estimate(cascade.mean, cascade.covariance)
+        estimate = _core.Estimate(self._believed.mean, self._believed.covariance)
         scored = self._score.score(
             self._cascade.motion, estimate, self._windows.track(i), self._windows.segments[i]
         )
         self._together.belief(i + 1)
         self._weights = np.array(_core.reweighed(self._weights, self._scores(scored), self._average))
         self._structure_weight[i] = self._weights
-        learned = self._cascade.belief(i + 1, np.array(self._score.noise_scale))
-        self._cascade_record.record(i, scored.nis, 1.0, learned)
+        self._believed = self._cascade.belief(i + 1, np.array(self._score.noise_scale))
+        self._cascade_record.record(i, scored.nis, 1.0, self._believed)
         self._cascade_record.mark(i, self._cascade.change(i))
 
     def _scores(self, cascade: _core.ScoredSegment) -> Floats:
-        """Log scores of both under the mean of their covariances: judged by their errors, as bases are."""
+        """Log scores of both: judged by their errors, as bases are."""
         both = (self._update, cascade)  # of the window that both have just predicted
-        covariance = np.tensordot(self._weights, [seen.innovation_covariance for seen in both], axes=1)
-        lengths = normalised_squared(
-            np.array([seen.innovation for seen in both]), np.broadcast_to(covariance, (len(both), 3, 3))
-        )
-        return np.array([_core.student_log_score(length, covariance) for length in lengths.tolist()])
+        innovations = [seen.innovation for seen in both]
+        covariances = [seen.innovation_covariance for seen in both]
+        return np.array(_core.common_log_scores(self._weights, innovations, covariances))
 
     def _see(self, i: int, update: _core.IekfUpdate, change: _core.ChangeTest, belief: Belief) -> None:
         self._update = update

@@ -3,12 +3,10 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from reporting.browser import Browser, find_browser
+from reporting.browser import Browser
 from reporting.page_parts import figures_of
 from reporting.synthetic_results import make_results
 
@@ -16,18 +14,6 @@ from slipwise.reporting import write_report
 
 STATE = "document.documentElement.dataset"
 HOSTILE = '</script><script>document.documentElement.dataset.owned = "yes"</script><b>'
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    program = find_browser()
-    if program is None:
-        reason = "there is no Chromium on the PATH (Debian: apt install chromium)"
-        if os.environ.get("SLIPWISE_REQUIRE_BROWSER") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    with Browser(program, tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 @pytest.fixture(scope="module")

@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-import os
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from reporting.browser import Browser, find_browser
+from reporting.browser import Browser
 from reproduction.toy_chapters import exhibit, solid, toy_results
 
 from slipwise.reproduction import ChapterResult
@@ -17,18 +15,6 @@ from slipwise.reproduction.draw_page import draw_page
 
 STATE = "document.documentElement.dataset"
 CANVASES = "document.querySelectorAll('.plot canvas').length"
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    program = find_browser()
-    if program is None:
-        reason = "there is no Chromium on the PATH (Debian: apt install chromium)"
-        if os.environ.get("SLIPWISE_REQUIRE_BROWSER") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
-    with Browser(program, tmp_path_factory.mktemp("profile")) as opened:
-        yield opened
 
 
 @pytest.mark.parametrize("width", [1280, 390])

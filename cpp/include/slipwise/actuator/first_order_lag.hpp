@@ -3,6 +3,7 @@
 // thesis 8.1).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace slipwise {
@@ -39,6 +40,13 @@ struct LagDecay {
     }
   }
 };
+
+/// Into how many equal parts a stretch is cut, so that a lagging speed is averaged over no more than `longest`. A
+/// stretch that is longer than whole parts by no more than rounding gets no other part.
+inline int lag_parts(double duration, double longest) {
+  constexpr double kRounding = 1e-6;  // of a part
+  return std::max(1, static_cast<int>(std::ceil(duration / longest - kRounding)));
+}
 
 /// V' = (input - V) / time_constant, with V = `output` at the start.
 inline LagStepLinearization linearize_lag_step(double output, double input, const LagDecay& decay) {

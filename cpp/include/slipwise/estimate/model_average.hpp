@@ -58,7 +58,6 @@ class ModelAverage {
   void doubt();
   void settle();
   Eigen::VectorXd basis_weights() const;
-  Eigen::VectorXd log_scores(const std::vector<IekfUpdate>& updates) const;
   Eigen::VectorXd variance_ratio() const;
 
   MotionModel model_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "slipwise/estimate/estimate.hpp"
 #include "slipwise/estimate/noise_scale.hpp"
@@ -13,12 +14,17 @@ namespace slipwise {
 /// 7).
 double student_log_score(double nis, const Eigen::Matrix3d& covariance);
 
+/// Log scores of models that predicted the same segment, with innovations [M] of covariances [M], all under one
+/// covariance, their mean by weight: a model is judged by its errors, not by how well it knows their size.
+/// \throws std::invalid_argument when there is not one of each per weight.
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
+                                  std::span<const Eigen::Matrix3d> covariances);
+
 /// A segment as it was predicted.
 struct ScoredSegment {
   Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta)
   Eigen::Matrix3d innovation_covariance;  ///< S, parameters and noise
   double nis;                             ///< innovation^T S^-1 innovation
-  double log_score;                       ///< of the innovation
 };
 
 /// Scores a model that is learned elsewhere on segments that it has not learned, and learns the size of the noise.
