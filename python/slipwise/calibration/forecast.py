@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.coloured_pass import motion_belief
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
@@ -44,6 +45,7 @@ class _Draft:
 
     targets: WindowSet
     counts: Ints  # windows learned before the prediction
+    recent_counts: Ints  # windows that ended by its start: what they say of the slip now is used
     in_sample_counts: Ints
     pose: Floats
     covariance: Floats
@@ -68,7 +70,7 @@ def forecast_all(
     for k in np.argsort(count, kind="stable").tolist():
         belief, draft = forecaster.belief(int(count[k])), drafts[kind[k] // 2]
         if kind[k] % 2 == 0:
-            _predict(forecaster, belief, draft, int(index[k]))
+            _predict((forecaster, learned), belief, draft, int(index[k]))
         else:
             _predict_in_sample(belief, draft, int(index[k]))
     return tuple(_finished(forecaster, learned, draft) for draft in drafts)
@@ -80,6 +82,7 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
     return _Draft(
         targets,
         counts,
+        learned.count_until(targets.position, targets.start),
         in_sample_counts,
         np.empty((size, 3)),
         np.empty((size, 3, 3)),
@@ -88,13 +91,24 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
     )
 
 
-def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
-    targets = draft.targets
-    at = _core.linearize_segment(belief.motion, belief.mean, targets.track(i), targets.segments[i])
-    draft.pose[i], draft.structure[i] = at.predicted.vector(), belief.structure
-    draft.covariance[i] = _core.prediction_covariance(
-        at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
+def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft, i: int) -> None:
+    forecaster, learned = given
+    targets, position = draft.targets, int(draft.targets.position[i])
+    draft.structure[i] = belief.structure
+    if belief.coloured is None:
+        at = _core.linearize_segment(belief.motion, belief.mean, targets.track(i), targets.segments[i])
+        draft.pose[i] = at.predicted.vector()
+        draft.covariance[i] = _core.prediction_covariance(
+            at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
+        )
+        return
+    expected = belief.coloured.predict(
+        motion_belief(belief, forecaster.noise),
+        targets.track(i),
+        learned.recent(int(draft.recent_counts[i]), position, float(targets.start[i])),
+        targets.segments[i],
     )
+    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
 
 
 def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:

@@ -31,6 +31,7 @@ class Belief:
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
+    coloured: _core.ColouredSlip | None = None  # how slip wanders about this belief, where that is learned
     structure: int = TOGETHER  # of STRUCTURES; the errors of each are a population of their own
 
 

@@ -22,6 +22,7 @@ _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.Noise
 _ESTIMATORS = _core.EstimatorSettings()
 _AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
 _CHANGE = _core.ChangeSettings()
+_COLOURED = _core.ColouredSlipSettings()
 
 
 class _Section(BaseModel):
@@ -96,9 +97,21 @@ class AutoTable(_Section):
     """Averaging of bases by how well they predict."""
 
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
-    learning_rate: Positive = _AVERAGE.learning_rate
-    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.share
+    learning_rate: Positive = _AVERAGE.weighing.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.weighing.share
+    richest: Annotated[float, Field(gt=0.0, lt=1.0)] = _AVERAGE.richest
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
+
+
+class ColouredTable(_Section):
+    """Slip that wanders about what was learned: candidates of how far and how slowly."""
+
+    learn: bool = True
+    fractions: list[Positive] = list(_COLOURED.fractions)
+    time_constants: list[Positive] = list(_COLOURED.time_constants)
+    white: Annotated[float, Field(gt=0.0, lt=1.0)] = _COLOURED.white
+    learning_rate: Positive = _COLOURED.weighing.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
 
 
 class ChangeTable(_Section):
@@ -137,6 +150,7 @@ class Settings(_Section):
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
+    coloured: ColouredTable = ColouredTable()
     change: ChangeTable = ChangeTable()
     gradient_descent: GradientDescentTable = GradientDescentTable()
     ekf_thesis: EkfThesisTable = EkfThesisTable()
@@ -177,12 +191,19 @@ class Settings(_Section):
         settings.gradient_descent, settings.ekf_thesis = descent, kalman
         return settings
 
+    def coloured_settings(self) -> _core.ColouredSlipSettings:
+        """Return the core's settings of slip that wanders."""
+        settings, table = _core.ColouredSlipSettings(), self.coloured
+        settings.fractions, settings.time_constants = table.fractions, table.time_constants
+        settings.white, settings.weighing = table.white, _weighing(table)
+        return settings
+
     def average_settings(self) -> _core.ModelAverageSettings:
         """Return the core's settings of model averaging, and of finding a change of ground."""
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
         _copy(self.change, change)
         settings.change = change
-        settings.learning_rate, settings.share = self.auto.learning_rate, self.auto.share
+        settings.weighing, settings.richest = _weighing(self.auto), self.auto.richest
         return settings
 
     def bases(self) -> list[_core.Basis]:
@@ -240,6 +261,12 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
         raise SettingsError(
             f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
         ) from problem
+
+
+def _weighing(table: AutoTable | ColouredTable) -> _core.WeighingSettings:
+    settings = _core.WeighingSettings()
+    settings.learning_rate, settings.share = table.learning_rate, table.share
+    return settings
 
 
 def _copy(table: _Section, target: object) -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.coloured_pass import ColouredPass
 from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.history_recorder import HistoryRecorder
@@ -17,6 +18,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
 
 Floats = NDArray[np.float64]
+EQUAL = np.full(len(STRUCTURES), 1.0 / len(STRUCTURES))
 
 
 def learning_pass(
@@ -26,6 +28,11 @@ def learning_pass(
     recorder: HistoryRecorder | None = None,
 ) -> CausalPass[_core.IekfUpdate] | StructureChoice:
     """Return the pass that learns `average`; `auto` also tries the cascade where wheel speeds allow it."""
+    passing = _learning_pass(average, windows, settings, recorder)
+    return ColouredPass(passing, windows, settings) if settings.coloured.learn else passing
+
+
+def _learning_pass(average, windows, settings, recorder):
     tries = settings.basis == "auto" and settings.auto.cascade
     if tries and average.model.dynamics and has_wheels(windows.drive):
         return StructureChoice(average, windows, settings, recorder)
@@ -60,14 +67,14 @@ class StructureChoice:
         recorder: HistoryRecorder | None = None,
     ) -> None:
         """`recorder` keeps the beliefs of both, and their weights."""
-        self._windows, self._settings = windows, settings.average_settings()
+        self._windows, self._weighing = windows, settings.average_settings().weighing
         self._average = AverageLearner(average)
         self._together = CausalPass(self._average, windows, self._see)
         self._cascade = CascadePass(windows, settings)
         self._score = _core.PredictiveScore(settings.filter_settings().noise)
         self._believed = self._cascade.belief(0, np.array(self._score.noise_scale))
         self._recorder = recorder
-        self._weights = np.full(len(STRUCTURES), 1.0 / len(STRUCTURES))
+        self._weights = EQUAL
         self._learned = 0
 
     def belief(self, count: int) -> Belief:
@@ -96,7 +103,8 @@ class StructureChoice:
             self._cascade.motion, estimate, self._windows.track(i), self._windows.segments[i]
         )
         self._together.belief(i + 1)
-        self._weights = np.array(_core.reweighed(self._weights, self._scores(scored), self._settings))
+        scores = self._scores(scored)
+        self._weights = np.array(_core.reweighed(self._weights, scores, EQUAL, self._weighing))
         self._believed = self._cascade.belief(i + 1, np.array(self._score.noise_scale))
         if self._recorder is not None:
             self._recorder.weigh(i, self._weights)

@@ -115,7 +115,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert descent.jacobian == _core.SegmentJacobian.Thesis
     assert kalman.jacobian == _core.SegmentJacobian.Exact
     average = settings.average_settings()
-    assert (average.learning_rate, average.share) == (0.7, 0.01)
+    assert (average.weighing.learning_rate, average.weighing.share) == (0.7, 0.01)
     (basis,) = settings.bases()
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
 
