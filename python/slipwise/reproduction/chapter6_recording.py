@@ -11,7 +11,7 @@ from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import DriveRun, WindowSet, collect_windows, prepare_drive
-from slipwise.calibration.estimator_pass import THESIS_STRIDE, THESIS_WINDOW, estimator_motion
+from slipwise.calibration.estimators import THESIS_STRIDE, THESIS_WINDOW, estimator_motion
 from slipwise.calibration.forecast import Forecaster, forecast
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions

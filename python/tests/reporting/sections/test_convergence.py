@@ -9,6 +9,7 @@ import numpy as np
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import Results, make_results, with_model, without_history
 
+from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.models.schema import Parameter, Slip
 from slipwise.reporting.palette import ALARM_COLOUR
 from slipwise.reporting.sections.convergence import ConvergenceSection
@@ -58,13 +59,29 @@ def test_lag_is_shown_in_seconds() -> None:
     html = ConvergenceSection().html(contents_of(learned))
     assert "lag_v" in html
     assert np.allclose(figures_of(html)["figure-parameter-3"]["data"][1]["y"], 0.8)
-    assert "Final value 0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
+    assert "In the model: 0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
 
 
 def test_batch_fit_shows_the_values_and_says_why_no_course() -> None:
     text = text_of(ConvergenceSection().html(contents_of(without_history(make_results()))))
     assert "fitted to the whole log at once" in text
     assert "lon.V m/s per V −0.04900 0.0040 0.30 yes" in text
+
+
+def test_smoothed_parameters_have_figures_of_their_own_with_or_without_a_history() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    course = SmoothedCourse(
+        history.run, history.t - 1.0, history.t, history.names, history.mean + 1.0, history.std
+    )
+    for learned in (results, without_history(results)):
+        smoothed = replace(learned, calibration=replace(learned.calibration, smoothed=course))
+        html = ConvergenceSection().html(contents_of(smoothed))
+        _, value = figures_of(html)["figure-smoothed-1"]["data"]
+        assert np.allclose(value["y"], history.mean[:, 1] + 1.0, rtol=1e-5)
+        assert "nothing is predicted with it" in text_of(html)
+    assert "figure-smoothed-1" not in figures_of(ConvergenceSection().html(contents_of(results)))
 
 
 def test_single_basis_is_named_instead_of_weights() -> None:
