@@ -113,6 +113,18 @@ def _smoothed(contents: Contents) -> str:
 
 
 def _weights(contents: Contents, history: History) -> str:
+    """Draw the weights of the bases, and of the ways to learn from commands, where there are several."""
+    if history.structure_weight is None:
+        return _basis_weights(contents, history)
+    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
+    shown = (strokes, history.structure_weight)
+    heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
+    note = f"Predictions are those of the heavier way, at the end {heavier}, which this section shows."
+    figure = _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+    return _basis_weights(contents, history) + figure + paragraph(note)
+
+
+def _basis_weights(contents: Contents, history: History) -> str:
     if len(history.bases) < 2:
         return paragraph(
             f"One basis was used: {', '.join(history.bases) or contents.calibration.model.motion.basis.name}."
@@ -121,18 +133,17 @@ def _weights(contents: Contents, history: History) -> str:
     strokes = {
         name: stroke_of(name, (*contents.evaluation.methods, *history.bases)) for name in history.bases
     }
-    html = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
-    if history.structure_weight is None:
-        return html
-    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
-    shown = (strokes, history.structure_weight)
-    return html + _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+    figure = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
+    return figure + paragraph(
+        "A basis gains weight by how near its predictions come; after each window a share is dealt out "
+        "evenly. The model is the weighted mean."
+    )
 
 
 def _weights_figure(
     contents: Contents, history: History, names: tuple[str, str], shown: tuple[dict[str, Stroke], Floats]
 ) -> str:
-    """Draw weights [W, N] over time, stacked; `names` are the figure's key and what is weighed."""
+    """Draw weights [W, N] over time, stacked, the last in the legend; `names`: key and what is weighed."""
     key, what = names
     strokes, weights = shown
     timeline, keep = Timeline.of(contents.log), thinned(len(history.t))
@@ -162,4 +173,6 @@ def _weights_figure(
         },
         height=280,
     )
-    return legend((name, stroke.colour, "line") for name, stroke in strokes.items()) + figure.html()
+    last = zip(strokes.items(), weights[-1].tolist(), strict=True)
+    keys = ((f"{name} {weight:.2f}", stroke.colour, "line") for (name, stroke), weight in last)
+    return legend(keys) + figure.html()

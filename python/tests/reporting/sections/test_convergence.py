@@ -34,6 +34,26 @@ def test_weights_of_all_bases_are_stacked() -> None:
     assert np.allclose(np.sum([trace["y"] for trace in figure["data"]], axis=0), 1.0, atol=1e-5)
 
 
+def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    count = len(history.t)
+    cascade = np.linspace(0.1, 0.8, count)
+    two = replace(
+        history, structures=("together", "cascade"), structure_weight=np.column_stack((1 - cascade, cascade))
+    )
+    one = replace(two, bases=("edd-2",), basis_weight=np.ones((count, 1)))
+    for shown in (two, one):
+        learned = replace(results, calibration=replace(results.calibration, history=shown))
+        html = ConvergenceSection().html(contents_of(learned))
+        together, other = figures_of(html)["figure-structures"]["data"]
+        assert (together["name"], other["name"]) == ("together", "cascade")
+        assert np.allclose(other["y"], cascade, atol=1e-5)
+        assert "those of the heavier way, at the end cascade" in text_of(html)
+        assert "cascade 0.80" in text_of(html)
+
+
 def test_lag_is_shown_in_seconds() -> None:
     lag = Parameter(name="log_lag_v", unit="ln s", value=np.log(0.8), std=0.1, prior_std=1.0, determined=True)
     rest = [
