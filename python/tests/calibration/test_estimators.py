@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import slipwise as sw
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
@@ -89,6 +90,14 @@ def test_every_estimator_calibrates(name: str) -> None:
         assert calibration.history is None
     else:
         assert calibration.history.mean[-1] == pytest.approx(calibration.model.mean, abs=1e-12)
+
+
+def test_the_estimator_and_smoothing_are_options_of_the_package() -> None:
+    result = sw.calibrate(circling_log(), basis="edd-2", estimator="delayed-state", smooth=True)
+    assert result.model.content.provenance.settings == {"basis": "edd-2", "estimator": "delayed-state"}
+    assert result.smoothed is not None
+    with pytest.raises(SettingsError, match="unknown estimator 'magic'"):
+        sw.calibrate(circling_log(), estimator="magic")
 
 
 def test_an_estimator_that_does_not_exist_is_refused_with_those_that_do() -> None:
