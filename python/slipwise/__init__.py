@@ -71,7 +71,7 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
         settings: what to learn and how.
         estimator: "average", "iekf", "delayed-state", "ekf-thesis", "gradient-descent", or "batch", which
             fits all windows at once, off-line; short for `settings` with that estimator.
-        smooth: also say what the parameters were during each window, given the whole log.
+        smooth: also say what the slip was during each window, given the whole log.
 
     Raises:
         LogError: the log has no such input, no poses, or no window to learn from.

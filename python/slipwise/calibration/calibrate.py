@@ -56,8 +56,8 @@ def calibrate(
         input_name: "command" or "wheel"; by default commands where the log has them.
         settings: what to learn and how. Where the estimator fits all windows at once, off-line, the verdict
             is that of the filter that runs along.
-        smooth: also say what the parameters were during each window, given the whole log: for parameters that
-            change slowly. The model stays what it is.
+        smooth: also say what the slip was during each window, given the whole log: for slip that changes
+            slowly. The model stays what it is.
         progress: called with the share done, 0 to 1.
 
     Raises:

@@ -90,7 +90,7 @@ _DRIFTS = {"mean-reverting": _core.Drift.MeanReverting, "random-walk": _core.Dri
 
 
 class SmoothingTable(_Section):
-    """Smoothing of parameters that change slowly, with the distance driven."""
+    """Smoothing of slip that changes slowly, with the distance driven."""
 
     drift: Drift = cast(Drift, {value: name for name, value in _DRIFTS.items()}[_DRIFT.drift])
     length: Positive = _DRIFT.length

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that change slowly: what they were during each window, given the whole log."""
+"""Slip that changes slowly: what its parameters were during each window, given the whole log."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class SmoothedCourse:
-    """The parameters of a model over a log, one row per window; off-line, so never for predictions."""
+    """The slip parameters over a log, one row per window; off-line, so never for predictions."""
 
     run: NDArray[np.int64]  # [W] index of the run in the log
     start: Floats  # [W] s
     end: Floats  # [W] s
-    names: tuple[str, ...]  # [P] parameter names
+    names: tuple[str, ...]  # [P] names of the slip parameters
     mean: Floats  # [W, P] parameters during the window
     std: Floats  # [W, P] their standard deviations
 
@@ -53,26 +53,39 @@ class SmoothedCourse:
 def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCourse:
     """Smooth over all windows: forward filter, backward pass of Rauch, Tung and Striebel (1965).
 
+    Lag, delay and clock offset are the robot's, not the ground's: they are taken as learned.
+
     Args:
-        belief: the last one of a causal run: its model, its prior and its noise are used.
+        belief: what was learned: its model, its prior of the slip, its chain and its noise are used.
         windows: what was learned; they must not overlap.
-        settings: how fast the parameters may change, the shape of the noise, and the filter.
+        settings: how fast the slip may change, the shape of the noise, and the filter.
     """
     motion, filters = belief.motion, settings.filter_settings()
-    mean = _core.prior_estimate(motion, 1.0, 1.0, filters.prior).mean  # whatever the speeds
-    prior = _core.Estimate(mean, np.asfortranarray(np.diag(belief.prior_std**2)))
+    slip = slice(motion.slip_size)
     tracks = [windows.track(i) for i in range(len(windows))]
     noise = [_noise(belief, filters.noise.shape, windows, i) for i in range(len(windows))]
     drift = settings.smoothing.drift_settings()
-    course = _core.rts_smooth(motion, prior, tracks, list(windows.segments), noise, drift, filters.iekf)
+    course = _core.rts_smooth(
+        motion, _prior(belief), tracks, list(windows.segments), noise, drift, filters.iekf
+    )
     return SmoothedCourse(
         run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
         start=windows.start,
         end=windows.end,
-        names=tuple(info.name for info in motion.parameters),
-        mean=np.array([estimate.mean for estimate in course]),
-        std=np.array([np.sqrt(np.diag(estimate.covariance)) for estimate in course]),
+        names=tuple(info.name for info in motion.parameters[slip]),
+        mean=np.array([estimate.mean[slip] for estimate in course]),
+        std=np.array([np.sqrt(np.diag(estimate.covariance)[slip]) for estimate in course]),
     )
+
+
+def _prior(belief: Belief) -> _core.Estimate:
+    """The slip as before any data, the chain as learned."""
+    slip = slice(belief.motion.slip_size)
+    mean, covariance = belief.mean.copy(), belief.covariance.copy()
+    mean[slip] = 0.0
+    covariance[slip, :] = covariance[:, slip] = 0.0
+    covariance[slip, slip] = np.diag(belief.prior_std[slip] ** 2)
+    return _core.Estimate(mean, np.asfortranarray(covariance))
 
 
 def _noise(belief: Belief, shape: _core.MotionNoise, windows: WindowSet, i: int) -> Floats:

@@ -45,8 +45,8 @@ def calibrate(
         bool,
         typer.Option(
             "--smooth",
-            help="Also smooth over the whole log (RTS), for parameters that change slowly: smoothed.csv in "
-            "the run folder, and figures in the report. Settings: [smoothing].",
+            help="Also smooth over the whole log (RTS), for slip that changes slowly: smoothed.csv in the "
+            "run folder, and figures in the report. Settings: [smoothing].",
         ),
     ] = False,
     report: Report = None,

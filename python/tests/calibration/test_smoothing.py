@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Parameters that change slowly are followed over the whole log, and the model stays what it is."""
+"""Slip that changes slowly is followed over the whole log, and the model stays what it is."""
 
 from __future__ import annotations
 
@@ -61,6 +61,15 @@ def test_smoothing_changes_no_model(calibration: Calibration) -> None:
     alone = calibrate(changing_log(), input_name="wheel", settings=settings)
     assert alone.smoothed is None
     assert alone.model.content == calibration.model.content
+
+
+def test_the_chain_is_the_robots_and_is_taken_as_learned() -> None:
+    basis = _core.named_basis("edd-2")
+    log = simulated_log(Drive(basis=basis, alpha=AFTER, lag=0.4, delay=0.2))
+    course = calibrate(log, settings=make_settings({"basis": "edd-2"}), smooth=True).smoothed
+    assert course is not None
+    assert course.names == ("lon.V", "ang.w")
+    assert course.mean.mean(axis=0) == pytest.approx(AFTER, abs=0.03)
 
 
 @pytest.mark.parametrize("name", ["average", *_core.estimator_names()])

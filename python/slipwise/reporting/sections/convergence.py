@@ -106,8 +106,8 @@ def _smoothed(contents: Contents) -> str:
     if course is None:
         return ""
     return paragraph(
-        "Smoothed over the whole log, for parameters that change slowly: each value knows what came before "
-        "and after it, so nothing is predicted with it. Where a band stays as wide as before any data, "
+        "The slip smoothed over the whole log, for slip that changes slowly: each value knows what came "
+        "before and after it, so nothing is predicted with it. Where a band is as wide as before any data, "
         "the drive there says nothing of the parameter."
     ) + parameter_figures(contents, course, key="smoothed")
 
