@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a log to a model with a verdict: the causal pass by default, the batch fit where asked for."""
+"""From a log to a model with a verdict: what is kept, judged by what was known causally."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from importlib.metadata import version
 
 import numpy as np
 
-from slipwise.calibration.batch import fit_batch
 from slipwise.calibration.drive import (
     DriveRun,
     WindowSet,
@@ -17,12 +16,12 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
-from slipwise.calibration.history_recorder import HistoryRecorder
-from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
+from slipwise.calibration.learner import Belief, Progress
+from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.plain import plain_forecaster
-from slipwise.calibration.result import Calibration, History, Verdict
+from slipwise.calibration.result import Calibration, Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import average_pass, learning_pass
+from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
@@ -47,7 +46,7 @@ def calibrate(
     *,
     input_name: str | None = None,
     settings: Settings | None = None,
-    batch: bool = False,
+    smooth: bool = False,
     progress: Progress | None = None,
 ) -> Calibration:
     """Learn the motion model of the robot in `log`.
@@ -55,8 +54,10 @@ def calibrate(
     Args:
         log: what `open_log` returned.
         input_name: "command" or "wheel"; by default commands where the log has them.
-        settings: what to learn and how.
-        batch: fit all windows at once off-line; the verdict is still that of the causal pass.
+        settings: what to learn and how. Where the estimator fits all windows at once, off-line, the verdict
+            is that of the filter that runs along.
+        smooth: also say what the slip was during each window, given the whole log: for slip that changes
+            slowly. The model stays what it is.
         progress: called with the share done, 0 to 1.
 
     Raises:
@@ -68,22 +69,16 @@ def calibrate(
     drive = prepare_drive(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    learner = make_learner(settings, input_name)
-    average = learner.fresh()
-    recorder = HistoryRecorder(windows, tuple(basis.name for basis in learner.bases), progress)
-    passing = (
-        average_pass(average, windows, recorder)
-        if batch
-        else learning_pass(average, windows, settings, recorder)
-    )
-    shape = settings.filter_settings().noise.shape
-    learned = _judged(Forecaster("learned", shape, passing.belief, learner.dynamics), windows, settings)
-    history = recorder.history(learned.belief)
-    if batch:
-        learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
-    model = Model(_content(learned, (log, input_name, settings), windows, history))
+    run = start_learning(settings, input_name, windows, record=True, progress=progress)
+    learned = _judged(run, windows, settings)
+    model = Model(_content(learned, (log, input_name, settings), windows, run.bases))
     return Calibration(
-        model, learned.verdict, None if batch else history, log.left_out + windows.left_out, log.notes
+        model,
+        learned.verdict,
+        run.history(),
+        log.left_out + windows.left_out,
+        log.notes,
+        smooth_windows(learned.belief, windows, settings) if smooth else None,
     )
 
 
@@ -107,12 +102,14 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings) -> _Learned:
-    """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
+def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
+    """Judge what is known causally on held-out windows, at the longest horizon with enough of them."""
+    shape = settings.filter_settings().noise.shape
+    forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    belief = forecaster.belief(len(windows))
+    belief = run.kept()
     tails = {p.horizon: final_tail(p, belief.structure) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
@@ -122,18 +119,8 @@ def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings) -> _
     return _Learned(belief, tails, judgement, give_verdict(judgement, names, belief))
 
 
-def fit_batch_over(
-    learned: _Learned, learner: Learner, windows: WindowSet, speeds: tuple[float, float]
-) -> _Learned:
-    """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
-    noise = learner.settings.filter_settings().noise.shape
-    causal = learned.belief
-    belief = fit_batch(causal.motion, windows, learner.settings, (noise, causal.noise_scale), speeds)
-    return replace(learned, belief=belief)
-
-
 def _content(
-    learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, history: History
+    learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, bases: tuple[str, ...]
 ) -> schema.ModelFile:
     log, input_name, settings = given
     motion = learned.belief.motion
@@ -149,7 +136,7 @@ def _content(
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
         range=_range(windows.drive),
-        weights=dict(zip(history.bases, map(float, learned.belief.weights), strict=False)),
+        weights=dict(zip(bases, map(float, learned.belief.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=version("slipwise"),
             logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],

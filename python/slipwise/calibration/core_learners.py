@@ -60,9 +60,15 @@ class EstimatorLearner:
         return self._estimator.learn(inputs, segment)
 
     def belief(self) -> Belief:
-        """Return the belief of the estimator now."""
-        estimate, prior_std = self._estimator.estimate(), np.array(self._estimator.prior_std)
-        covariance = np.array(estimate.covariance)
+        """Return the belief that learning goes on from."""
+        return self._stated(self._estimator.running())
+
+    def fitted(self) -> Belief:
+        """Return the estimate: the belief, or where the estimator fits all windows at once, that fit."""
+        return self._stated(self._estimator.estimate())
+
+    def _stated(self, estimate: _core.Estimate) -> Belief:
+        covariance, prior_std = np.array(estimate.covariance), np.array(self._estimator.prior_std)
         return Belief(
             motion=self._motion,
             mean=np.array(estimate.mean),

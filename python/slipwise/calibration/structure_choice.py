@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.coloured_pass import ColouredPass
 from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.history_recorder import HistoryRecorder
@@ -28,11 +27,6 @@ def learning_pass(
     recorder: HistoryRecorder | None = None,
 ) -> CausalPass[_core.IekfUpdate] | StructureChoice:
     """Return the pass that learns `average`; `auto` also tries the cascade where wheel speeds allow it."""
-    passing = _learning_pass(average, windows, settings, recorder)
-    return ColouredPass(passing, windows, settings) if settings.coloured.learn else passing
-
-
-def _learning_pass(average, windows, settings, recorder):
     tries = settings.basis == "auto" and settings.auto.cascade
     if tries and average.model.dynamics and has_wheels(windows.drive):
         return StructureChoice(average, windows, settings, recorder)

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.estimator_pass import estimator_basis
+from slipwise.calibration.estimators import estimator_basis
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import Belief, make_learner
 from slipwise.calibration.settings import Settings

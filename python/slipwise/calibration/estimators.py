@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A causal pass of one on-line estimator, chosen by name, fed with windows as that estimator wants them."""
+"""An estimator chosen by name: what it learns, and the windows that it wants."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 from slipwise import _core
-from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.core_learners import EstimatorLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
 from slipwise.calibration.learner import make_learner
@@ -32,22 +31,20 @@ def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.Mo
     )
 
 
-def estimator_pass(
-    name: str, motion: _core.MotionModel, settings: Settings, windows: WindowSet
-) -> CausalPass[_core.IekfUpdate]:
-    """Return a pass of the estimator in the order of time.
-
-    `windows` count as learned; estimators of the thesis see overlapping ones until the same time.
+def estimator_learner(name: str, motion: _core.MotionModel, settings: Settings) -> EstimatorLearner:
+    """Return the estimator before any data.
 
     Raises:
         ValueError: there is no such estimator.
     """
-    estimator = _core.FollowingEstimator(
-        name, motion, settings.filter_settings(), settings.estimator_settings()
+    return EstimatorLearner(
+        _core.FollowingEstimator(name, motion, settings.filter_settings(), settings.estimator_settings())
     )
-    learner = EstimatorLearner(estimator)
+
+
+def fed_windows(name: str, settings: Settings, windows: WindowSet) -> WindowSet:
+    """Return the windows that an estimator learns while `windows` pass: the thesis's see overlapping ones."""
     if not _core.learns_overlapping_segments(name):
-        return CausalPass(learner, windows)
+        return windows
     rules = replace(settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
-    length = settings.window.length or THESIS_WINDOW
-    return CausalPass(learner, collect_windows(windows.drive, length, rules), pace=windows)
+    return collect_windows(windows.drive, settings.window.length or THESIS_WINDOW, rules)
