@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prequential prediction: each window predicted from what had been learned an embargo before its start."""
+"""Prequential prediction: each window predicted from what had been learned an embargo before its start.
+
+Parameters are those of the embargo. What is true of the start alone is measured until then: the drive's twist, and the
+slip now where it wanders.
+"""
 
 from __future__ import annotations
 
@@ -45,7 +49,7 @@ class _Draft:
 
     targets: WindowSet
     counts: Ints  # windows learned before the prediction
-    recent_counts: Ints  # windows that ended by its start: what they say of the slip now is used
+    recent: Ints  # windows that ended by its start; the last of them tell of the slip now
     in_sample_counts: Ints
     pose: Floats
     covariance: Floats
@@ -96,6 +100,7 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
     targets, position = draft.targets, int(draft.targets.position[i])
     draft.structure[i] = belief.structure
     if belief.coloured is None:
+        draft.recent[i] = 0
         at = _core.linearize_segment(belief.motion, belief.mean, targets.track(i), targets.segments[i])
         draft.pose[i] = at.predicted.vector()
         draft.covariance[i] = _core.prediction_covariance(
@@ -105,7 +110,7 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
     expected = belief.coloured.predict(
         motion_belief(belief, forecaster.noise),
         targets.track(i),
-        learned.recent(int(draft.recent_counts[i]), position, float(targets.start[i])),
+        learned.recent(int(draft.recent[i]), position, float(targets.start[i])),
         targets.segments[i],
     )
     draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
@@ -137,7 +142,9 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         dof=tails.dof,
         structure=draft.structure,
         measured=targets.measured,
-        learned_until=_learned_until(forecaster, (learned, draft.counts), (targets, known), targets),
+        learned_until=_learned_until(
+            forecaster, ((learned, draft.counts), (learned, draft.recent), (targets, known)), targets
+        ),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 
@@ -162,8 +169,7 @@ def final_tail(predictions: Predictions, structure: int) -> Tail:
 
 def _learned_until(
     forecaster: Forecaster,
-    learned: tuple[WindowSet, Ints],
-    scored: tuple[WindowSet, Ints],
+    used: Sequence[tuple[WindowSet, Ints]],
     targets: WindowSet,
 ) -> Floats:
     """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
@@ -171,7 +177,7 @@ def _learned_until(
         return np.array([run.run.poses.t[-1] for run in targets.drive])[targets.position]
     begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])
     until = np.minimum(begin[targets.position], targets.start)
-    for windows, counts in (learned, scored):
+    for windows, counts in used:
         last = np.maximum(counts - 1, 0)
         if len(windows):
             same_run = (counts > 0) & (windows.position[last] == targets.position)

@@ -121,13 +121,19 @@ def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: s
 
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
-def test_predictions_use_no_pose_within_the_embargo_before_their_start(log: Log, input_name: str) -> None:
+@pytest.mark.parametrize("coloured", [False, True])
+def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_the_start(
+    log: Log, input_name: str, *, coloured: bool
+) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
-    whole = by_name(evaluate(log, input_name=input_name, options=options))
+    settings = make_settings({"coloured": {"learn": coloured}})
+    whole = by_name(evaluate(log, input_name=input_name, options=options, settings=settings))
     for i in chosen(whole["auto", 2.0]):
-        embargo = float(whole["auto", 2.0].t_start[i]) - 2.0
-        runs = tuple(replace(run, poses=spoilt_poses(run.poses, embargo + 1e-6)) for run in log.runs)
-        spoilt = by_name(evaluate(replace(log, runs=runs), input_name=input_name, options=options))
+        until = float(whole["auto", 2.0].t_start[i]) - (0.0 if coloured else 2.0)  # the slip now is of the start
+        runs = tuple(replace(run, poses=spoilt_poses(run.poses, until + 1e-6)) for run in log.runs)
+        spoilt = by_name(
+            evaluate(replace(log, runs=runs), input_name=input_name, options=options, settings=settings)
+        )
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
         assert not np.array_equal(whole["auto", 2.0].measured[i], spoilt["auto", 2.0].measured[i])
@@ -167,16 +173,18 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
 
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
-def test_stated_times_lie_before_the_start_and_parameters_before_the_embargo(
+def test_stated_times_lie_before_the_start_and_those_of_parameters_before_the_embargo(
     log: Log, input_name: str
 ) -> None:
-    for p in evaluate(log, input_name=input_name, options=OPTIONS).predictions:
-        assert (p.learned_until <= p.t_start).all()
-        if input_name == "wheel" or p.method == "none":
-            begin = np.array([log.runs[r].poses.t[0] for r in p.run])
-            assert (p.learned_until <= np.maximum(begin, p.t_start - p.horizon) + 1e-6).all()
-        else:
-            assert (p.learned_until == p.t_start).all()  # the wheel speed at the start is used
+    still = make_settings({"coloured": {"learn": False}})
+    for settings in (still, make_settings({})):
+        for p in evaluate(log, input_name=input_name, options=OPTIONS, settings=settings).predictions:
+            assert (p.learned_until <= p.t_start + 1e-9).all()
+            if input_name == "command" and p.method != "none":
+                assert (p.learned_until == p.t_start).all()  # the wheel speed at the start is used
+            elif settings is still or p.method == "none":
+                begin = np.array([log.runs[r].poses.t[0] for r in p.run])
+                assert (p.learned_until <= np.maximum(begin, p.t_start - p.horizon) + 1e-6).all()
 
 
 def test_file_cut_off_gives_the_same_predictions_as_the_whole_file(
