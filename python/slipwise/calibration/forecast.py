@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Prequential prediction: each window predicted from what had been learned an embargo before its start.
 
-Parameters are those of the embargo. What is true of the start alone is measured until then: the drive's twist, and the
-slip now where it wanders.
+Parameters are those of the embargo. What is true of the start alone is measured until then: the drive's
+twist, and the slip now where it wanders.
 """
 
 from __future__ import annotations

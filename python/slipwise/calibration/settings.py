@@ -132,8 +132,8 @@ class ColouredTable(_Section):
     """Slip that wanders about what was learned: candidates of how far and how slowly."""
 
     learn: bool = True
-    fractions: list[Positive] = list(_COLOURED.fractions)
-    time_constants: list[Positive] = list(_COLOURED.time_constants)
+    fractions: list[Positive] = Field(list(_COLOURED.fractions), min_length=1)
+    time_constants: list[Positive] = Field(list(_COLOURED.time_constants), min_length=1)
     white: Annotated[float, Field(gt=0.0, lt=1.0)] = _COLOURED.white
     learning_rate: Positive = _COLOURED.weighing.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
