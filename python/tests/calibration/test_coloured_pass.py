@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
 
-from slipwise import _core
-from slipwise.calibration import Settings
+from slipwise.calibration import Settings, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.coloured_pass import ColouredPass
 from slipwise.calibration.drive import RECENT_SECONDS, RECENT_WINDOWS, WindowSet, prepare_drive
 from slipwise.calibration.learner import make_learner
 from slipwise.calibration.learning_run import start_learning
 from slipwise.calibration.structure_choice import learning_pass
+from slipwise.errors import SettingsError
 
 SETTINGS = Settings(basis="edd-2")
 
@@ -66,12 +66,13 @@ def test_recent_windows_are_few_of_the_same_run_and_young(windows: WindowSet) ->
     assert windows.recent(40, int(windows.position[40]), float(windows.start[40]) + 2 * RECENT_SECONDS) == []
 
 
+def with_coloured(**table: object) -> Settings:
+    return make_settings({"basis": "edd-2", "coloured": table})
+
+
 def test_settings_say_whether_and_what_is_tried(windows: WindowSet) -> None:
-    still = Settings.model_validate({"basis": "edd-2", "coloured": {"learn": False}})
-    assert start_learning(still, "wheel", windows).belief(10).coloured is None
-    one = Settings.model_validate(
-        {"basis": "edd-2", "coloured": {"fractions": [0.2], "time_constants": [7.0]}}
-    )
+    assert start_learning(with_coloured(learn=False), "wheel", windows).belief(10).coloured is None
+    one = with_coloured(fractions=[0.2], time_constants=[7.0])
     coloured = start_learning(one, "wheel", windows).belief(10).coloured
     assert coloured is not None
     assert [(c.drift, c.turn, c.time_constant) for c in coloured.candidates[1:]] == [
@@ -79,5 +80,5 @@ def test_settings_say_whether_and_what_is_tried(windows: WindowSet) -> None:
         (0.2, 0.0, 7.0),
         (0.2, 0.2, 7.0),
     ]
-    with pytest.raises(ValueError, match="must not be empty"):
-        _core.ColouredSlip(Settings.model_validate({"coloured": {"fractions": []}}).coloured_settings())
+    with pytest.raises(SettingsError, match=r"coloured\.fractions"):
+        with_coloured(fractions=[])
