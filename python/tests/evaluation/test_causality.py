@@ -129,9 +129,8 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
     settings = make_settings({"coloured": {"learn": coloured}})
     whole = by_name(evaluate(log, input_name=input_name, options=options, settings=settings))
     for i in chosen(whole["auto", 2.0]):
-        until = float(whole["auto", 2.0].t_start[i]) - (
-            0.0 if coloured else 2.0
-        )  # the slip now is of the start
+        start = float(whole["auto", 2.0].t_start[i])
+        until = start if coloured else start - 2.0  # the slip now is of the start
         runs = tuple(replace(run, poses=spoilt_poses(run.poses, until + 1e-6)) for run in log.runs)
         spoilt = by_name(
             evaluate(replace(log, runs=runs), input_name=input_name, options=options, settings=settings)
