@@ -37,6 +37,9 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("slip_fraction", &PriorSettings::slip_fraction)
       .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
+      .def_rw("sensor", &PriorSettings::sensor)
+      .def_rw("lever_std", &PriorSettings::lever_std)
+      .def_rw("sensor_yaw_std", &PriorSettings::sensor_yaw_std)
       .def_rw("lag", &PriorSettings::lag)
       .def_rw("delay", &PriorSettings::delay)
       .def_rw("log_std", &PriorSettings::log_std)
@@ -278,10 +281,12 @@ void bind_estimate(nb::module_& m) {
       .def(
           "__init__",
           [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,
-             const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
-            new (self) ModelAverage(std::move(name), bases, {dynamics, clock_offset, false}, filter, settings);
+             bool mount, const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
+            new (self)
+                ModelAverage(std::move(name), bases,
+                             {.dynamics = dynamics, .clock_offset = clock_offset, .mount = mount}, filter, settings);
           },
-          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
+          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "mount"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })

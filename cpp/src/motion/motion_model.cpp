@@ -66,6 +66,11 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
     const ChainParameter& parameter = chain_parameter(place);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
+  if (learned_.mount) {
+    infos.insert(infos.end(), {{"sensor_x", "m", "how far the pose sensor sits ahead of base_link"},
+                               {"sensor_y", "m", "how far the pose sensor sits to the left of base_link"},
+                               {"sensor_yaw", "rad", "how far the pose sensor is turned to the left of base_link"}});
+  }
   return infos;
 }
 
@@ -80,8 +85,12 @@ CommandChain MotionModel::chain(const Eigen::Ref<const Eigen::VectorXd>& paramet
   return chain;
 }
 
+Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  return learned_.mount ? Pose2::from_vector(parameters.tail<kMountParameters>()) : Pose2{};
+}
+
 Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
-  Eigen::VectorXd scales(size() - slip_size());
+  Eigen::VectorXd scales(chain_size());
   Eigen::Index at = 0;
   for (const Eigen::Index place : chain_places_) {
     const ChainParameter& parameter = chain_parameter(place);

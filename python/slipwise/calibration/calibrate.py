@@ -150,6 +150,7 @@ def _content(
         dynamics=learned.motion.dynamics,
         clock_offset=learned.motion.clock_offset,
         response=learned.motion.response,
+        mount=learned.motion.mount,
         parameters=_parameters(learned.motion, learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),

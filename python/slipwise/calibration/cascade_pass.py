@@ -13,7 +13,9 @@ from slipwise.calibration.drive import WindowSet, collect_windows
 from slipwise.calibration.learner import Belief, make_learner
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings
 from slipwise.calibration.wheel_drive import chain_runs, wheel_runs
+from slipwise.segments import WindowRules
 
+NO_SENSOR = WindowRules().sensor
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
 
 
@@ -28,14 +30,16 @@ class CascadePass:
         self._windows = windows
         rules = replace(settings.rules(), whole_frames=True)
         self._slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
-        self._chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, rules)
+        at_wheels = replace(rules, sensor=NO_SENSOR)  # what wheels tell is the motion of base_link itself
+        self._chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, at_wheels)
         slip = make_learner(settings, "wheel").fresh()
         self._slip = CausalPass(slip, self._slip_windows, self._see)
         self._changes: list[_core.ChangeTest] = []
         self._chain = _chain_estimator(settings)
         self._chain_learned = 0
         self._offset = slip.model.clock_offset
-        self.motion = _core.MotionModel.with_response(slip.model.basis, self._offset)
+        response = _core.MotionModel.with_response(slip.model.basis, self._offset)
+        self.motion = response.with_mount(slip.model.mount)
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
@@ -63,7 +67,7 @@ class CascadePass:
         return int(windows.count_until(self._windows.position[last], self._windows.end[last])[0])
 
     def _joined(self, slip: Belief, noise_scale: np.ndarray) -> Belief:
-        """Put slip, chain and clock offset, which is learned with the slip, into one belief."""
+        """Put slip and chain into one belief; clock offset and mount are learned with the slip."""
         chain = self._chain.estimate()
         size, slips, chains = self.motion.size, self.motion.slip_size, len(chain.mean)
         with_slip = np.r_[0:slips, slips + chains : size]

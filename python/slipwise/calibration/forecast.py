@@ -110,7 +110,7 @@ def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i:
         targets.segments[i],
         _core.Integrator.Exact,
     )
-    draft.in_sample[i] = path.poses[-1]
+    draft.in_sample[i] = path.sensor_poses[-1]
 
 
 def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:

@@ -128,6 +128,7 @@ class ModelFile(_Section):
     dynamics: bool  # lag and delay are parameters
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
+    mount: bool = False  # the pose of the pose sensor in base_link is three parameters
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
