@@ -46,6 +46,7 @@ def fit_batch(
     prior_std = np.sqrt(np.diag(prior.covariance))
     ratio = np.diag(fit.estimate.covariance) / prior_std**2 if len(prior_std) else np.zeros(0)
     return Belief(
+        motion,
         np.array(fit.estimate.mean),
         np.array(fit.estimate.covariance),
         np.array(scale),

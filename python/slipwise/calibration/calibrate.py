@@ -8,9 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from slipwise import _core
 from slipwise.calibration.batch import fit_batch
-from slipwise.calibration.causal_pass import CausalPass, HistoryRecorder
 from slipwise.calibration.drive import (
     DriveRun,
     WindowSet,
@@ -19,11 +17,12 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
+from slipwise.calibration.history_recorder import HistoryRecorder
 from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import StructureChoice, learning_pass
+from slipwise.calibration.structure_choice import average_pass, learning_pass
 from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
@@ -37,7 +36,6 @@ JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
 class _Learned:
     """What learning gave, before it is put into a model file."""
 
-    motion: _core.MotionModel
     belief: Belief
     tails: dict[float, schema.Tail]
     judgement: Judgement
@@ -72,17 +70,15 @@ def calibrate(
     refuse_empty(windows, log)
     learner = make_learner(settings, input_name)
     average = learner.fresh()
-    names = tuple(basis.name for basis in learner.bases)
-    recorder = HistoryRecorder(average.model, windows, names, progress)
+    recorder = HistoryRecorder(windows, tuple(basis.name for basis in learner.bases), progress)
     passing = (
-        CausalPass(average, windows, recorder)
+        average_pass(average, windows, recorder)
         if batch
         else learning_pass(average, windows, settings, recorder)
     )
     shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", average.model, shape, passing.belief, learner.dynamics)
-    learned = _judged(forecaster, passing, windows, settings)
-    history = recorder.history if isinstance(passing, CausalPass) else passing.history(recorder.history)
+    learned = _judged(Forecaster("learned", shape, passing.belief, learner.dynamics), windows, settings)
+    history = recorder.history(learned.belief)
     if batch:
         learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
     model = Model(_content(learned, (log, input_name, settings), windows, history))
@@ -111,22 +107,19 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(
-    forecaster: Forecaster, passing: CausalPass | StructureChoice, windows: WindowSet, settings: Settings
-) -> _Learned:
+def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings) -> _Learned:
     """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    belief = passing.finish()
-    tails = {p.horizon: final_tail(p, cascade=belief.motion is not None) for p in predictions}
+    belief = forecaster.belief(len(windows))
+    tails = {p.horizon: final_tail(p, belief.structure) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    motion = belief.motion or forecaster.model
-    names = tuple(info.name for info in motion.parameters)
-    return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))
+    names = tuple(info.name for info in belief.motion.parameters)
+    return _Learned(belief, tails, judgement, give_verdict(judgement, names, belief))
 
 
 def fit_batch_over(
@@ -134,24 +127,26 @@ def fit_batch_over(
 ) -> _Learned:
     """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
     noise = learner.settings.filter_settings().noise.shape
-    belief = fit_batch(learned.motion, windows, learner.settings, (noise, learned.belief.noise_scale), speeds)
-    return _Learned(learned.motion, belief, learned.tails, learned.judgement, learned.verdict)
+    causal = learned.belief
+    belief = fit_batch(causal.motion, windows, learner.settings, (noise, causal.noise_scale), speeds)
+    return replace(learned, belief=belief)
 
 
 def _content(
     learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, history: History
 ) -> schema.ModelFile:
     log, input_name, settings = given
-    basis = learned.motion.basis
+    motion = learned.belief.motion
+    basis = motion.basis
     return schema.ModelFile(
         slipwise_model=schema.SCHEMA_VERSION,
         input="command" if input_name == "command" else "wheel",
         slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
-        dynamics=learned.motion.dynamics,
-        clock_offset=learned.motion.clock_offset,
-        response=learned.motion.response,
-        mount=learned.motion.mount,
-        parameters=_parameters(learned.motion, learned.belief),
+        dynamics=motion.dynamics,
+        clock_offset=motion.clock_offset,
+        response=motion.response,
+        mount=motion.mount,
+        parameters=_parameters(learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
         range=_range(windows.drive),
@@ -173,7 +168,7 @@ def _content(
     )
 
 
-def _parameters(motion: _core.MotionModel, belief: Belief) -> list[schema.Parameter]:
+def _parameters(belief: Belief) -> list[schema.Parameter]:
     stds = np.sqrt(np.diag(belief.covariance))
     return [
         schema.Parameter(
@@ -184,7 +179,7 @@ def _parameters(motion: _core.MotionModel, belief: Belief) -> list[schema.Parame
             prior_std=float(belief.prior_std[i]),
             determined=bool(belief.variance_ratio[i] <= UNDETERMINED_RATIO),
         )
-        for i, info in enumerate(motion.parameters)
+        for i, info in enumerate(belief.motion.parameters)
     ]
 
 

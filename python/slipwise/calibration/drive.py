@@ -77,6 +77,13 @@ class WindowSet:
             counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
         return counts
 
+    def passed(self, pace: WindowSet, count: int) -> int:
+        """Return how many windows had ended when the last of `count` windows of `pace` did."""
+        if count == 0 or len(self) == 0:
+            return 0
+        last = slice(count - 1, count)
+        return int(self.count_until(pace.position[last], pace.end[last])[0])
+
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""
         runs = [run.run for run in self.drive]

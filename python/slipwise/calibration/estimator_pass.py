@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from slipwise import _core
+from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.core_learners import EstimatorLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
-from slipwise.calibration.learner import Belief, make_learner
+from slipwise.calibration.learner import make_learner
 from slipwise.calibration.settings import Settings
 
 ESTIMATOR_BASIS = "odd-even-10"  # where the settings leave the basis to the average
@@ -33,53 +33,22 @@ def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.Mo
     return motion.with_mount(learner.mount and not thesis)
 
 
-class EstimatorPass:
-    """Learns in the order of time, as far as it is asked to."""
+def estimator_pass(
+    name: str, motion: _core.MotionModel, settings: Settings, windows: WindowSet
+) -> CausalPass[_core.IekfUpdate]:
+    """Return a pass of the estimator in the order of time.
 
-    def __init__(self, name: str, motion: _core.MotionModel, settings: Settings, windows: WindowSet) -> None:
-        """`windows` count as learned; estimators of the thesis see overlapping ones until the same time.
+    `windows` count as learned; estimators of the thesis see overlapping ones until the same time.
 
-        Raises:
-            ValueError: there is no such estimator.
-        """
-        self._estimator = _core.FollowingEstimator(
-            name, motion, settings.filter_settings(), settings.estimator_settings()
-        )
-        self._windows, self._fed = windows, windows
-        if _core.learns_overlapping_segments(name):
-            rules = replace(settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
-            length = settings.window.length or THESIS_WINDOW
-            self._fed = collect_windows(windows.drive, length, rules)
-        self._learned = 0
-
-    def belief(self, count: int) -> Belief:
-        """Return the belief once `count` windows have passed.
-
-        Raises:
-            ValueError: more than that is learned already, and nothing learned is ever unlearned.
-        """
-        until = self._fed_until(count)
-        if until < self._learned:
-            raise ValueError(f"the belief after {until} windows is gone: {self._learned} are learned")
-        for i in range(self._learned, until):
-            self._estimator.learn(self._fed.track(i), self._fed.segments[i])
-        self._learned = until
-        return self._now()
-
-    def _fed_until(self, count: int) -> int:
-        if count == 0 or self._fed is self._windows:
-            return count
-        last = slice(count - 1, count)
-        return int(self._fed.count_until(self._windows.position[last], self._windows.end[last])[0])
-
-    def _now(self) -> Belief:
-        estimate, prior_std = self._estimator.estimate(), np.array(self._estimator.prior_std)
-        covariance = np.array(estimate.covariance)
-        return Belief(
-            mean=np.array(estimate.mean),
-            covariance=covariance,
-            noise_scale=np.array(self._estimator.noise_scale),
-            prior_std=prior_std,
-            variance_ratio=np.diag(covariance) / prior_std**2,
-            weights=np.ones(1),
-        )
+    Raises:
+        ValueError: there is no such estimator.
+    """
+    estimator = _core.FollowingEstimator(
+        name, motion, settings.filter_settings(), settings.estimator_settings()
+    )
+    learner = EstimatorLearner(estimator)
+    if not _core.learns_overlapping_segments(name):
+        return CausalPass(learner, windows)
+    rules = replace(settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
+    length = settings.window.length or THESIS_WINDOW
+    return CausalPass(learner, collect_windows(windows.drive, length, rules), pace=windows)

@@ -10,14 +10,13 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.batch import fit_batch
-from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.estimator_pass import EstimatorPass, estimator_motion
+from slipwise.calibration.estimator_pass import estimator_motion, estimator_pass
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import make_learner
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import learning_pass
+from slipwise.calibration.structure_choice import average_pass, learning_pass
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_forecaster
@@ -101,17 +100,16 @@ def method_info(name: str) -> MethodInfo:
 def _learned(name: str, contest: Contest) -> Forecaster:
     settings = contest.settings.model_copy(update={"basis": name})
     learner = make_learner(settings, contest.input_name)
-    average = learner.fresh()
     shape = settings.filter_settings().noise.shape
-    passing = learning_pass(average, contest.windows, settings)
-    return Forecaster(name, average.model, shape, passing.belief, learner.dynamics)
+    passing = learning_pass(learner.fresh(), contest.windows, settings)
+    return Forecaster(name, shape, passing.belief, learner.dynamics)
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:
     motion = estimator_motion(name, contest.settings, contest.input_name)
-    passing = EstimatorPass(name, motion, contest.settings, contest.windows)
+    passing = estimator_pass(name, motion, contest.settings, contest.windows)
     shape = contest.settings.filter_settings().noise.shape
-    return Forecaster(name, motion, shape, passing.belief, motion.dynamics)
+    return Forecaster(name, shape, passing.belief, motion.dynamics)
 
 
 def _surface(name: str, contest: Contest) -> Forecaster:
@@ -139,7 +137,7 @@ def _model(name: str, contest: Contest) -> Forecaster:
 def _batch(name: str, contest: Contest) -> Forecaster:
     learner = make_learner(contest.settings.model_copy(update={"basis": BATCH_BASIS}), contest.input_name)
     average = learner.fresh()
-    last = CausalPass(average, contest.windows).finish()
+    last = average_pass(average, contest.windows).finish()
     shape = contest.settings.filter_settings().noise.shape
     belief = fit_batch(
         average.model,
@@ -148,4 +146,4 @@ def _batch(name: str, contest: Contest) -> Forecaster:
         (shape, np.array(last.noise_scale)),
         average.reference_speeds,
     )
-    return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics, causal=False)
+    return Forecaster(name, shape, lambda _: belief, learner.dynamics, causal=False)

@@ -65,12 +65,14 @@ class Recording:
             k = int(self.fed.count_until(self.windows.position[last], self.windows.end[last])[0])
         covariance, prior_std = self.covariance[k], self.prior_std[k]
         ratio = np.diag(covariance) / prior_std**2
-        return Belief(self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1))
+        return Belief(
+            self.motion, self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1)
+        )
 
     def predictions(self, targets: WindowSet, name: str) -> Predictions:
         """Predict windows causally, and once more after they were learned."""
         shape = self.course.settings.filter_settings().noise.shape
-        forecaster = Forecaster(name, self.motion, shape, self.belief, self.motion.dynamics)
+        forecaster = Forecaster(name, shape, self.belief, self.motion.dynamics)
         return forecast(forecaster, self.windows, targets)
 
 

@@ -9,11 +9,11 @@ import pytest
 from slipwise import _core
 from slipwise.calibration import make_settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet, prepare_drive
-from slipwise.calibration.estimator_pass import EstimatorPass, estimator_basis, estimator_motion
+from slipwise.calibration.estimator_pass import estimator_basis, estimator_motion, estimator_pass
 from slipwise.calibration.learner import make_learner
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.structure_choice import average_pass
 from slipwise.logs.log import Inputs, Log, Poses, Run
 
 SLIP = np.array([-0.1, -0.3])  # edd-2
@@ -50,15 +50,15 @@ def windows(settings: Settings) -> WindowSet:
 @pytest.mark.parametrize("name", _core.estimator_names())
 def test_every_estimator_learns_the_slip(name: str, settings: Settings, windows: WindowSet) -> None:
     motion = estimator_motion(name, settings, "wheel")
-    belief = EstimatorPass(name, motion, settings, windows).belief(len(windows))
+    belief = estimator_pass(name, motion, settings, windows).belief(len(windows))
     assert belief.mean == pytest.approx(SLIP, abs=0.01)
     assert belief.variance_ratio.shape == (2,)
 
 
 def test_iekf_is_the_filter_that_calibrates(settings: Settings, windows: WindowSet) -> None:
     motion = estimator_motion("iekf", settings, "wheel")
-    belief = EstimatorPass("iekf", motion, settings, windows).belief(40)
-    known = CausalPass(make_learner(settings, "wheel").fresh(), windows).belief(40)
+    belief = estimator_pass("iekf", motion, settings, windows).belief(40)
+    known = average_pass(make_learner(settings, "wheel").fresh(), windows).belief(40)
     assert belief.mean == pytest.approx(known.mean, rel=1e-9)
     assert belief.covariance == pytest.approx(known.covariance, rel=1e-9)
 
@@ -67,11 +67,11 @@ def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(
     settings: Settings, windows: WindowSet
 ) -> None:
     motion = estimator_motion("ekf-thesis", settings, "wheel")
-    thesis = EstimatorPass("ekf-thesis", motion, settings, windows)
+    thesis = estimator_pass("ekf-thesis", motion, settings, windows)
     at = int(np.searchsorted(windows.end, 10.0))
     assert (thesis.belief(0).mean == 0.0).all()
     thesis.belief(at)
-    assert thesis._learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
+    assert thesis.learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
     with pytest.raises(ValueError, match="is gone"):
         thesis.belief(at - 1)
 
@@ -88,7 +88,7 @@ def test_an_unknown_estimator_is_refused_by_name(settings: Settings, windows: Wi
     motion = estimator_motion("iekf", settings, "wheel")
     known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state"
     with pytest.raises(ValueError, match=known):
-        EstimatorPass("magic", motion, settings, windows)
+        estimator_pass("magic", motion, settings, windows)
 
 
 @pytest.mark.parametrize(
@@ -105,10 +105,10 @@ def test_settings_reach_the_estimators_of_the_thesis(
 ) -> None:
     given = {"basis": "edd-2", "learn_clock_offset": False}
     usual = make_settings(given)
-    before = EstimatorPass(name, estimator_motion(name, usual, "wheel"), usual, windows).belief(10)
+    before = estimator_pass(name, estimator_motion(name, usual, "wheel"), usual, windows).belief(10)
     same = make_settings(given | {table: getattr(usual, table).model_dump()})
-    again = EstimatorPass(name, estimator_motion(name, same, "wheel"), same, windows).belief(10)
+    again = estimator_pass(name, estimator_motion(name, same, "wheel"), same, windows).belief(10)
     changed = make_settings(given | {table: other})
-    after = EstimatorPass(name, estimator_motion(name, changed, "wheel"), changed, windows).belief(10)
+    after = estimator_pass(name, estimator_motion(name, changed, "wheel"), changed, windows).belief(10)
     assert np.array_equal(before.mean, again.mean)
     assert not np.array_equal(before.mean, after.mean)
