@@ -246,6 +246,14 @@ void bind_estimate(nb::module_& m) {
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
          const Eigen::Vector3d& scale) { return prediction_covariance(at, parameters, shape, scale); },
       "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
+  nb::class_<CorrelatedPair>(m, "CorrelatedPair", "Two parameters whose errors go together.")
+      .def_ro("first", &CorrelatedPair::first)
+      .def_ro("second", &CorrelatedPair::second)
+      .def_ro("correlation", &CorrelatedPair::correlation);
+  m.def(
+      "correlated_pairs",
+      [](const Eigen::MatrixXd& covariance, double least) { return correlated_pairs(covariance, least); },
+      "covariance"_a, "least"_a, "Pairs of parameters with at least this correlation, the closest first.");
   m.def(
       "observability",
       [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },

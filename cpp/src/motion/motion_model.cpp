@@ -42,6 +42,9 @@ constexpr std::array<ChainParameter, kChainParameters> kChain{{
     {&CommandChain::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
 }};
 
+constexpr double kUsualResponse = 0.3;   // [s]
+constexpr double kShortResponse = 0.03;  // [s]; that much shorter times can hardly be told apart
+
 const ChainParameter& chain_parameter(Eigen::Index place) { return kChain[static_cast<std::size_t>(place)]; }
 
 }  // namespace
@@ -97,6 +100,19 @@ Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
     scales[at++] = parameter.logarithm ? chain.*parameter.value : 1.0;
   }
   return scales;
+}
+
+Eigen::VectorXd MotionModel::even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  Eigen::VectorXd slopes = Eigen::VectorXd::Ones(size());
+  Eigen::Index at = slip_size();
+  for (const Eigen::Index place : chain_places_) {
+    if (chain_parameter(place).logarithm) {
+      const double seconds = std::exp(parameters[at]);
+      slopes[at] = (seconds + kShortResponse) / (seconds + kUsualResponse);
+    }
+    ++at;
+  }
+  return slopes;
 }
 
 void MotionModel::check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {

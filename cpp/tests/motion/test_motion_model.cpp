@@ -88,6 +88,19 @@ TEST_CASE("places and scales are the derivative of the chain by the model's para
   }
 }
 
+TEST_CASE("short times are even in seconds, long ones in their logarithm") {
+  const MotionModel model(named_basis("edd-2"), {.dynamics = true, .clock_offset = true});
+  Eigen::VectorXd p(7);
+  p << 0.1, 0.2, std::log(0.06), std::log(0.12), std::log(30.0), std::log(1e-6), 0.4;
+  const Eigen::VectorXd slopes = model.even_slopes(p);
+  CHECK(slopes.head<2>() == Eigen::Vector2d::Ones());
+  CHECK(slopes[2] == doctest::Approx(0.25));
+  CHECK(slopes[3] == doctest::Approx(0.15 / 0.42));
+  CHECK(slopes[4] == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(slopes[5] == doctest::Approx(0.1).epsilon(0.01));  // no time is so short that its logarithm does not count
+  CHECK(slopes[6] == 1.0);
+}
+
 TEST_CASE("a parameter vector of the wrong size is refused with both sizes") {
   const MotionModel model(named_basis("edd-2"), {.clock_offset = true});
   CHECK_THROWS_WITH_AS(model.check(Eigen::Vector2d(0.0, 0.0)), doctest::Contains("takes 3 parameters, got 2"),

@@ -18,12 +18,14 @@ from slipwise.calibration.drive import (
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
 from slipwise.calibration.history_recorder import HistoryRecorder
+from slipwise.calibration.identifiability import UNDETERMINED_RATIO
 from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.structure_choice import average_pass, learning_pass
-from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
+from slipwise.calibration.verdict import FEWEST_WINDOWS, Judgement, give_verdict, judge
+from slipwise.calibration.wheel_drive import has_wheels
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.models import schema
@@ -118,8 +120,8 @@ def _judged(forecaster: Forecaster, windows: WindowSet, settings: Settings) -> _
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    names = tuple(info.name for info in belief.motion.parameters)
-    return _Learned(belief, tails, judgement, give_verdict(judgement, names, belief))
+    verdict = give_verdict(judgement, belief, wheels_logged=has_wheels(windows.drive))
+    return _Learned(belief, tails, judgement, verdict)
 
 
 def fit_batch_over(
@@ -163,6 +165,11 @@ def _content(
             sentence=learned.verdict.sentence,
             undetermined=list(learned.verdict.undetermined),
             advice=list(learned.verdict.advice),
+            look_alikes=[
+                schema.LookAlike(first=pair.first, second=pair.second, correlation=pair.correlation)
+                for pair in learned.verdict.look_alikes
+            ],
+            timing=learned.verdict.timing,
             held_out=learned.judgement.held_out,
         ),
     )

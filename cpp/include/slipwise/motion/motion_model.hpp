@@ -46,6 +46,10 @@ class MotionModel {
   /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
   Eigen::VectorXd chain_scales(const CommandChain& chain) const;
 
+  /// Derivative, by the parameters, of coordinates in which the motion is nearly linear (derivations.md, section 6):
+  /// (s + 0.03) / (s + 0.3) for a time s [s] whose logarithm is learned, 1 otherwise.
+  Eigen::VectorXd even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+
   /// \throws std::invalid_argument when the length is not size() or a value is not finite.
   void check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
 
