@@ -16,6 +16,7 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
+constexpr double kUnknown = 1.0;          // [ln s]; a time is known at least to a factor of e before any data
 constexpr double kStraight = 0.03;        // [ln s], [s] or [-]; over so little of the chain a segment is linear
 constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of a perfect fit is no uphill step
 
@@ -180,7 +181,8 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
     const Eigen::Matrix3d bent = bending(model, update.estimate, inputs, segment, now.at.predicted.vector());
     update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
   }
-  const Eigen::VectorXd carry = model.even_slopes(prior.mean).cwiseQuotient(model.even_slopes(now.mean));
+  const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
+  const Eigen::VectorXd carry = (model.even_slopes(prior.mean).array() / model.even_slopes(now.mean).array()).min(most);
   update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
   return update;
 }
