@@ -38,6 +38,9 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("slip_fraction", &PriorSettings::slip_fraction)
       .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
+      .def_rw("sensor", &PriorSettings::sensor)
+      .def_rw("lever_std", &PriorSettings::lever_std)
+      .def_rw("sensor_yaw_std", &PriorSettings::sensor_yaw_std)
       .def_rw("lag", &PriorSettings::lag)
       .def_rw("delay", &PriorSettings::delay)
       .def_rw("log_std", &PriorSettings::log_std)
@@ -248,6 +251,14 @@ void bind_estimate(nb::module_& m) {
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
          const Eigen::Vector3d& scale) { return prediction_covariance(at, parameters, shape, scale); },
       "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
+  nb::class_<CorrelatedPair>(m, "CorrelatedPair", "Two parameters whose errors go together.")
+      .def_ro("first", &CorrelatedPair::first)
+      .def_ro("second", &CorrelatedPair::second)
+      .def_ro("correlation", &CorrelatedPair::correlation);
+  m.def(
+      "correlated_pairs",
+      [](const Eigen::MatrixXd& covariance, double least) { return correlated_pairs(covariance, least); },
+      "covariance"_a, "least"_a, "Pairs of parameters with at least this correlation, the closest first.");
   m.def(
       "observability",
       [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
@@ -283,10 +294,12 @@ void bind_estimate(nb::module_& m) {
       .def(
           "__init__",
           [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,
-             const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
-            new (self) ModelAverage(std::move(name), bases, {dynamics, clock_offset, false}, filter, settings);
+             bool mount, const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
+            new (self)
+                ModelAverage(std::move(name), bases,
+                             {.dynamics = dynamics, .clock_offset = clock_offset, .mount = mount}, filter, settings);
           },
-          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "filter"_a, "settings"_a)
+          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "mount"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })

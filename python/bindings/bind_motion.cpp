@@ -21,19 +21,31 @@ void bind_motion(nb::module_& m) {
       .def(
           "__init__",
           [](MotionModel* self, const Basis& basis, bool dynamics, bool clock_offset) {
-            new (self) MotionModel(basis, {dynamics, clock_offset, false});
+            new (self) MotionModel(basis, {.dynamics = dynamics, .clock_offset = clock_offset});
           },
           "basis"_a, "dynamics"_a, "clock_offset"_a)
       .def_static(
           "with_response",
-          [](const Basis& basis, bool clock_offset) { return MotionModel(basis, {true, clock_offset, true}); },
+          [](const Basis& basis, bool clock_offset) {
+            return MotionModel(basis, {.dynamics = true, .clock_offset = clock_offset, .response = true});
+          },
           "basis"_a, "clock_offset"_a, "Lag, delay, gain and a slow part per channel, as wheel speeds show them.")
+      .def(
+          "with_mount",
+          [](const MotionModel& model, bool mount) {
+            ChainParameters learned = model.learned();
+            learned.mount = mount;
+            return MotionModel(model.basis(), learned);
+          },
+          "mount"_a, "The same with or without the pose of its pose sensor in base_link as three more parameters.")
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
       .def_prop_ro("clock_offset", [](const MotionModel& model) { return model.learned().clock_offset; })
       .def_prop_ro("response", [](const MotionModel& model) { return model.learned().response; })
+      .def_prop_ro("mount", [](const MotionModel& model) { return model.learned().mount; })
       .def_prop_ro("size", &MotionModel::size)
       .def_prop_ro("slip_size", &MotionModel::slip_size)
+      .def_prop_ro("chain_size", &MotionModel::chain_size)
       .def_prop_ro("parameters", &MotionModel::parameters)
       .def(
           "chain", [](const MotionModel& model, const Eigen::VectorXd& parameters) { return model.chain(parameters); },

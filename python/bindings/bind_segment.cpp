@@ -9,6 +9,7 @@
 #include "bindings.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
+#include "slipwise/segment/sensor_motion.hpp"
 #include "slipwise/segment/steady_segment.hpp"
 
 namespace nb = nanobind;
@@ -91,6 +92,14 @@ void bind_segment(nb::module_& m) {
           "twist"_a, "until"_a, "initial"_a,
           "The same segment where the drive's twist is known until a moment in input stamps [s], `initial` at that "
           "moment.")
+      .def(
+          "with_sensor",
+          [](const Segment& segment, const Pose2& sensor) {
+            Segment seen = segment;
+            seen.sensor = sensor;
+            return seen;
+          },
+          "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
       .def_ro("measured", &Segment::measured);
@@ -101,8 +110,21 @@ void bind_segment(nb::module_& m) {
                      return Eigen::Map<const Eigen::VectorXd>(p.times.data(),
                                                               static_cast<Eigen::Index>(p.times.size()));
                    })
-      .def_prop_ro("poses", [](const SegmentPath& p) { return pose_matrix(p.poses); });
-  nb::class_<SegmentLinearization>(m, "SegmentLinearization", "A path and the derivative of its last pose.")
+      .def_prop_ro("poses", [](const SegmentPath& p) { return pose_matrix(p.poses); })
+      .def_prop_ro(
+          "sensor_poses",
+          [](const SegmentPath& p) {
+            std::vector<Pose2> seen;
+            for (const Pose2& pose : p.poses) {
+              seen.push_back(sensor_motion(pose, p.sensor));
+            }
+            return pose_matrix(seen);
+          },
+          "The path of the sensor that measures it, seen from its start.")
+      .def("robot_motion", &SegmentPath::robot_motion, "measured"_a,
+           "The robot's motion that this motion of the sensor tells.");
+  nb::class_<SegmentLinearization>(m, "SegmentLinearization",
+                                   "A path, and where it leads the pose sensor, with the derivative.")
       .def_ro("path", &SegmentLinearization::path)
       .def_ro("predicted", &SegmentLinearization::predicted)
       .def_ro("by_parameter", &SegmentLinearization::by_parameter);

@@ -39,7 +39,7 @@ def predict(
     start: float | None = None,
     initial: tuple[float, float] | None = None,
 ) -> Path:
-    """Predict the robot's path under `commands`.
+    """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
     Args:
         model: a learned model.
@@ -54,6 +54,7 @@ def predict(
         SettingsError: the horizon is not positive, the start lies before the first command, or the commands
             are not such rows.
     """
+    model = model.body
     inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
     if not (np.isfinite(horizon) and horizon > 0.0):
         raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")

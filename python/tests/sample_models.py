@@ -25,6 +25,7 @@ class Made:
     commands: bool = False
     response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
     clock_offset: float | None = None
+    mount: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
     psd_time: float = 0.0
@@ -50,7 +51,10 @@ def make_model(made: Made) -> Model:
         motion = _core.MotionModel.with_response(made.basis, offset)
     else:
         motion = _core.MotionModel(made.basis, made.commands, offset)
-    values = {"clock_offset": made.clock_offset or 0.0}
+    motion = motion.with_mount(made.mount is not None)
+    sensor = made.mount or (0.0, 0.0, 0.0)
+    values = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), sensor, strict=True))
+    values |= {"clock_offset": made.clock_offset or 0.0}
     for place in ("v", "omega"):
         values |= {f"log_lag_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
         values |= {
@@ -84,6 +88,7 @@ def make_model(made: Made) -> Model:
         "dynamics": made.commands or made.response,
         "response": made.response,
         "clock_offset": made.clock_offset is not None,
+        "mount": made.mount is not None,
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),
         "noise": {

@@ -46,7 +46,7 @@ class BatchProblem {
     const Eigen::VectorXd away = mean - prior_.mean;
     double sum = away.dot(prior_information_ * away);
     for (const BatchDatum& datum : data_) {
-      const Pose2 predicted = integrate_segment(model_, mean, *datum.inputs, datum.segment).poses.back();
+      const Pose2 predicted = integrate_segment(model_, mean, *datum.inputs, datum.segment).sensor_motion();
       const Eigen::Vector3d r = datum.segment.measured.vector() - predicted.vector();
       sum += huber_loss(r.dot(datum.noise.llt().solve(r)), huber_).cost;
     }

@@ -3,6 +3,7 @@
 #include "slipwise/estimate/iekf.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,8 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
+constexpr double kUnknown = 1.0;          // [ln s]; a time is known at least to a factor of e before any data
+constexpr double kStraight = 0.03;        // [ln s], [s] or [-]; over so little of the chain a segment is linear
 constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of a perfect fit is no uphill step
 
 /// S = J P J^T + R.
@@ -103,6 +106,28 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
   return (posterior + posterior.transpose()) / 2.0;
 }
 
+/// How far the segment's chart bends away from its linearisation over what is left open of the chain: the covariance of
+/// the second-order term along the chain's principal directions (derivations.md, section 6). The slip is linear enough.
+Eigen::Matrix3d bending(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+                        const Segment& segment, const Eigen::Vector3d& predicted) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  const auto rows = Eigen::seqN(model.slip_size(), model.chain_size());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> open(estimate.covariance(rows, rows));
+  for (Eigen::Index i = 0; i < model.chain_size(); ++i) {
+    const double std = std::sqrt(std::max(open.eigenvalues()[i], 0.0));
+    if (std < kStraight) {
+      continue;
+    }
+    const Eigen::VectorXd step = estimate.covariance(Eigen::all, rows) * open.eigenvectors().col(i) / std;
+    const auto at = [&](double sign) {
+      return integrate_segment(model, estimate.mean + sign * step, inputs, segment).sensor_motion().vector();
+    };
+    const Eigen::Vector3d second = (at(1.0) + at(-1.0)) / 2.0 - predicted;
+    spread += 2.0 * second * second.transpose();
+  }
+  return spread;
+}
+
 void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const Eigen::Matrix3d& noise) {
   model.check(prior.mean);
   if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
@@ -152,6 +177,13 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   }
   update.estimate.mean = now.mean;
   update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);
+  if (model.chain_size() > 0) {
+    const Eigen::Matrix3d bent = bending(model, update.estimate, inputs, segment, now.at.predicted.vector());
+    update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
+  }
+  const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
+  const Eigen::VectorXd carry = (model.even_slopes(prior.mean).array() / model.even_slopes(now.mean).array()).min(most);
+  update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
   return update;
 }
 

@@ -3,6 +3,9 @@
 #include "slipwise/estimate/observability.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <stdexcept>
 
 namespace slipwise {
@@ -21,6 +24,21 @@ Observability observability(const Estimate& posterior, const Eigen::Ref<const Ei
   return {.ratio = relative.diagonal(),
           .weakest = solver.eigenvectors().col(last),
           .weakest_ratio = solver.eigenvalues()[last]};
+}
+
+std::vector<CorrelatedPair> correlated_pairs(const Eigen::Ref<const Eigen::MatrixXd>& covariance, double least) {
+  std::vector<CorrelatedPair> pairs;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    for (Eigen::Index j = i + 1; j < covariance.cols(); ++j) {
+      const double both = covariance(i, i) * covariance(j, j);
+      const double correlation = both > 0.0 ? covariance(i, j) / std::sqrt(both) : 0.0;
+      if (std::abs(correlation) >= least) {
+        pairs.push_back({.first = i, .second = j, .correlation = correlation});
+      }
+    }
+  }
+  std::ranges::stable_sort(pairs, std::greater{}, [](const CorrelatedPair& p) { return std::abs(p.correlation); });
+  return pairs;
 }
 
 }  // namespace slipwise

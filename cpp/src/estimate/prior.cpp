@@ -47,6 +47,11 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
   }
   if (model.learned().clock_offset) {
     std[at] = settings.clock_offset_std;
+    at += 1;
+  }
+  if (model.learned().mount) {
+    prior.mean.segment<kMountParameters>(at) = settings.sensor.vector();
+    std.segment<kMountParameters>(at) << settings.lever_std, settings.lever_std, settings.sensor_yaw_std;
   }
   prior.covariance.diagonal() = std.cwiseAbs2();
   return prior;

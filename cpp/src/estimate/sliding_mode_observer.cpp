@@ -54,7 +54,7 @@ SlidingModeUpdate SlidingModeObserver::learn(const InputTrack& wheels, const Seg
   if (std::abs(segment.measured.theta) > kLargestTurn || std::abs(predicted.theta) > kLargestTurn) {
     return {.surface = Eigen::Vector3d::Zero(), .used = false};
   }
-  const Eigen::Vector3d measured_twist = log(segment.measured) / duration;
+  const Eigen::Vector3d measured_twist = log(path.robot_motion(segment.measured)) / duration;
   const Eigen::Vector3d predicted_twist = log(predicted) / duration;
   const Eigen::Vector3d surface = surface_speeds(measured_twist - predicted_twist, settings_.track);
   const Eigen::Vector3d rims = surface_speeds(mean_twist_at_wheels(path, duration), settings_.track);

@@ -42,6 +42,9 @@ constexpr std::array<ChainParameter, kChainParameters> kChain{{
     {&CommandChain::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
 }};
 
+constexpr double kUsualResponse = 0.3;   // [s]
+constexpr double kShortResponse = 0.03;  // [s]; that much shorter times can hardly be told apart
+
 const ChainParameter& chain_parameter(Eigen::Index place) { return kChain[static_cast<std::size_t>(place)]; }
 
 }  // namespace
@@ -66,6 +69,11 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
     const ChainParameter& parameter = chain_parameter(place);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
+  if (learned_.mount) {
+    infos.insert(infos.end(), {{"sensor_x", "m", "how far the pose sensor sits ahead of base_link"},
+                               {"sensor_y", "m", "how far the pose sensor sits to the left of base_link"},
+                               {"sensor_yaw", "rad", "how far the pose sensor is turned to the left of base_link"}});
+  }
   return infos;
 }
 
@@ -80,14 +88,31 @@ CommandChain MotionModel::chain(const Eigen::Ref<const Eigen::VectorXd>& paramet
   return chain;
 }
 
+Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  return learned_.mount ? Pose2::from_vector(parameters.tail<kMountParameters>()) : Pose2{};
+}
+
 Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
-  Eigen::VectorXd scales(size() - slip_size());
+  Eigen::VectorXd scales(chain_size());
   Eigen::Index at = 0;
   for (const Eigen::Index place : chain_places_) {
     const ChainParameter& parameter = chain_parameter(place);
     scales[at++] = parameter.logarithm ? chain.*parameter.value : 1.0;
   }
   return scales;
+}
+
+Eigen::VectorXd MotionModel::even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  Eigen::VectorXd slopes = Eigen::VectorXd::Ones(size());
+  Eigen::Index at = slip_size();
+  for (const Eigen::Index place : chain_places_) {
+    if (chain_parameter(place).logarithm) {
+      const double seconds = std::exp(parameters[at]);
+      slopes[at] = (seconds + kShortResponse) / (seconds + kUsualResponse);
+    }
+    ++at;
+  }
+  return slopes;
 }
 
 void MotionModel::check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "slipwise/segment/path_step.hpp"
+#include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
@@ -16,6 +17,10 @@ using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor,
 
 DriveWindow window_of(const Segment& segment) {
   return {.start = segment.start, .end = segment.end, .initial = segment.initial, .known = segment.known};
+}
+
+Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters, const Segment& segment) {
+  return model.learned().mount ? model.mount(parameters) : segment.sensor;
 }
 
 BodyGravity gravity_of(const Segment& segment) { return {.gx = segment.gx, .gy = segment.gy}; }
@@ -53,8 +58,9 @@ class GrowingPath {
     path_.tangents.push_back(tangent);
   }
 
-  SegmentPath finish(std::vector<DriveStep> drive) && {
+  SegmentPath finish(std::vector<DriveStep> drive, const Pose2& sensor) && {
     path_.drive = std::move(drive);
+    path_.sensor = sensor;
     return std::move(path_);
   }
 
@@ -78,8 +84,7 @@ struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
   ChainColumns chain;
 
-  explicit SensitivitySums(const MotionModel& model)
-      : slip(3, model.slip_size()), chain(3, model.size() - model.slip_size()) {
+  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()), chain(3, model.chain_size()) {
     slip.setZero();
     chain.setZero();
   }
@@ -95,20 +100,30 @@ struct SensitivitySums {
     }
   }
 
-  /// J = Phi(n, 0) times the sums.
-  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const Pose2& end, const MotionModel& model,
+  /// J = Phi(n, 0) times the sums, carried from the robot to the sensor.
+  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const SegmentPath& path, const MotionModel& model,
                                               const CommandChain& at) const {
-    const Eigen::Matrix3d phi = transition(Pose2{}, end);
+    const Pose2& end = path.poses.back();
+    const Eigen::Matrix3d phi = sensor_by_robot(end, path.sensor) * transition(Pose2{}, end);
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
     jacobian.leftCols(model.slip_size()) = phi * slip;
-    if (model.size() > model.slip_size()) {
-      jacobian.rightCols(chain.cols()) = phi * chain * model.chain_scales(at).asDiagonal();
+    if (model.chain_size() > 0) {
+      jacobian.middleCols(model.slip_size(), model.chain_size()) = phi * chain * model.chain_scales(at).asDiagonal();
+    }
+    if (model.learned().mount) {
+      jacobian.rightCols<kMountParameters>() = sensor_by_mount(end, path.sensor);
     }
     return jacobian;
   }
 };
 
 }  // namespace
+
+Pose2 SegmentPath::sensor_motion() const { return slipwise::sensor_motion(poses.back(), sensor); }
+
+Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
+  return compose(compose(sensor, measured), inverse(sensor));
+}
 
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                               const InputTrack& inputs, const Segment& segment, Integrator integrator) {
@@ -126,14 +141,14 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
                                              : rk4_displacement(tangent);
     path.append(step.duration, tangent, displacement, arc);
   }
-  return std::move(path).finish(std::move(drive.steps));
+  return std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
 }
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment) {
   model.check(parameters);
   const CommandChain chain = model.chain(parameters);
-  const bool chain_learned = model.size() > model.slip_size();
+  const bool chain_learned = model.chain_size() > 0;
   const auto alpha = parameters.head(model.slip_size());
   DriveSteps drive = chain_learned ? linearize_drive_steps(inputs, chain, window_of(segment))
                                    : drive_steps(inputs, chain, window_of(segment));
@@ -155,8 +170,10 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
       }
     }
   }
-  const Pose2 predicted = path.pose();
-  return {std::move(path).finish(std::move(drive.steps)), predicted, sums.at(predicted, model, chain)};
+  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
+  const Pose2 predicted = finished.sensor_motion();
+  auto by_parameter = sums.at(finished, model, chain);
+  return {std::move(finished), predicted, std::move(by_parameter)};
 }
 
 }  // namespace slipwise

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "slipwise/segment/sensor_motion.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -37,7 +39,9 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
       constant.col(c) += by_tangent.col(c) * (noise.fraction[i] * motion[i]);
     }
   }
-  return covariance + constant * constant.transpose();
+  covariance += constant * constant.transpose();
+  const Eigen::Matrix3d seen = sensor_by_robot(path.poses.back(), path.sensor);
+  return seen * covariance * seen.transpose();
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise) {

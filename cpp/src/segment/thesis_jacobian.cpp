@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "slipwise/segment/sensor_motion.hpp"
+
 namespace slipwise {
 
 Eigen::Matrix<double, 3, Eigen::Dynamic> thesis_jacobian(const MotionModel& model, const SegmentLinearization& at,
@@ -26,6 +28,8 @@ Eigen::Matrix<double, 3, Eigen::Dynamic> thesis_jacobian(const MotionModel& mode
       jacobian.col(static_cast<Eigen::Index>(i)) += gamma.col(channel) * (features[i] * step.duration);
     }
   }
+  const Eigen::Matrix3d seen = sensor_by_robot(at.path.poses.back(), at.path.sensor);
+  jacobian.leftCols(model.slip_size()) = (seen * jacobian.leftCols(model.slip_size())).eval();
   return jacobian;
 }
 

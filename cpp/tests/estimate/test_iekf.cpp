@@ -64,6 +64,28 @@ TEST_CASE("the filter recovers lags and delays") {
   CHECK(estimate.mean[3] == doctest::Approx(truth[3]).epsilon(0.15));
 }
 
+// Linearised where it began, at a lag of 0.3 s, the filter would be sure of a lag that is far too long.
+TEST_CASE("the filter stays honest on its way to a short lag behind a long delay") {
+  const MotionModel model(named_basis("edd-2"), {.dynamics = true});
+  Eigen::VectorXd truth(6), start(6);
+  truth << -0.08, -0.15, std::log(0.07), std::log(0.06), std::log(0.22), std::log(0.2);
+  start << 0.0, 0.0, std::log(0.3), std::log(0.3), std::log(0.1), std::log(0.1);
+  for (const unsigned seed : {61U, 62U, 63U}) {
+    const auto drive =
+        tests::simulate_drive(model, truth, {.seed = seed, .windows = 100, .window = 2.5, .noise = kNoise});
+    Estimate estimate{start, Eigen::VectorXd{{0.04, 0.04, 0.64, 0.64, 0.64, 0.64}}.asDiagonal()};
+    for (const Segment& segment : drive.segments) {
+      const Eigen::Matrix3d noise = tests::window_noise(model, estimate.mean, drive.inputs, segment, kNoise);
+      estimate = iekf_update(model, estimate, drive.inputs, segment, noise).estimate;
+    }
+    for (Eigen::Index i = 0; i < truth.size(); ++i) {
+      CAPTURE(i);
+      CAPTURE(estimate.mean[i]);
+      CHECK(std::abs(estimate.mean[i] - truth[i]) < 4.5 * std::sqrt(estimate.covariance(i, i)));
+    }
+  }
+}
+
 TEST_CASE("on a linear problem the filter is the Kalman filter") {
   const std::vector<std::string> lon{"V"}, lat{"V"}, none;
   const MotionModel model(Basis("linear", lon, lat, none), {});

@@ -30,11 +30,15 @@ TEST_CASE("what is not learned is not a parameter") {
   CHECK(names(MotionModel(basis, {.clock_offset = true})) == Names{"lon.V", "ang.w", "clock_offset"});
   CHECK(names(MotionModel(basis, {.dynamics = true})) ==
         Names{"lon.V", "ang.w", chain[0], chain[1], chain[2], chain[3]});
+  CHECK(names(MotionModel(basis, {.clock_offset = true, .mount = true})) ==
+        Names{"lon.V", "ang.w", "clock_offset", "sensor_x", "sensor_y", "sensor_yaw"});
   CHECK(MotionModel(basis, {.dynamics = true, .clock_offset = true}).size() == 7);
+  CHECK(MotionModel(basis, {.dynamics = true, .mount = true}).chain_size() == 4);
 }
 
 TEST_CASE("every parameter says its unit and meaning") {
-  const MotionModel model(named_basis("thesis-15"), {.dynamics = true, .clock_offset = true});
+  const MotionModel model(named_basis("thesis-15"),
+                          {.dynamics = true, .clock_offset = true, .response = true, .mount = true});
   REQUIRE(model.parameters().size() == static_cast<std::size_t>(model.size()));
   for (const ParameterInfo& info : model.parameters()) {
     CHECK_FALSE(info.name.empty());
@@ -53,6 +57,14 @@ TEST_CASE("a chain that is not learned is the identity") {
   CHECK(chain.slow_share_omega == 0.0);
 }
 
+TEST_CASE("a sensor whose place is not learned sits at base_link") {
+  const Eigen::Vector2d slip(0.1, 0.2);
+  CHECK(MotionModel(named_basis("edd-2"), {}).mount(slip).vector().isZero(0.0));
+  Eigen::VectorXd all(5);
+  all << slip, 1.5, -0.2, 0.1;
+  CHECK(MotionModel(named_basis("edd-2"), {.mount = true}).mount(all).vector() == Eigen::Vector3d(1.5, -0.2, 0.1));
+}
+
 TEST_CASE("places and scales are the derivative of the chain by the model's parameters") {
   for (const ChainParameters learned :
        {ChainParameters{true, true, true}, ChainParameters{true, true}, ChainParameters{true, false},
@@ -67,13 +79,26 @@ TEST_CASE("places and scales are the derivative of the chain by the model's para
       return all;
     };
     const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);
-    Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kChainParameters, model.size() - model.slip_size());
+    Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kChainParameters, model.chain_size());
     const Eigen::VectorXd scales = model.chain_scales(model.chain(p));
     for (Eigen::Index i = 0; i < scales.size(); ++i) {
       analytic(model.chain_places()[static_cast<std::size_t>(i)], i) = scales[i];
     }
     CHECK(tests::jacobian_error(analytic, numeric.rightCols(analytic.cols())) < tests::kDerivativeTolerance);
   }
+}
+
+TEST_CASE("short times are even in seconds, long ones in their logarithm") {
+  const MotionModel model(named_basis("edd-2"), {.dynamics = true, .clock_offset = true});
+  Eigen::VectorXd p(7);
+  p << 0.1, 0.2, std::log(0.06), std::log(0.12), std::log(30.0), std::log(1e-6), 0.4;
+  const Eigen::VectorXd slopes = model.even_slopes(p);
+  CHECK(slopes.head<2>() == Eigen::Vector2d::Ones());
+  CHECK(slopes[2] == doctest::Approx(0.25));
+  CHECK(slopes[3] == doctest::Approx(0.15 / 0.42));
+  CHECK(slopes[4] == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(slopes[5] == doctest::Approx(0.1).epsilon(0.01));  // no time is so short that its logarithm does not count
+  CHECK(slopes[6] == 1.0);
 }
 
 TEST_CASE("a parameter vector of the wrong size is refused with both sizes") {

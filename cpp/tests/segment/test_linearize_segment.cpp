@@ -26,15 +26,19 @@ struct Case {
 std::vector<Case> sample_chains() {
   const double lag_v = std::log(0.31), lag_omega = std::log(0.22), delay_v = std::log(0.0827),
                delay_omega = std::log(0.1133);
-  Eigen::VectorXd dynamics(4), both(5), all(11);
+  Eigen::VectorXd dynamics(4), both(5), all(11), seen(14);
+  const Eigen::Vector3d mount(1.5, -0.4, 0.21);
   dynamics << lag_v, lag_omega, delay_v, delay_omega;
   both << lag_v, lag_omega, delay_v, delay_omega, 0.0231;
   all << lag_v, lag_omega, delay_v, delay_omega, 0.93, 1.12, 0.21, 0.34, std::log(1.31), std::log(0.82), 0.0231;
+  seen << all, mount;
   return {{"no chain", {}, Eigen::VectorXd(0)},
           {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
           {"dynamics", {.dynamics = true}, dynamics},
           {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
-          {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all}};
+          {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
+          {"mount", {.mount = true}, mount},
+          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, seen}};
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain) {
@@ -46,7 +50,7 @@ Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain
 double linearization_error(const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs,
                            const Segment& segment) {
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
-    return integrate_segment(model, p, inputs, segment).poses.back().vector();
+    return integrate_segment(model, p, inputs, segment).sensor_motion().vector();
   };
   const auto numeric = tests::finite_difference(value, parameters, kStep);
   return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
@@ -114,13 +118,22 @@ TEST_CASE("linearised segments predict what integration predicts") {
         const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
         const auto linearized = linearize_segment(model, parameters, inputs, kSegment);
         const SegmentPath path = integrate_segment(model, parameters, inputs, kSegment);
-        CHECK((linearized.predicted.vector() - path.poses.back().vector()).norm() < 1e-12);
+        CHECK((linearized.predicted.vector() - path.sensor_motion().vector()).norm() < 1e-12);
         REQUIRE(linearized.path.poses.size() == path.poses.size());
         CHECK(linearized.path.times == path.times);
         CHECK(linearized.path.tangents.size() == path.tangents.size());
         CHECK(linearized.path.drive.size() == path.drive.size());
       }
     }
+  }
+}
+
+TEST_CASE("the derivative is exact for a sensor whose place is known") {
+  const Basis basis = named_basis("odd-even-10");
+  Segment seen = kSegment;
+  seen.sensor = {-0.7, 0.3, -1.2};
+  for (const Case& chain : sample_chains()) {
+    check_all_drives(basis, chain, 0.05, seen);
   }
 }
 

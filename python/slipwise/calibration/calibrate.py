@@ -16,13 +16,15 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
+from slipwise.calibration.identifiability import UNDETERMINED_RATIO
 from slipwise.calibration.learner import Belief, Progress
 from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, Verdict
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.smoothing import smooth as smooth_windows
-from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
+from slipwise.calibration.verdict import FEWEST_WINDOWS, Judgement, give_verdict, judge
+from slipwise.calibration.wheel_drive import has_wheels
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.models import schema
@@ -115,8 +117,8 @@ def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learne
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    names = tuple(info.name for info in belief.motion.parameters)
-    return _Learned(belief, tails, judgement, give_verdict(judgement, names, belief))
+    verdict = give_verdict(judgement, belief, wheels_logged=has_wheels(windows.drive))
+    return _Learned(belief, tails, judgement, verdict)
 
 
 def _content(
@@ -132,6 +134,7 @@ def _content(
         dynamics=motion.dynamics,
         clock_offset=motion.clock_offset,
         response=motion.response,
+        mount=motion.mount,
         parameters=_parameters(learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
@@ -149,6 +152,11 @@ def _content(
             sentence=learned.verdict.sentence,
             undetermined=list(learned.verdict.undetermined),
             advice=list(learned.verdict.advice),
+            look_alikes=[
+                schema.LookAlike(first=pair.first, second=pair.second, correlation=pair.correlation)
+                for pair in learned.verdict.look_alikes
+            ],
+            timing=learned.verdict.timing,
             held_out=learned.judgement.held_out,
         ),
     )

@@ -14,7 +14,9 @@ from slipwise.calibration.drive import WindowSet, collect_windows
 from slipwise.calibration.learner import CASCADE, Belief, make_learner
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings
 from slipwise.calibration.wheel_drive import chain_runs, wheel_runs
+from slipwise.segments import WindowRules
 
+NO_SENSOR = WindowRules().sensor
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
 
 
@@ -28,13 +30,15 @@ class CascadePass:
         """`windows` are those of the commands; each of their runs has wheel speeds."""
         rules = replace(settings.rules(), whole_frames=True)
         slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
-        chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, rules)
+        at_wheels = replace(rules, sensor=NO_SENSOR)  # what wheels tell is the motion of base_link itself
+        chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, at_wheels)
         average = make_learner(settings, "wheel").fresh()
         self._average = AverageLearner(average)
         self._slip = CausalPass(self._average, slip_windows, self._see, pace=windows)
         self._chain = CausalPass(EstimatorLearner(_chain_estimator(settings)), chain_windows, pace=windows)
         self._changes: list[_core.ChangeTest] = []
-        self.motion = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
+        response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
+        self.motion = response.with_mount(average.model.mount)
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
@@ -49,7 +53,7 @@ class CascadePass:
         self._changes.append(self._average.change)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
-        """Put slip, chain and clock offset, which is learned with the slip, into one belief."""
+        """Put slip and chain into one belief; clock offset and mount are learned with the slip."""
         size, slips, chains = self.motion.size, self.motion.slip_size, len(chain.mean)
         with_slip = np.r_[0:slips, slips + chains : size]
         of_chain = np.arange(slips, slips + chains)

@@ -156,9 +156,7 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
     for run in drive:
         cuts.append(cut_windows(run.run, run.inputs, length, rules, earlier=intervals))
         intervals = np.concatenate((intervals, pose_intervals(run.run.poses)))[-RECENT:]
-    segments = [
-        s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules.unknown_after)
-    ]
+    segments = [s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules)]
     return WindowSet(
         length=length,
         drive=drive,

@@ -22,13 +22,14 @@ def estimator_basis(settings: Settings) -> str:
 
 
 def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.MotionModel:
-    """Return the model that an estimator learns; those of the thesis have no lag, delay or clock offset."""
+    """Return the model that an estimator learns; those of the thesis have no lag, delay, offset or mount."""
     chosen = settings.model_copy(update={"basis": estimator_basis(settings)})
     learner = make_learner(chosen, input_name)
     thesis = _core.learns_overlapping_segments(name)
-    return _core.MotionModel(
+    motion = _core.MotionModel(
         learner.bases[0], learner.dynamics and not thesis, learner.clock_offset and not thesis
     )
+    return motion.with_mount(learner.mount and not thesis)
 
 
 def estimator_learner(name: str, motion: _core.MotionModel, settings: Settings) -> EstimatorLearner:

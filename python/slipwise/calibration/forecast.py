@@ -121,7 +121,7 @@ def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
     path = _core.integrate_segment(
         belief.motion, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
     )
-    draft.in_sample[i] = path.poses[-1]
+    draft.in_sample[i] = path.sensor_poses[-1]
 
 
 def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:

@@ -43,6 +43,7 @@ class Learner:
     bases: tuple[_core.Basis, ...]
     dynamics: bool
     clock_offset: bool
+    mount: bool
 
     def fresh(self) -> _core.ModelAverage:
         """Return the core's estimator before any data."""
@@ -51,6 +52,7 @@ class Learner:
             list(self.bases),
             self.dynamics,
             self.clock_offset,
+            self.mount,
             self.settings.filter_settings(),
             self.settings.average_settings(),
         )
@@ -59,4 +61,5 @@ class Learner:
 def make_learner(settings: Settings, input_name: str) -> Learner:
     """Return the learner that the settings ask for: commands bring lag and delay, wheels a clock offset."""
     dynamics = input_name == "command"
-    return Learner(settings, tuple(settings.bases()), dynamics, settings.learn_clock_offset and not dynamics)
+    offset = settings.learn_clock_offset and not dynamics
+    return Learner(settings, tuple(settings.bases()), dynamics, offset, settings.mount.learn)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.calibration.identifiability import LookAlike
 from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.logs.log import LeftOut
 from slipwise.models.model import Model
@@ -22,7 +23,9 @@ class Verdict:
     good: bool
     sentence: str
     undetermined: tuple[str, ...] = ()  # parameters that the log does not determine
-    advice: tuple[str, ...] = ()  # the drives that would determine them
+    advice: tuple[str, ...] = ()  # what would determine them, and tell look-alikes apart
+    look_alikes: tuple[LookAlike, ...] = ()  # pairs of parameters that the log can hardly tell apart
+    timing: str = ""  # which delay and which clock offset is which
 
     def __str__(self) -> str:
         return " ".join((self.sentence, *self.advice))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
@@ -13,8 +14,10 @@ from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.segments import WindowRules
 
+FARTHEST_SENSOR = 50.0  # m from base_link; more is a wrong unit
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
 AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
 ESTIMATORS = (AVERAGE, *_core.estimator_names())
@@ -50,6 +53,8 @@ class PriorTable(_Section):
     gain_std: Positive = _PRIOR.gain_std
     slow_share_std: Positive = _PRIOR.slow_share_std
     slow_lag: Positive = _PRIOR.slow_lag
+    lever_std: Positive = _PRIOR.lever_std
+    sensor_yaw_std: Positive = _PRIOR.sensor_yaw_std
 
 
 class FilterTable(_Section):
@@ -164,6 +169,20 @@ class VehicleTable(_Section):
     track: Positive = _core.NOMINAL_TRACK  # m, between the left and the right wheels
 
 
+class MountTable(_Section):
+    """Where the sensor whose poses the log holds sits on the robot: its pose in base_link (REP-105)."""
+
+    x: Metres = 0.0  # m, ahead of base_link
+    y: Metres = 0.0  # m, to the left of it
+    yaw: Annotated[float, Field(ge=-math.pi, le=math.pi)] = 0.0  # rad, turned to the left
+    learn: bool = False  # the pose above is a guess to start from; false: it is known
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """The pose (x, y [m], yaw [rad])."""
+        return self.x, self.y, self.yaw
+
+
 class Settings(_Section):
     """Everything that changes what is learned."""
 
@@ -182,6 +201,7 @@ class Settings(_Section):
     gradient_descent: GradientDescentTable = GradientDescentTable()
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
+    mount: MountTable = MountTable()
 
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""
@@ -190,13 +210,20 @@ class Settings(_Section):
     def rules(self) -> WindowRules:
         """Return the rules of cutting windows."""
         table = self.window
-        return WindowRules(table.unknown_after, table.late_factor, table.length_tolerance, table.still_speed)
+        return WindowRules(
+            table.unknown_after,
+            table.late_factor,
+            table.length_tolerance,
+            table.still_speed,
+            sensor=self.mount.pose,
+        )
 
     def filter_settings(self) -> _core.CausalFilterSettings:
         """Return the core's settings of one causal filter."""
         settings = _core.CausalFilterSettings()
         prior, iekf, noise = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
         _copy(self.prior, prior)
+        prior.sensor = _core.Pose2(*self.mount.pose)
         _copy(self.filter, iekf)
         table = self.noise
         noise.shape = _core.MotionNoise(

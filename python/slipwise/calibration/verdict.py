@@ -7,6 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise.calibration.identifiability import (
+    advice_for_pairs,
+    drives_for,
+    look_alikes,
+    timing_words,
+    undetermined,
+)
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Verdict
@@ -15,7 +22,6 @@ from slipwise.models.schema import HeldOut
 
 FEWEST_WINDOWS = 4  # held-out windows; fewer cannot be judged
 WORSE = 1.02  # ratio to the plain model beyond which an error counts as worse
-UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 
 
 @dataclass(frozen=True)
@@ -55,19 +61,32 @@ def judge(learned: Predictions, plain: Predictions) -> Judgement:
     )
 
 
-def give_verdict(judgement: Judgement, names: tuple[str, ...], belief: Belief) -> Verdict:
-    """Put the judgement and what is not determined into words."""
-    undetermined = tuple(
-        name for name, ratio in zip(names, belief.variance_ratio, strict=True) if ratio > UNDETERMINED_RATIO
+def give_verdict(judgement: Judgement, belief: Belief, *, wheels_logged: bool) -> Verdict:
+    """Put the judgement, what is not determined and what looks alike into words."""
+    unknown, pairs = undetermined(belief), look_alikes(belief)
+    good, sentence = _sentence(judgement, len(unknown), len(belief.mean))
+    longer = ("Record a longer drive.",) if _too_short(judgement) else ()
+    return Verdict(
+        good,
+        sentence,
+        unknown,
+        (*longer, *drives_for(unknown), *advice_for_pairs(pairs)),
+        pairs,
+        timing_words(belief.motion, unknown, wheels_logged=wheels_logged),
     )
-    advice = drives_for(undetermined)
+
+
+def _too_short(judgement: Judgement) -> bool:
+    return judgement.held_out.windows < FEWEST_WINDOWS
+
+
+def _sentence(judgement: Judgement, unknown: int, parameters: int) -> tuple[bool, str]:
     held_out = judgement.held_out
-    if held_out.windows < FEWEST_WINDOWS:
-        sentence = (
+    if _too_short(judgement):
+        return False, (
             f"Too little driving to judge: {held_out.windows} held-out windows of {held_out.horizon:g} s, "
             f"at least {FEWEST_WINDOWS} are needed."
         )
-        return Verdict(False, sentence, undetermined, ("Record a longer drive.", *advice))
     figures = (
         f"{held_out.position:.3g} m and {held_out.heading:.3g} rad after {held_out.horizon:g} s, "
         f"where the plain model misses by {held_out.plain_position:.3g} m "
@@ -75,58 +94,9 @@ def give_verdict(judgement: Judgement, names: tuple[str, ...], belief: Belief) -
         f"({held_out.windows} held-out windows)"
     )
     if not judgement.beats_plain:
-        return Verdict(
-            False,
-            f"Do not use this model: it does not beat the plain model. It misses by {figures}.",
-            undetermined,
-            advice,
-        )
-    tail = (
-        f" {len(undetermined)} of {len(names)} parameters are not determined by this log."
-        if undetermined
-        else ""
-    )
-    return Verdict(True, f"The learned model misses by {figures}.{tail}", undetermined, advice)
-
-
-def drives_for(undetermined: tuple[str, ...]) -> tuple[str, ...]:
-    """Say which driving would determine the parameters, in words."""
-    advice = []
-    for matches, sentence in _DRIVES:
-        names = [name for name in undetermined if matches(name)]
-        if names:
-            advice.append(f"{sentence} (for {', '.join(names)}).")
-    return tuple(advice)
-
-
-def _terms(name: str) -> str:
-    return name.partition(".")[2]
-
-
-def _turns(name: str) -> bool:
-    return "w" in _terms(name) or "kappa" in _terms(name)
-
-
-_DRIVES = (
-    (
-        lambda n: "lag" in n or "delay" in n,
-        "Change speed and yaw rate in steps, from rest and back, several times",
-    ),
-    (
-        lambda n: n == "clock_offset",
-        "Accelerate, brake and swing in and out of turns; steady driving cannot show a clock offset",
-    ),
-    (
-        lambda n: "gx" in _terms(n) or "gy" in _terms(n),
-        "Drive up, down and across a slope, with roll and pitch in the log",
-    ),
-    (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
-    (lambda n: _turns(n) and "V" not in _terms(n), "Turn both ways at several yaw rates, in place too"),
-    (
-        lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n),
-        "Drive straight at several speeds, forwards and backwards",
-    ),
-)
+        return False, f"Do not use this model: it does not beat the plain model. It misses by {figures}."
+    tail = f" {unknown} of {parameters} parameters are not determined by this log." if unknown else ""
+    return True, f"The learned model misses by {figures}.{tail}"
 
 
 def _mean(values: np.ndarray) -> float:

@@ -36,9 +36,8 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
     if method is None or source is None:
         return None
-    verdict = give_verdict(
-        judge(longest[method], longest["none"]), (), plain_forecaster(Settings()).belief(0)
-    )
+    nothing_learned = plain_forecaster(Settings()).belief(0)
+    verdict = give_verdict(judge(longest[method], longest["none"]), nothing_learned, wheels_logged=False)
     known = source.verdict if isinstance(source, Calibration) else source.content.verdict
     advice = (*verdict.advice, *known.advice)
     if not evaluation.score(method, max(evaluation.horizons)).causal:
@@ -47,4 +46,10 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     sentence = verdict.sentence
     if undetermined:
         sentence += f" Not determined: {', '.join(undetermined)}."
-    return replace(verdict, sentence=sentence, undetermined=undetermined, advice=tuple(dict.fromkeys(advice)))
+    return replace(
+        verdict,
+        sentence=sentence,
+        undetermined=undetermined,
+        advice=tuple(dict.fromkeys(advice)),
+        timing=known.timing,
+    )

@@ -13,12 +13,14 @@ from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
+    from slipwise.calibration.identifiability import LookAlike
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
     from slipwise.models.schema import Parameter
 
 _MOST_ALARMS = 6
+_MOST_PAIRS = 6
 
 
 def show_notes(output: Output, notes: Sequence[str]) -> None:
@@ -52,6 +54,8 @@ def show_verdict(output: Output, verdict: Verdict) -> None:
     output.line(("" if verdict.good else "NOT GOOD ENOUGH. ") + verdict.sentence)
     for advice in verdict.advice:
         output.line(f"  {advice}")
+    if verdict.timing:
+        output.line(verdict.timing)
 
 
 def show_files(output: Output, files: Mapping[str, Path]) -> None:
@@ -66,15 +70,27 @@ def show_parameters(output: Output, parameters: Sequence[Parameter]) -> None:
     rows = []
     for p in parameters:
         name, value, std, unit = in_plain_units(p)
-        rows.append((name, number_text(value), number_text(std, 2), unit, "yes" if p.determined else "no"))
+        left = number_text(p.std / p.prior_std, 2) if p.prior_std > 0.0 else ""
+        rows.append(
+            (name, number_text(value), number_text(std, 2), unit, left, "yes" if p.determined else "no")
+        )
     columns = (
         Column("parameter"),
         Column("value", True),
         Column("std", True),
         Column("unit"),
+        Column("std / before", True),
         Column("determined"),
     )
     output.table("Parameters", columns, rows)
+
+
+def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
+    """Say which parameters the log can hardly tell apart; nothing where there are none."""
+    if pairs:
+        shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
+        more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
+        output.line(f"Hard to tell apart (correlation of their errors): {shown}{more}.")
 
 
 def in_plain_units(parameter: Parameter) -> tuple[str, float, float, str]:

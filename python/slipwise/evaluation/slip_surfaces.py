@@ -63,7 +63,7 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     """
     learner = make_learner(settings.model_copy(update={"basis": CHAIN_BASIS}), input_name)
     basis = settings.model_copy(update={"basis": estimator_basis(settings)}).bases()[0]
-    motion = _core.MotionModel(basis, learner.dynamics, learner.clock_offset)
+    motion = _core.MotionModel(basis, learner.dynamics, learner.clock_offset).with_mount(learner.mount)
     shape = settings.filter_settings().noise.shape
     rules = SurfaceRules(name, motion, settings.prior.slip_fraction, shape)
     if name == "surface-gaussian-process":

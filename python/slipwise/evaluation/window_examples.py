@@ -48,13 +48,14 @@ def _row(reference: tuple[_core.MotionModel, Floats], windows: WindowSet, i: int
         for parameters in (without_slip, mean)
     ]
     driven, predicted = (_core.Pose2(*np.array(path.poses[-1]).tolist()) for path in paths)
-    if max(abs(pose.theta) for pose in (driven, predicted, segment.measured)) > np.pi:
+    moved = paths[1].robot_motion(segment.measured)
+    if max(abs(pose.theta) for pose in (driven, predicted, moved)) > np.pi:
         return None
     time = segment.end - segment.start
     v, _, omega = (np.array(_core.log(driven)) / time).tolist()
     slip = _core.slip_rate(model.basis, mean[: model.slip_size], _core.SlipState(v, omega, 0.0, 0.0))
     twist = _core.BodyTwist(*(np.array(_core.log(predicted)) / time).tolist())
-    poses = np.vstack((np.zeros(3), segment.measured.vector()))
+    poses = np.vstack((np.zeros(3), moved.vector()))
     steady = _core.SteadySegment(twist, np.array([0.0, time]), poses)
     missed = _core.fit_slip_rates([steady], _ONE_SEGMENT).slip
     return (v, omega, *(np.array(slip) + np.array(missed)).tolist())

@@ -92,7 +92,7 @@ def _library(model: Model) -> str:
     basis, motion = model.motion.basis, model.motion
     channels = (("LON", basis.lon), ("LAT", basis.lat), ("ANG", basis.ang))
     lists = [(f"TERMS_{name}", ", ".join(f'"{term}"' for term in terms)) for name, terms in channels]
-    lists.append(("PARAMETERS", ", ".join(map(repr, model.mean.tolist()))))
+    lists.append(("PARAMETERS", ", ".join(map(repr, model.body.mean.tolist()))))
     flags = [
         ("HAS_DYNAMICS", motion.dynamics),
         ("HAS_RESPONSE", motion.response),

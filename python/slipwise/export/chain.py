@@ -52,7 +52,7 @@ def chain_of(model: Model) -> Chain:
     Raises:
         ModelError: the chain has a part that the exporters do not know, and would leave out.
     """
-    values = {p.name: p.value for p in model.content.parameters[model.motion.slip_size :]}
+    values = {p.name: p.value for p in model.body.content.parameters[model.motion.slip_size :]}
     unknown = sorted(set(values) - _KNOWN)
     if unknown:
         raise ModelError(

@@ -51,7 +51,7 @@ def motion_covariance(model: Model, drive: tuple[float, float], seconds: float) 
 
     It is what `predict` says, less the noise of the two measured poses.
     """
-    noise = model.noise
+    model, noise = model.body, model.noise
     slip_only = _core.MotionNoise(noise.psd_time, noise.psd_motion, noise.fraction, 0.0, 0.0)
     covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance)
     return np.asarray(covariance * tail_at(model, seconds).growth, dtype=np.float64)
@@ -63,7 +63,7 @@ def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Fl
     What is white already keeps its density. What lasts, the constant slip and the parameters' error, has a
     variance of c t^2, and counts as density c * seconds.
     """
-    noise = model.noise
+    model, noise = model.body, model.noise
     white = _core.MotionNoise(noise.psd_time, noise.psd_motion, _NO_NOISE, 0.0, 0.0)
     lasting = _core.MotionNoise(_NO_NOISE, _NO_NOISE, noise.fraction, 0.0, 0.0)
     at = _settled(model, drive, _BRIEF)

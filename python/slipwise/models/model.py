@@ -18,6 +18,7 @@ from slipwise.files import write_text_whole
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
 
+MOUNT_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
 
 
@@ -64,9 +65,25 @@ class Model:
             basis = _core.Basis(slip.basis, slip.lon, slip.lat, slip.ang)
         except ValueError as problem:
             raise ModelError(str(problem), advice="calibrate again, or restore the file") from problem
-        if self.content.response:
-            return _core.MotionModel.with_response(basis, self.content.clock_offset)
-        return _core.MotionModel(basis, self.content.dynamics, self.content.clock_offset)
+        content = self.content
+        if content.response:
+            motion = _core.MotionModel.with_response(basis, content.clock_offset)
+        else:
+            motion = _core.MotionModel(basis, content.dynamics, content.clock_offset)
+        return motion.with_mount(content.mount)
+
+    @cached_property
+    def body(self) -> Model:
+        """The model of base_link: without the rows that say where the pose sensor sits on it."""
+        if not self.content.mount:
+            return self
+        kept = len(self.content.parameters) - MOUNT_PARAMETERS
+        rows = {
+            "mount": False,
+            "parameters": self.content.parameters[:kept],
+            "covariance": [row[:kept] for row in self.content.covariance[:kept]],
+        }
+        return Model(self.content.model_copy(update=rows))
 
     @property
     def mean(self) -> NDArray[np.float64]:

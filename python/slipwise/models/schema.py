@@ -109,6 +109,14 @@ class HeldOut(_Section):
     plain_heading: NotNegative  # [rad]
 
 
+class LookAlike(_Section):
+    """Two parameters that the log can hardly tell apart."""
+
+    first: str
+    second: str
+    correlation: Annotated[Number, Field(ge=-1.000001, le=1.000001, allow_inf_nan=False)]
+
+
 class VerdictSection(_Section):
     """Whether the model may be used, in words."""
 
@@ -116,6 +124,8 @@ class VerdictSection(_Section):
     sentence: str
     undetermined: list[str] = []
     advice: list[str] = []
+    look_alikes: list[LookAlike] = []
+    timing: str = ""  # which delay and which clock offset is which
     held_out: HeldOut | None = None
 
 
@@ -128,6 +138,7 @@ class ModelFile(_Section):
     dynamics: bool  # lag and delay are parameters
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
+    mount: bool = False  # the pose of the pose sensor in base_link is three parameters
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise import _core
+from slipwise.calibration.settings import make_settings
 from slipwise.logs.log import Floats, Inputs, Poses, Run
 from slipwise.reporting.chosen_windows import ChosenWindow
 from slipwise.reporting.contents import Contents
@@ -40,7 +41,7 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
-                segment = segments.get(_stamp(window.t_start)) or _level_segment(window)
+                segment = segments.get(_stamp(window.t_start)) or _level_segment(window, _sensor(contents))
                 paths[window] = _paths(contents, window, _Drive(track, segment, measured))
     return paths
 
@@ -59,13 +60,18 @@ def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPat
     plain_model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
     known = _known_parameters(contents, window)
     parameters = model.mean if known is None else known
-    exact = _core.Integrator.Exact
     return WindowPaths(
         measured=drive.measured,
-        plain=_core.integrate_segment(plain_model, np.empty(0), drive.track, drive.segment, exact).poses,
-        predicted=_core.integrate_segment(model.motion, parameters, drive.track, drive.segment, exact).poses,
+        plain=_sensor_path(plain_model, np.empty(0), drive),
+        predicted=_sensor_path(model.motion, parameters, drive),
         causal=known is not None,
     )
+
+
+def _sensor_path(motion: _core.MotionModel, parameters: Floats, drive: _Drive) -> Floats:
+    """Return the path of what measures it, [N, 3]."""
+    exact = _core.Integrator.Exact
+    return _core.integrate_segment(motion, parameters, drive.track, drive.segment, exact).sensor_poses
 
 
 def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
@@ -88,10 +94,10 @@ def _segments(contents: Contents, run: Run, inputs: Inputs) -> dict[int, _core.S
     if horizon is None:
         return {}
     wheels = run.wheels if contents.evaluation.input == "command" else None
-    rules = WindowRules()
+    rules = WindowRules(sensor=_sensor(contents))
     windows = cut_windows(run, inputs, horizon, rules)
     stamps = (_stamp(start) for start in windows.start.tolist())
-    return dict(zip(stamps, windows.segments(wheels, rules.unknown_after), strict=True))
+    return dict(zip(stamps, windows.segments(wheels, rules), strict=True))
 
 
 def _stamp(t: float) -> int:
@@ -99,8 +105,15 @@ def _stamp(t: float) -> int:
     return round(t * 1e6)
 
 
-def _level_segment(window: ChosenWindow) -> _core.Segment:
-    return _core.Segment(window.t_start, window.t_end, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+def _level_segment(window: ChosenWindow, sensor: tuple[float, float, float]) -> _core.Segment:
+    level = _core.Segment(window.t_start, window.t_end, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    return level.with_sensor(_core.Pose2(*sensor))
+
+
+def _sensor(contents: Contents) -> tuple[float, float, float]:
+    """Return where the settings say that the pose sensor sits."""
+    given = dict(contents.calibration.model.content.provenance.settings)
+    return make_settings({"mount": given.get("mount", {})}).mount.pose
 
 
 def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:

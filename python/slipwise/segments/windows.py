@@ -33,6 +33,11 @@ class WindowRules:
     still_speed: float = 0.02  # m/s and rad/s; a window whose inputs never exceed this teaches nothing
     whole_frames: bool = False  # a frame that is shorter than a window is one window
     stride: float | None = None  # s between the starts of windows; None: each starts where the last ended
+    sensor: tuple[float, float, float] = (
+        0.0,
+        0.0,
+        0.0,
+    )  # x, y [m], yaw [rad] in base_link
 
 
 _REASONS = {
@@ -56,12 +61,17 @@ class Windows:
     def __len__(self) -> int:
         return len(self.start)
 
-    def segments(self, wheels: Inputs | None, unknown_after: float) -> list[_core.Segment]:
+    def segments(self, wheels: Inputs | None, rules: WindowRules) -> list[_core.Segment]:
         """Return the core's segments; with `wheels`, the drive is known until each starts."""
-        initial = _initial_twists(self.start, wheels, unknown_after)
+        initial = _initial_twists(self.start, wheels, rules.unknown_after)
+        sensor = _core.Pose2(*rules.sensor)
         known = None if wheels is None else _core.InputTrack(wheels.t, wheels.v, wheels.vy, wheels.omega)
         return [
-            _known(_core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy), known, twist)
+            _known(
+                _core.Segment(start, end, _core.Pose2(x, y, yaw), twist, gx, gy).with_sensor(sensor),
+                known,
+                twist,
+            )
             for start, end, (x, y, yaw), twist, (gx, gy) in zip(
                 self.start.tolist(),
                 self.end.tolist(),

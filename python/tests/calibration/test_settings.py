@@ -40,6 +40,8 @@ log_std = 0.5
 gain_std = 0.1
 slow_share_std = 0.2
 slow_lag = 1.5
+lever_std = 0.5
+sensor_yaw_std = 0.2
 
 [filter]
 iterations = 3
@@ -83,6 +85,12 @@ jacobian = "exact"
 
 [vehicle]
 track = 1.08
+
+[mount]
+x = 1.5
+y = -0.2
+yaw = 0.1
+learn = true
 """
 
 
@@ -101,12 +109,14 @@ def key_paths(table: object, at: str = "") -> set[str]:
 def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     settings = load_settings(written(tmp_path, EVERY_KEY))
     assert key_paths(settings.model_dump(exclude_unset=True)) == key_paths(Settings().model_dump())
-    assert settings.rules() == WindowRules(0.4, 3.0, 0.1, 0.05)
+    assert settings.rules() == WindowRules(0.4, 3.0, 0.1, 0.05, sensor=(1.5, -0.2, 0.1))
     assert settings.window_length("wheel") == settings.window_length("command") == 1.5
     core = settings.filter_settings()
     assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
     assert (core.prior.clock_offset_std, core.prior.log_std) == (0.1, 0.5)
     assert (core.prior.gain_std, core.prior.slow_share_std, core.prior.slow_lag) == (0.1, 0.2, 1.5)
+    assert (core.prior.lever_std, core.prior.sensor_yaw_std) == (0.5, 0.2)
+    assert core.prior.sensor.vector().tolist() == [1.5, -0.2, 0.1]
     assert (core.iekf.iterations, core.iekf.halvings, core.iekf.huber, core.iekf.gate) == (3, 5, 2.5, 50.0)
     assert core.iekf.tolerance == 1e-4
     assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]
@@ -131,7 +141,16 @@ def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
     settings = load_settings(written(tmp_path, EVERY_KEY))
     model = calibrate(simulated_log(Drive(seconds=40.0)), input_name="wheel", settings=settings).model
     names = [parameter.name for parameter in model.content.parameters]
-    assert names == ["lon.V", "lon.V*abs(w)", "lat.w", "ang.w", "ang.V*w"]
+    assert names == [
+        "lon.V",
+        "lon.V*abs(w)",
+        "lat.w",
+        "ang.w",
+        "ang.V*w",
+        "sensor_x",
+        "sensor_y",
+        "sensor_yaw",
+    ]
 
 
 def test_defaults_are_those_of_the_core() -> None:
@@ -139,8 +158,10 @@ def test_defaults_are_those_of_the_core() -> None:
     ours = settings.filter_settings()
     for table in ("prior", "iekf"):
         one, other = getattr(ours, table), getattr(core, table)
-        names = [name for name in dir(one) if not name.startswith("_")]
+        names = [name for name in dir(one) if not name.startswith("_") and name != "sensor"]
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
+    for prior in (ours.prior, core.prior):
+        assert not prior.sensor.vector().any()
     assert settings.average_settings().share == _core.ModelAverageSettings().share
     for name in ("detect", "threshold", "fraction", "forget"):
         assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)

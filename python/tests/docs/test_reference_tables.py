@@ -9,7 +9,7 @@ import numpy as np
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
-from slipwise.calibration import statistics, tails, verdict
+from slipwise.calibration import identifiability, statistics, tails, verdict
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
@@ -151,7 +151,9 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
         read("statistics.md").split()
     )
     assert f"from {statistics.RESAMPLES} samples of moving blocks" in derivations
-    assert f"undetermined above a ratio of {verdict.UNDETERMINED_RATIO:g}" in " ".join(derivations.split())
+    assert f"undetermined above a ratio of {identifiability.UNDETERMINED_RATIO:g}" in " ".join(
+        derivations.split()
+    )
     assert f"fewer than {verdict.FEWEST_WINDOWS} held-out windows" in read("getting-started.md")
     assert statistics.BLOCK_WINDOWS == 3, "the pages say blocks of three windows"
     points = ", ".join(f"{point:.3f}" for point in statistics.ELLIPSOIDS.values())

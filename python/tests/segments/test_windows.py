@@ -220,8 +220,8 @@ def test_initial_twist_is_the_last_one_measured_and_only_where_fresh() -> None:
         omega=np.array([0.5, 0.6, 0.7, 0.8]),
     )
     model = _core.MotionModel(_core.Basis("none", [], [], []), True, False)
-    fresh = windows.segments(wheels, 0.5)
-    bare = windows.segments(None, 0.5)
+    fresh = windows.segments(wheels, WindowRules())
+    bare = windows.segments(None, WindowRules())
     still = _core.InputTrack(np.array([-9.0]), np.zeros(1), np.zeros(1), np.zeros(1))
     lags = np.log([1.0, 1.0, 0.1, 0.1])
 

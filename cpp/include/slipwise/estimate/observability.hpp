@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the data told about each parameter: posterior against prior, and the direction known least.
+// What the data told about each parameter: posterior against prior, the direction known least, and look-alikes.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "slipwise/estimate/estimate.hpp"
 
@@ -16,5 +17,15 @@ struct Observability {
 
 /// \throws std::invalid_argument when sizes differ or a prior standard deviation is not positive.
 Observability observability(const Estimate& posterior, const Eigen::Ref<const Eigen::VectorXd>& prior_std);
+
+/// Two parameters whose errors go together: what they do together is known better than either.
+struct CorrelatedPair {
+  Eigen::Index first;
+  Eigen::Index second;
+  double correlation;
+};
+
+/// All pairs whose correlation is at least `least` in size, the closest first. A parameter without variance has none.
+std::vector<CorrelatedPair> correlated_pairs(const Eigen::Ref<const Eigen::MatrixXd>& covariance, double least);
 
 }  // namespace slipwise

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Priors in physical units: what share of the motion a term may explain, and plausible lags, delays and offsets.
+// Priors in physical units: what share of the motion a term may explain, and plausible lags, delays, offsets and
+// mounts.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,6 +27,9 @@ struct PriorSettings {
   double gain_std = 0.2;          ///< of the drive over the input, about 1 [-]
   double slow_share_std = 0.3;    ///< of the share of the drive that follows slowly, about 0 [-]
   double slow_lag = 2.0;          ///< median slow time constant [s]
+  Pose2 sensor = {};              ///< where the pose sensor is thought to sit in base_link
+  double lever_std = 1.0;         ///< of its x and y about that [m]
+  double sensor_yaw_std = 0.1;    ///< of its yaw about that [rad]
 };
 
 /// Standard deviation of each slip parameter: fraction * reference of its channel / |term at the reference speeds|.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion model: a slip basis behind a command chain, and the layout of its parameter vector.
+// The motion model: a slip basis behind a command chain, seen by a pose sensor, and the layout of its parameter vector.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,21 +7,25 @@
 #include <vector>
 
 #include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/parameter_block.hpp"
 #include "slipwise/slip/basis.hpp"
 
 namespace slipwise {
 
-/// Which parts of the chain are parameters. What is not learned is the identity.
+/// Which parts of the chain, and of what measures its poses, are parameters. What is not learned is the identity.
 struct ChainParameters {
   bool dynamics = false;      ///< lag and delay per channel
   bool clock_offset = false;  ///< offset between inputs and poses
   bool response = false;      ///< gain, and a slow part with its share and time constant, per channel
+  bool mount = false;         ///< where the pose sensor sits on the robot
 };
+
+inline constexpr Eigen::Index kMountParameters = 3;
 
 /// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
 /// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
-/// [s]. Logarithms keep lags and delays positive.
+/// [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms keep lags and delays positive.
 class MotionModel {
  public:
   MotionModel(Basis basis, ChainParameters learned);
@@ -29,14 +33,22 @@ class MotionModel {
   const Basis& basis() const { return basis_; }
   ChainParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
-  Eigen::Index size() const { return slip_size() + static_cast<Eigen::Index>(chain_places().size()); }
+  Eigen::Index chain_size() const { return static_cast<Eigen::Index>(chain_places_.size()); }
+  Eigen::Index mount_size() const { return learned_.mount ? kMountParameters : 0; }
+  Eigen::Index size() const { return slip_size() + chain_size() + mount_size(); }
   std::vector<ParameterInfo> parameters() const;
 
   CommandChain chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+  /// Pose of the sensor in base_link; the identity where it is not learned.
+  Pose2 mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
   /// Which of the chain's parameters (in CommandChain's order) the model's chain parameters are, one after the other.
   const std::vector<Eigen::Index>& chain_places() const { return chain_places_; }
   /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
   Eigen::VectorXd chain_scales(const CommandChain& chain) const;
+
+  /// Derivative, by the parameters, of coordinates in which the motion is nearly linear (derivations.md, section 6):
+  /// (s + 0.03) / (s + 0.3) for a time s [s] whose logarithm is learned, 1 otherwise.
+  Eigen::VectorXd even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
 
   /// \throws std::invalid_argument when the length is not size() or a value is not finite.
   void check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;

@@ -22,8 +22,15 @@ struct SegmentPath {
   std::vector<Pose2> poses;               ///< [steps + 1], the first is the origin
   std::vector<Eigen::Vector3d> tangents;  ///< [steps], twist * duration with slip
   std::vector<DriveStep> drive;           ///< [steps], the drive without slip
+  Pose2 sensor;                           ///< pose in base_link of the sensor that measures the path
+
+  /// The sensor's motion, X^-1 T X: what `Segment::measured` is compared with.
+  Pose2 sensor_motion() const;
+  /// The robot's motion that a sensor's motion tells, X M X^-1.
+  Pose2 robot_motion(const Pose2& measured) const;
 };
 
+/// A model that learns where the sensor sits says so itself; otherwise the segment does.
 /// \throws std::invalid_argument when the parameters do not fit the model.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                               const InputTrack& inputs, const Segment& segment,
@@ -31,7 +38,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 
 struct SegmentLinearization {
   SegmentPath path;
-  Pose2 predicted;                                        ///< T_start_end
+  Pose2 predicted;                                        ///< T_start_end of the pose sensor
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< derivative of the chart (x, y, theta) of `predicted`
 };
 

@@ -18,6 +18,7 @@ struct Segment {
   double gx = 0.0;                        ///< body-frame gravity at the start [m/s^2]
   double gy = 0.0;                        ///< [m/s^2]
   std::optional<KnownDrive> known = {};   ///< what was measured of the drive; `initial` is where it ends
+  Pose2 sensor = {};                      ///< known pose in base_link of what `measured` is the motion of
 };
 
 }  // namespace slipwise

@@ -9,7 +9,7 @@
 
 namespace slipwise {
 
-/// Covariance of the chart (x, y, theta) of T_start_end that the slip noise causes along the path.
+/// Covariance of the chart (x, y, theta) of T_start_end of the pose sensor that the slip noise causes along the path.
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
 /// Covariance of a measured T_start_end because both poses are measured: H R H^T + R.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise);

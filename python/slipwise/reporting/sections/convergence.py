@@ -55,6 +55,17 @@ class ConvergenceSection:
         )
 
 
+_VALUE_COLUMNS = (
+    "parameter",
+    "unit",
+    "value",
+    "± 1 sigma",
+    "± before any data",
+    "share left",
+    "determined",
+)
+
+
 def _values(model: Model) -> str:
     rows = [
         (
@@ -63,11 +74,12 @@ def _values(model: Model) -> str:
             number(parameter.value, 4),
             number(parameter.std, 2),
             number(parameter.prior_std, 2),
+            number(parameter.std / parameter.prior_std, 2) if parameter.prior_std > 0.0 else "",
             "yes" if parameter.determined else "no",
         )
         for parameter in model.content.parameters
     ]
-    return table(("parameter", "unit", "value", "± 1 sigma", "± before any data", "determined"), rows)
+    return table(_VALUE_COLUMNS, rows)
 
 
 def _alarms(contents: Contents, history: History) -> str:

@@ -80,4 +80,9 @@ def _undetermined(verdict: Verdict) -> str:
         html += paragraph("This log does not determine: " + ", ".join(verdict.undetermined) + ".")
     if verdict.advice:
         html += paragraph("What to do:") + bullets(verdict.advice)
+    if verdict.look_alikes:
+        pairs = ", ".join(map(str, verdict.look_alikes))
+        html += paragraph(f"Hard to tell apart (correlation of their errors): {pairs}.")
+    if verdict.timing:
+        html += paragraph(verdict.timing)
     return html

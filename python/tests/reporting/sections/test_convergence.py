@@ -85,7 +85,7 @@ def test_lag_is_shown_in_seconds() -> None:
 def test_batch_fit_shows_the_values_and_says_why_no_course() -> None:
     text = text_of(ConvergenceSection().html(contents_of(without_history(make_results()))))
     assert "fitted to the whole log at once" in text
-    assert "lon.V m/s per V −0.04900 0.0040 0.30 yes" in text
+    assert "lon.V m/s per V −0.04900 0.0040 0.30 0.013 yes" in text
 
 
 def test_smoothed_parameters_have_figures_of_their_own_with_or_without_a_history() -> None:

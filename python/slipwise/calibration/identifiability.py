@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a drive does not determine, what it cannot tell apart, and the driving that would."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from slipwise import _core
+from slipwise.calibration.learner import Belief
+
+UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
+LOOK_ALIKE = 0.9  # correlation from which on two parameters count as look-alikes
+
+
+@dataclass(frozen=True)
+class LookAlike:
+    """Two parameters that the drive can hardly tell apart: together they are known better than each."""
+
+    first: str
+    second: str
+    correlation: float
+
+    def __str__(self) -> str:
+        return f"{self.first} and {self.second} ({self.correlation:+.2f})"
+
+
+def undetermined(belief: Belief) -> tuple[str, ...]:
+    """Return the parameters of which the drive told little more than the prior did."""
+    ratios = belief.variance_ratio.tolist()
+    return tuple(
+        info.name
+        for info, ratio in zip(belief.motion.parameters, ratios, strict=True)
+        if ratio > UNDETERMINED_RATIO
+    )
+
+
+def look_alikes(belief: Belief) -> tuple[LookAlike, ...]:
+    """Return the pairs that the drive can hardly tell apart, the closest first."""
+    names = [info.name for info in belief.motion.parameters]
+    pairs = _core.correlated_pairs(belief.covariance, LOOK_ALIKE)
+    return tuple(LookAlike(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
+
+
+def drives_for(names: tuple[str, ...]) -> tuple[str, ...]:
+    """Say which driving would determine the parameters, in words."""
+    advice = []
+    for matches, sentence in _DRIVES:
+        found = [name for name in names if matches(name)]
+        if found:
+            advice.append(f"{sentence} (for {', '.join(found)}).")
+    return tuple(advice)
+
+
+def advice_for_pairs(pairs: tuple[LookAlike, ...]) -> tuple[str, ...]:
+    """Say what would tell look-alikes apart, where that is known, in words."""
+    advice = []
+    for matches, sentence in _APART:
+        found = [str(pair) for pair in pairs if matches(pair) or matches(_swapped(pair))]
+        if found:
+            advice.append(f"{sentence}: {', '.join(found)}.")
+    return tuple(advice)
+
+
+def timing_words(motion: _core.MotionModel, unknown: tuple[str, ...], *, wheels_logged: bool) -> str:
+    """Say which delay is which, and which offset of clocks it holds; empty where no time is learned."""
+    sentences = []
+    if motion.dynamics and motion.clock_offset:
+        sentences.append(
+            "The delays are those from commands to wheel speeds, with any offset between their clocks."
+        )
+    elif motion.dynamics:
+        sentences.append(
+            "The delays are those from commands to poses: that of the drive, and any offset between "
+            "the clocks, which commands and poses alone cannot tell apart."
+        )
+        if not wheels_logged:
+            sentences.append("Wheel speeds in the log would tell them apart.")
+    if motion.clock_offset:
+        sentences.append(
+            "clock_offset is how much later poses are stamped than the wheel speeds of the same moment."
+        )
+        if "clock_offset" in unknown:
+            sentences.append("This drive does not determine it: it stays about where it was before any data.")
+    return " ".join(sentences)
+
+
+def _terms(name: str) -> str:
+    return name.partition(".")[2]
+
+
+def _turns(name: str) -> bool:
+    return "w" in _terms(name) or "kappa" in _terms(name)
+
+
+def _swapped(pair: LookAlike) -> LookAlike:
+    return LookAlike(pair.second, pair.first, pair.correlation)
+
+
+def _same_channel(pair: LookAlike) -> bool:
+    return pair.first.rpartition("_")[2] == pair.second.rpartition("_")[2]
+
+
+_DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
+    (
+        lambda n: n in ("log_lag_v", "log_delay_v", "gain_v"),
+        "Change the speed in steps, from rest and back, several times",
+    ),
+    (
+        lambda n: n in ("log_lag_omega", "log_delay_omega", "gain_omega"),
+        "Change the yaw rate in steps, to both sides, several times",
+    ),
+    (
+        lambda n: n.startswith(("slow_share", "log_slow_lag")),
+        "After a step of the command, hold it for several seconds",
+    ),
+    (
+        lambda n: n == "clock_offset",
+        "Accelerate, brake and swing in and out of turns; steady driving cannot show a clock offset",
+    ),
+    (
+        lambda n: n in ("sensor_x", "sensor_y"),
+        "Turn on the spot both ways, or drive tight arcs; straight driving cannot show a lever arm",
+    ),
+    (
+        lambda n: n == "sensor_yaw",
+        "Drive straight for longer; turning on the spot cannot show how a sensor is turned",
+    ),
+    (
+        lambda n: "gx" in _terms(n) or "gy" in _terms(n),
+        "Drive up, down and across a slope, with roll and pitch in the log",
+    ),
+    (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
+    (lambda n: _turns(n) and "V" not in _terms(n), "Turn both ways at several yaw rates, in place too"),
+    (
+        lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n),
+        "Drive straight at several speeds, forwards and backwards",
+    ),
+)
+
+_APART: tuple[tuple[Callable[[LookAlike], bool], str], ...] = (
+    (
+        lambda p: p.first.startswith("sensor_") and "." in p.second,
+        "A sensor away from base_link looks like slip; give its place under [mount], or leave out that term",
+    ),
+    (
+        lambda p: p.first.startswith("log_lag") and p.second.startswith("log_delay") and _same_channel(p),
+        "Lag and delay trade places; record poses more often, and change the command in steps",
+    ),
+)

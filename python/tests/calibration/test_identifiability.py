@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a drive leaves open is said, with its look-alike and the driving that would help."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core, open_log
+from slipwise.calibration import Calibration, calibrate, make_settings
+from slipwise.calibration.identifiability import (
+    LookAlike,
+    advice_for_pairs,
+    look_alikes,
+    timing_words,
+    undetermined,
+)
+from slipwise.calibration.learner import Belief
+from slipwise.logs import Log
+from slipwise.models import load_model
+
+LEARN = {"basis": "edd-2", "mount": {"learn": True}}
+
+
+def learned(log: Log, source: str, given: dict[str, object]) -> Calibration:
+    return calibrate(log, input_name=source, settings=make_settings(given))
+
+
+def straight(**given: object) -> Log:
+    return simulated_log(replace(Drive(seconds=60.0, speeds=(1.0, 1.0), yaw_rates=(0.0, 0.0)), **given))
+
+
+def belief(motion: _core.MotionModel, correlation: float) -> Belief:
+    """A belief whose first two parameters go together."""
+    covariance = np.eye(motion.size)
+    covariance[0, 1] = covariance[1, 0] = correlation
+    ratio = np.full(motion.size, 0.1)
+    return Belief(
+        motion, np.zeros(motion.size), covariance, np.ones(3), np.ones(motion.size), ratio, np.ones(1)
+    )
+
+
+def test_pairs_that_go_together_are_named() -> None:
+    motion = _core.MotionModel(_core.named_basis("edd-2"), True, False)
+    assert look_alikes(belief(motion, 0.89)) == ()
+    (pair,) = look_alikes(belief(motion, -0.95))
+    assert pair == LookAlike("lon.V", "ang.w", pytest.approx(-0.95))
+    assert str(pair) == "lon.V and ang.w (-0.95)"
+    assert undetermined(belief(motion, -0.95)) == ()
+
+
+def test_a_lever_arm_that_a_straight_drive_cannot_show_is_said() -> None:
+    verdict = learned(straight(), "wheel", LEARN).verdict
+    assert {"sensor_x", "sensor_y"} <= set(verdict.undetermined)
+    assert "sensor_yaw" not in verdict.undetermined
+    assert any("Turn on the spot both ways" in text and "sensor_x" in text for text in verdict.advice)
+
+
+def test_a_sensor_and_the_slip_it_looks_like_are_named_with_what_to_do(tmp_path: Path) -> None:
+    log = simulated_log(Drive(seconds=90.0))
+    result = learned(log, "wheel", {"basis": "full-linear-6", "mount": {"learn": True}})
+    pairs = {frozenset((pair.first, pair.second)) for pair in result.verdict.look_alikes}
+    confounded = (("sensor_x", "lat.w"), ("sensor_y", "lon.w"), ("sensor_yaw", "lat.V"))
+    assert {frozenset(pair) for pair in confounded} <= pairs
+    assert any("give its place under [mount]" in text for text in result.verdict.advice)
+    again = load_model(result.model.save(tmp_path / "m.yaml")).content.verdict
+    assert [(p.first, p.second) for p in again.look_alikes] == [
+        (p.first, p.second) for p in result.verdict.look_alikes
+    ]
+    assert again.timing == result.verdict.timing
+
+
+def test_lag_and_delay_of_one_channel_alone_trade_places() -> None:
+    told = advice_for_pairs(
+        (LookAlike("log_delay_v", "log_lag_v", -0.97), LookAlike("log_lag_v", "log_delay_omega", 0.95))
+    )
+    assert len(told) == 1
+    assert told[0].endswith("log_delay_v and log_lag_v (-0.97).")
+
+
+def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
+    basis = _core.named_basis("edd-2")
+    alone = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=False)
+    assert "commands and poses alone cannot tell apart" in alone
+    assert "Wheel speeds in the log would tell them apart" in alone
+    unused = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=True)
+    assert "would tell them apart" not in unused
+    cascade = timing_words(_core.MotionModel.with_response(basis, True), (), wheels_logged=True)
+    assert "from commands to wheel speeds" in cascade
+    assert "clock_offset is how much later poses are stamped than the wheel speeds" in cascade
+    assert timing_words(_core.MotionModel(basis, False, False), (), wheels_logged=False) == ""
+
+
+def test_a_clock_offset_that_steady_driving_cannot_show_stays_at_its_prior() -> None:
+    result = learned(straight(late=0.4), "wheel", {"basis": "edd-2"})
+    (offset,) = (p for p in result.model.content.parameters if p.name == "clock_offset")
+    assert not offset.determined
+    assert abs(offset.value) < 0.5 * offset.prior_std
+    assert "it stays about where it was before any data" in result.verdict.timing
+
+
+def test_a_real_clock_offset_is_not_guessed_beyond_its_prior(real_log_dir: Path) -> None:
+    log = open_log(real_log_dir / "f1tenth" / "DS3.csv.gz")
+    result = learned(log, "wheel", {})
+    (offset,) = (p for p in result.model.content.parameters if p.name == "clock_offset")
+    assert abs(offset.value) < 2.0 * offset.prior_std
+    assert offset.std < offset.prior_std

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where the pose sensor sits: known, learned, or not to be told from slip."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_logs import Drive, poses_of, simulated_log
+
+from slipwise import _core
+from slipwise.calibration import Calibration, calibrate, make_settings
+from slipwise.errors import SettingsError
+from slipwise.evaluation import EvaluationOptions, evaluate
+from slipwise.logs import Log
+
+SENSOR = (1.2, -0.3, 0.15)
+SLIP = (-0.08, -0.3)  # lon.V, ang.w
+DRIVE = Drive(seconds=150.0, basis=_core.named_basis("edd-2"), alpha=SLIP)
+
+
+def seen_by_sensor(log: Log, sensor: tuple[float, float, float] = SENSOR) -> Log:
+    """The same drive with the poses of a sensor away from base_link."""
+    (run,) = log.runs
+    mount = _core.Pose2(*sensor)
+    columns = (run.poses.x.tolist(), run.poses.y.tolist(), run.poses.yaw.tolist())
+    path = [_core.compose(_core.Pose2(*pose), mount).vector() for pose in zip(*columns, strict=True)]
+    return replace(log, runs=(replace(run, poses=poses_of(run.poses.t, np.array(path))),))
+
+
+@pytest.fixture(scope="module")
+def log() -> Log:
+    return seen_by_sensor(simulated_log(DRIVE))
+
+
+def calibrated(
+    log: Log, mount: dict[str, object], *, basis: str = "edd-2", source: str = "wheel"
+) -> Calibration:
+    settings = make_settings({"basis": basis, "mount": mount})
+    return calibrate(log, input_name=source, settings=settings)
+
+
+def value(result: Calibration, name: str) -> tuple[float, float, float]:
+    """Value, standard deviation and prior standard deviation of a parameter."""
+    (found,) = (p for p in result.model.content.parameters if p.name == name)
+    return found.value, found.std, found.prior_std
+
+
+@pytest.mark.parametrize("source", ["wheel", "command"])
+def test_the_place_of_the_sensor_is_learned(log: Log, source: str) -> None:
+    result = calibrated(log, {"learn": True}, source=source)
+    for name, true in zip(
+        ("sensor_x", "sensor_y", "sensor_yaw", "lon.V", "ang.w"), (*SENSOR, *SLIP), strict=True
+    ):
+        found, std, prior_std = value(result, name)
+        assert abs(found - true) < 3.0 * std, name
+        assert std < 0.2 * prior_std, name
+    assert result.model.content.mount
+
+
+def test_a_known_place_gives_the_slip_of_base_link(log: Log) -> None:
+    mount = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    known, ignored = calibrated(log, mount, basis="full-linear-6"), calibrated(log, {}, basis="full-linear-6")
+    at_base = calibrated(simulated_log(DRIVE), {}, basis="full-linear-6")
+    for name in ("lon.V", "ang.w", "lat.w", "lat.V"):
+        assert value(known, name)[0] == pytest.approx(value(at_base, name)[0], abs=0.03), name
+    taken_for_slip = SENSOR[0] * (1.0 + SLIP[1])  # the lever arm, times the true yaw rate over the wheels'
+    assert value(ignored, "lat.w")[0] == pytest.approx(taken_for_slip, abs=0.1)
+    assert not known.model.content.mount
+    assert known.model.content.provenance.settings["mount"] == mount
+
+
+def test_evaluation_compares_the_poses_of_the_sensor(log: Log) -> None:
+    mount = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    errors = []
+    for given, drive in ((mount, log), ({}, simulated_log(DRIVE)), ({"learn": True}, log)):
+        settings = make_settings({"basis": "edd-2", "mount": given})
+        options = EvaluationOptions(horizons=(2.0,), methods=("none", "edd-2", "iekf"))
+        scores = evaluate(drive, input_name="wheel", settings=settings, options=options).scores
+        errors.append({score.method: score.position.mean for score in scores})
+    known, at_base, learned = errors
+    for method in ("edd-2", "iekf"):
+        assert known[method] == pytest.approx(at_base[method], rel=0.25), method
+    assert learned["edd-2"] < 1.3 * at_base["edd-2"]
+
+
+def test_a_lever_and_a_slip_that_look_alike_are_both_left_open(log: Log) -> None:
+    result = calibrated(log, {"learn": True}, basis="full-linear-6")
+    for one, other in (("sensor_x", "lat.w"), ("sensor_y", "lon.w"), ("sensor_yaw", "lat.V")):
+        names = [p.name for p in result.model.content.parameters]
+        i, j = names.index(one), names.index(other)
+        covariance = result.model.covariance
+        correlation = covariance[i, j] / np.sqrt(covariance[i, i] * covariance[j, j])
+        assert abs(correlation) > 0.9, one
+        true = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), SENSOR, strict=True))[one]
+        found, std, _ = value(result, one)
+        assert abs(found - true) < 3.0 * std, one
+
+
+def test_a_sensor_far_from_any_robot_is_refused() -> None:
+    with pytest.raises(SettingsError, match=r"mount\.x"):
+        make_settings({"mount": {"x": 1500.0}})
