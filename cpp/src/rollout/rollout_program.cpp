@@ -33,24 +33,29 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program) {
 }
 
 template <typename Scalar>
+LaneLag<Scalar> lane_lag(const ChannelShare& share) {
+  return {.mean_gap = static_cast<Scalar>(share.fast.mean_gap),
+          .end_gap = static_cast<Scalar>(share.fast.end_gap),
+          .slow_mean_gap = static_cast<Scalar>(share.slow.mean_gap),
+          .slow_end_gap = static_cast<Scalar>(share.slow.end_gap)};
+}
+
+template <typename Scalar>
 LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain) {
   LaneConstants<Scalar> constants;
-  const auto number = [](double value) { return static_cast<Scalar>(value); };
   std::vector<PeriodPart> parts = chain.lead_in;
   parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
   parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
   for (const PeriodPart& part : parts) {
     constants.parts.push_back({.first_share = constants.shares.size(),
-                               .duration = number(part.duration),
-                               .mean_gap_v = number(part.lag_v.mean_gap),
-                               .end_gap_v = number(part.lag_v.end_gap),
-                               .mean_gap_omega = number(part.lag_omega.mean_gap),
-                               .end_gap_omega = number(part.lag_omega.end_gap),
+                               .duration = static_cast<Scalar>(part.duration),
+                               .v = lane_lag<Scalar>(part.v),
+                               .omega = lane_lag<Scalar>(part.omega),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
     for (const SlipProduct& product : slip.products) {
       for (const double share : product.share) {
-        constants.shares.push_back(number(share * part.duration));
+        constants.shares.push_back(static_cast<Scalar>(share * part.duration));
       }
     }
   }

@@ -26,7 +26,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
   const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
   const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
   // Where commands act early, the integrator of a shorter segment leaves out those that a rollout already knows.
-  const std::size_t fewest = program.chain().shift_v < 0 ? commands.periods : 1;
+  const std::size_t fewest = program.chain().v.shift < 0 ? commands.periods : 1;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
     const InputTrack track = commands.track(n, kPast);

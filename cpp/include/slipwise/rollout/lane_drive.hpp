@@ -2,6 +2,8 @@
 // The command chain in lanes: which command acts now, and what the drive makes of it.
 #pragma once
 
+#include <cstdint>
+
 #include "slipwise/rollout/drive_command.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
@@ -16,7 +18,7 @@ inline constexpr std::size_t kLineBytes = 64;  ///< of the processor's cache
 template <typename Scalar>
 struct CommandSource {
   const Scalar* commands;          ///< the block's first one
-  const Scalar* drive;             ///< the drive's twist at the start, for when no command was sent yet
+  const LaneStart<Scalar>* start;  ///< of the drive; it says what was told before any command was sent
   double DriveCommand::* channel;  ///< of a command sent before the start
 };
 
@@ -29,7 +31,7 @@ template <class L, typename Scalar = L::Scalar>
     if (period >= 0) {
       gathered[i] = source.commands[static_cast<std::ptrdiff_t>(i) * job.rollout_stride + period * job.period_stride];
     } else if (block.past_count == 0) {
-      gathered[i] = source.drive[i];
+      gathered[i] = source.start->told[i];
     } else {
       const DriveCommand* past = block.past + i * block.past_stride + (place > 0 ? place : 0);
       gathered[i] = static_cast<Scalar>(past->*source.channel);
@@ -57,32 +59,68 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
   }
 }
 
-/// A drive channel's lag over a part: the mean over the part, and the output moved on to its end.
-template <bool kLags, typename Scalar, class Vector>
-SLIPWISE_LANES void advance_lag(const Vector& input, Scalar mean_gap, Scalar end_gap, Vector& output, Vector& mean) {
-  if constexpr (kLags) {
-    const Vector gap = output - input;
-    mean = input + gap * mean_gap;
-    output = input + gap * end_gap;
-  } else {
-    copy(input, mean);
+/// What a kernel is made for. None: every period is one part without lag. Response: gains and slow parts as well.
+enum class Chain : std::uint8_t { None, Delays, Lags, Response };
+
+/// One channel of the drive: the input that acts, and what its lag holds.
+template <class L, Chain kChain>
+struct ChannelLanes {
+  L::Vector input;
+  L::Vector fast;
+  std::ptrdiff_t next;  ///< the period whose command acts next
+};
+template <class L>
+struct ChannelLanes<L, Chain::Response> {
+  L::Vector input;  ///< times the gain
+  L::Vector fast;
+  L::Vector slow;
+  std::ptrdiff_t next;
+};
+
+/// The next command begins to act.
+template <class L, Chain kChain, typename Scalar = L::Scalar>
+SLIPWISE_LANES void tell(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                         const CommandSource<Scalar>& source, const LaneResponse<Scalar>& response,
+                         ChannelLanes<L, kChain>& channel) {
+  read_commands<L>(job, block, source, channel.next, channel.input);
+  if constexpr (kChain == Chain::Response) {
+    channel.input = channel.input * response.gain;
+  }
+  ++channel.next;
+}
+
+template <class L, Chain kChain, typename Scalar = L::Scalar>
+SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                  const CommandSource<Scalar>& source, const LaneResponse<Scalar>& response,
+                                  std::ptrdiff_t shift, ChannelLanes<L, kChain>& channel) {
+  channel.next = -shift - 1;
+  tell(job, block, source, response, channel);
+  load(source.start->fast, channel.fast);
+  if constexpr (kChain == Chain::Response) {
+    load(source.start->slow, channel.slow);
   }
 }
 
-/// One channel of the drive: the command that acts, and the lag's output.
-template <class L>
-struct ChannelLanes {
-  L::Vector input;
-  L::Vector output;
-  std::ptrdiff_t next;  ///< the period whose command acts next
-};
-
-template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                                  const CommandSource<Scalar>& source, std::ptrdiff_t shift, ChannelLanes<L>& channel) {
-  channel.next = -shift;
-  load(source.drive, channel.output);
-  read_commands<L>(job, block, source, channel.next - 1, channel.input);
+/// The drive's mean over a part; its lags move on to the part's end.
+template <class L, Chain kChain, typename Scalar = L::Scalar>
+SLIPWISE_LANES void advance(const LaneLag<Scalar>& lag, const LaneResponse<Scalar>& response,
+                            ChannelLanes<L, kChain>& channel, typename L::Vector& mean) {
+  using Vector = L::Vector;
+  if constexpr (kChain == Chain::Response) {
+    const Vector fast_input = channel.input * response.fast;
+    const Vector slow_input = channel.input - fast_input;
+    const Vector fast_gap = channel.fast - fast_input;
+    const Vector slow_gap = channel.slow - slow_input;
+    mean = channel.input + fast_gap * lag.mean_gap + slow_gap * lag.slow_mean_gap;
+    channel.fast = fast_input + fast_gap * lag.end_gap;
+    channel.slow = slow_input + slow_gap * lag.slow_end_gap;
+  } else if constexpr (kChain == Chain::Lags) {
+    const Vector gap = channel.fast - channel.input;
+    mean = channel.input + gap * lag.mean_gap;
+    channel.fast = channel.input + gap * lag.end_gap;
+  } else {
+    copy(channel.input, mean);
+  }
 }
 
 }  // namespace slipwise
