@@ -95,11 +95,6 @@ LaneMap<Scalar> lane_map(const Costmap* map) {
 }
 
 template <typename Scalar>
-LaneResponse<Scalar> lane_response(const ChannelResponse& response) {
-  return {.gain = static_cast<Scalar>(response.gain), .fast = static_cast<Scalar>(1.0 - response.share())};
-}
-
-template <typename Scalar>
 LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                        const RolloutOutputs<Scalar>& outputs) {
   const LaneConstants<Scalar>& constants = program.constants<Scalar>();
@@ -120,8 +115,6 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .shift_omega = chain.omega.shift,
           .lags = chain.lags,
           .responds = chain.responds,
-          .response_v = lane_response<Scalar>(chain.v.response),
-          .response_omega = lane_response<Scalar>(chain.omega.response),
           .rollouts = batch.rollouts,
           .periods = batch.periods,
           .v = batch.commands.v,

@@ -62,7 +62,10 @@ TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and 
         if (has_instruction_level(level)) {
           CAPTURE(name_of(level));
           CHECK(error(model, parameters, commands, level) < 1e-9);
-          CHECK(error(model, parameters, in_float, level) < 2e-5);
+          // Where a lagging speed passes zero, the sample of thesis-15 jumps by metres within one period, and by 1e-5 m
+          // for a rounding of the speed. Two lags without fused multiply-adds round it more often.
+          const bool coarse = level == InstructionLevel::Portable && chain.learned.response;
+          CHECK(error(model, parameters, in_float, level) < (coarse ? 2.5e-5 : 1e-5));
         }
       }
     }

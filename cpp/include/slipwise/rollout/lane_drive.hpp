@@ -62,7 +62,7 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
 /// What a kernel is made for. None: every period is one part without lag. Response: gains and slow parts as well.
 enum class Chain : std::uint8_t { None, Delays, Lags, Response };
 
-/// One channel of the drive: the input that acts, and what its lag holds.
+/// One channel of the drive: the input that acts, and what its lags hold.
 template <class L, Chain kChain>
 struct ChannelLanes {
   L::Vector input;
@@ -71,7 +71,7 @@ struct ChannelLanes {
 };
 template <class L>
 struct ChannelLanes<L, Chain::Response> {
-  L::Vector input;  ///< times the gain
+  L::Vector input;
   L::Vector fast;
   L::Vector slow;
   std::ptrdiff_t next;
@@ -80,44 +80,39 @@ struct ChannelLanes<L, Chain::Response> {
 /// The next command begins to act.
 template <class L, Chain kChain, typename Scalar = L::Scalar>
 SLIPWISE_LANES void tell(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                         const CommandSource<Scalar>& source, const LaneResponse<Scalar>& response,
-                         ChannelLanes<L, kChain>& channel) {
+                         const CommandSource<Scalar>& source, ChannelLanes<L, kChain>& channel) {
   read_commands<L>(job, block, source, channel.next, channel.input);
-  if constexpr (kChain == Chain::Response) {
-    channel.input = channel.input * response.gain;
-  }
   ++channel.next;
 }
 
 template <class L, Chain kChain, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                                  const CommandSource<Scalar>& source, const LaneResponse<Scalar>& response,
-                                  std::ptrdiff_t shift, ChannelLanes<L, kChain>& channel) {
+                                  const CommandSource<Scalar>& source, std::ptrdiff_t shift,
+                                  ChannelLanes<L, kChain>& channel) {
   channel.next = -shift - 1;
-  tell(job, block, source, response, channel);
+  tell(job, block, source, channel);
   load(source.start->fast, channel.fast);
   if constexpr (kChain == Chain::Response) {
     load(source.start->slow, channel.slow);
   }
 }
 
-/// The drive's mean over a part; its lags move on to the part's end.
-template <class L, Chain kChain, typename Scalar = L::Scalar>
-SLIPWISE_LANES void advance(const LaneLag<Scalar>& lag, const LaneResponse<Scalar>& response,
-                            ChannelLanes<L, kChain>& channel, typename L::Vector& mean) {
-  using Vector = L::Vector;
+/// The drive's mean over a part; its lags move on to the part's end. The speed goes by sums of input and output rather
+/// than by the gap between them: where it passes zero it keeps its digits, which the curvature of thesis 5.1 needs
+/// there.
+template <class L, Chain kChain, bool kBySums, typename Scalar = L::Scalar>
+SLIPWISE_LANES void advance(const LaneLag<Scalar>& lag, ChannelLanes<L, kChain>& channel, typename L::Vector& mean) {
   if constexpr (kChain == Chain::Response) {
-    const Vector fast_input = channel.input * response.fast;
-    const Vector slow_input = channel.input - fast_input;
-    const Vector fast_gap = channel.fast - fast_input;
-    const Vector slow_gap = channel.slow - slow_input;
-    mean = channel.input + fast_gap * lag.mean_gap + slow_gap * lag.slow_mean_gap;
-    channel.fast = fast_input + fast_gap * lag.end_gap;
-    channel.slow = slow_input + slow_gap * lag.slow_end_gap;
+    mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast + channel.slow * lag.mean_by_slow;
+    channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
+    channel.slow = channel.input * lag.slow_by_input + channel.slow * lag.slow_by_slow;
+  } else if constexpr (kChain == Chain::Lags && !kBySums) {
+    const typename L::Vector gap = channel.fast - channel.input;
+    mean = channel.input + gap * lag.mean_by_fast;
+    channel.fast = channel.input + gap * lag.fast_by_fast;
   } else if constexpr (kChain == Chain::Lags) {
-    const Vector gap = channel.fast - channel.input;
-    mean = channel.input + gap * lag.mean_gap;
-    channel.fast = channel.input + gap * lag.end_gap;
+    mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast;
+    channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
   } else {
     copy(channel.input, mean);
   }

@@ -25,18 +25,13 @@ struct LaneQuadratic {
   std::size_t curvature, curvature_squared, speed_by_curvature, speed_squared;
 };
 
-/// How the two lags of a channel move over a part (chain_schedule.hpp).
+/// What a channel does over a part, as sums of what acts at its start: the mean of the drive, and what the two lags
+/// hold at its end.
 template <typename Scalar>
 struct LaneLag {
-  Scalar mean_gap, end_gap;
-  Scalar slow_mean_gap, slow_end_gap;
-};
-
-/// How a channel answers its commands; the plain chain has neither gain nor slow part.
-template <typename Scalar>
-struct LaneResponse {
-  Scalar gain;
-  Scalar fast;  ///< share of the fast lag
+  Scalar mean_by_input, mean_by_fast, mean_by_slow;
+  Scalar fast_by_input, fast_by_fast;
+  Scalar slow_by_input, slow_by_slow;
 };
 
 /// A part of the control period (chain_schedule.hpp) in the kernel's numbers.
@@ -72,7 +67,6 @@ struct LaneJob {
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
   bool responds;  ///< some channel has a gain or a slow part
-  LaneResponse<Scalar> response_v, response_omega;
 
   std::size_t rollouts, periods;
   const Scalar* v;

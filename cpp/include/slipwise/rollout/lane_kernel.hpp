@@ -40,8 +40,8 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
                                TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
   typename L::Vector mean_omega;
-  advance<L>(part.v, job.response_v, robot.v, mean_v);
-  advance<L>(part.omega, job.response_omega, robot.omega, mean_omega);
+  advance<L, kChain, true>(part.v, robot.v, mean_v);
+  advance<L, kChain, false>(part.omega, robot.omega, mean_omega);
   if constexpr (kQuadratic) {
     quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
   } else {
@@ -58,8 +58,8 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
   const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
   RobotLanes<L, kChain> robot;
-  start_channel(job, block, source_v, job.response_v, job.shift_v, robot.v);
-  start_channel(job, block, source_omega, job.response_omega, job.shift_omega, robot.omega);
+  start_channel(job, block, source_v, job.shift_v, robot.v);
+  start_channel(job, block, source_omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
   OutputLanes<L> output(job, block);
   RobotLanes<L, kChain> aside = robot;
@@ -68,10 +68,10 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
     if (kChain == Chain::None || part.next_v) {
-      tell(job, block, source_v, job.response_v, robot.v);
+      tell(job, block, source_v, robot.v);
     }
     if (kChain == Chain::None || part.next_omega) {
-      tell(job, block, source_omega, job.response_omega, robot.omega);
+      tell(job, block, source_omega, robot.omega);
     }
     TangentLanes<L> tangent;
     drive_part<L, kChain, kQuadratic>(job, part, robot, tangent);
