@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -58,16 +59,17 @@ double advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDeca
 template <typename Slopes>
 class Channel {
  public:
-  /// What the fast part of a settled drive does not explain is the slow part's.
-  Channel(const ChannelResponse& response, double drive, const Moving<Slopes>& told)
+  /// What the fast part does not explain is the slow part's; where it is not known, it is settled.
+  Channel(const ChannelResponse& response, double drive, const Moving<Slopes>& told, std::optional<double> known_fast)
       : response_(response), told_(told) {
-    const double fast = response.has_slow_part() ? (1.0 - response.share()) * response.gain * told.value : drive;
+    const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told.value) : drive;
     fast_ = {fast, told.by};
     slow_ = {drive - fast, told.by};
   }
 
   void tell(const Moving<Slopes>& told) { told_ = told; }
   double value() const { return fast_.value + slow_.value; }
+  double fast() const { return fast_.value; }
 
   Moving<Slopes> linearize_step(double duration, double duration_by_length) {
     Moving<Slopes> integral =
@@ -140,9 +142,10 @@ class ManoeuvreWalk {
       : chain_(model.chain()),
         held_(std::move(held)),
         settling_(settling),
-        v_(speed_response(model.chain()), start.drive.v, {start.told.v, 0.0}),
-        vy_(speed_response(model.chain()), start.drive.vy, {start.told.vy, 0.0}),
-        omega_(turn_response(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()}),
+        v_(speed_response(model.chain()), start.drive.v, {start.told.v, 0.0}, fast_of(start, &BodyTwist::v)),
+        vy_(speed_response(model.chain()), start.drive.vy, {start.told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
+        omega_(turn_response(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()},
+               fast_of(start, &BodyTwist::omega)),
         end_(model) {}
 
   template <bool kSlopes>
@@ -173,10 +176,15 @@ class ManoeuvreWalk {
   }
 
   BodyTwist drive() const { return {.v = v_.value(), .vy = vy_.value(), .omega = omega_.value()}; }
+  BodyTwist fast() const { return {.v = v_.fast(), .vy = vy_.fast(), .omega = omega_.fast()}; }
   Pose2 pose() const { return end_.pose(); }
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
+  static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
+    return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
+  }
+
   /// A time and its derivative by the manoeuvre's length.
   struct Moment {
     double t;
@@ -262,6 +270,7 @@ ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& f
   walk.record(path);
   walk.run<false>();
   path.drive = walk.drive();
+  path.fast = walk.fast();
   return path;
 }
 
