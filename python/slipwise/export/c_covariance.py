@@ -80,9 +80,8 @@ def covariance(model: Model) -> str:
     """Return the roots of the parameters' covariance and the tails, and the prediction that uses them."""
     rows = _roots(model)
     seconds = sorted(model.content.noise.tails) or [0.0]
-    tails = [
-        (s, np.log(tail_at(model, s).growth).item(), np.log(tail_at(model, s).dof).item()) for s in seconds
-    ]
+    at = [(s, tail_at(model, s)) for s in seconds]
+    tails = [(s, math.log(tail.growth), math.log(tail.dof)) for s, tail in at]
     text = [f"    {{{_numbers(row)}}}" for row in rows] or ["    {SLIPWISE_R(0)}"]
     return _filled(
         "covariance_template.h",
