@@ -18,6 +18,7 @@
 #include "slipwise/estimate/sliding_mode_observer.hpp"
 #include "slipwise/estimate/slip_rate_fit.hpp"
 #include "slipwise/estimate/slip_ratio_filter.hpp"
+#include "slipwise/estimate/weighing.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -66,10 +67,14 @@ void bind_settings(nb::module_& m) {
       .def_rw("trial", &ChangeSettings::trial)
       .def_rw("warm_up", &ChangeSettings::warm_up)
       .def_rw("memory", &ChangeSettings::memory);
+  nb::class_<WeighingSettings>(m, "WeighingSettings")
+      .def(nb::init<>())
+      .def_rw("learning_rate", &WeighingSettings::learning_rate)
+      .def_rw("share", &WeighingSettings::share);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
       .def(nb::init<>())
-      .def_rw("learning_rate", &ModelAverageSettings::learning_rate)
-      .def_rw("share", &ModelAverageSettings::share)
+      .def_rw("weighing", &ModelAverageSettings::weighing)
+      .def_rw("richest", &ModelAverageSettings::richest)
       .def_rw("change", &ModelAverageSettings::change);
   nb::class_<BatchSettings>(m, "BatchSettings")
       .def(nb::init<>())
@@ -254,10 +259,10 @@ void bind_estimate(nb::module_& m) {
       .def_ro("alarm", &ChangeTest::alarm);
   m.def(
       "reweighed",
-      [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const ModelAverageSettings& settings) {
-        return reweighed(weights, log_scores, settings);
-      },
-      "weights"_a, "log_scores"_a, "settings"_a, "The weights after models predicted with these log scores, [M].");
+      [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const Eigen::VectorXd& prior,
+         const WeighingSettings& settings) { return reweighed(weights, log_scores, prior, settings); },
+      "weights"_a, "log_scores"_a, "prior"_a, "settings"_a,
+      "The weights after models predicted with these log scores, [M]; `prior` are those beforehand.");
   m.def(
       "common_log_scores",
       [](const Eigen::VectorXd& weights, const std::vector<Eigen::Vector3d>& innovations,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of the on-line estimators behind one interface, and of the smoother.
+// Bindings of the estimators behind one interface, and of the smoother.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/string_view.h>
@@ -72,13 +72,16 @@ void bind_smoother(nb::module_& m) {
 void bind_estimators(nb::module_& m) {
   bind_estimator_settings(m);
   bind_smoother(m);
-  nb::class_<Estimator>(m, "Estimator", "An on-line estimator of a model's parameters.")
+  nb::class_<Estimator>(m, "Estimator", "An estimator of a model's parameters.")
       .def("learn", &Estimator::learn, "inputs"_a, "segment"_a)
       .def("estimate", &Estimator::estimate)
+      .def("running", &Estimator::running, "What learning goes on from: the estimate, unless that fits all segments.")
       .def_prop_ro("model", &Estimator::model);
   m.def("estimator_names", &estimator_names, "Names that make_estimator knows.");
   m.def("learns_overlapping_segments", &learns_overlapping_segments, "name"_a,
         "True for those that the thesis feeds with overlapping segments at 20 Hz.");
+  m.def("fits_all_segments", &fits_all_segments, "name"_a,
+        "True for those whose estimate is a fit over all segments at once, off-line.");
   m.def("make_estimator", &make_estimator, "name"_a, "model"_a, "prior"_a, "settings"_a, "An estimator by its name.");
   nb::class_<FollowingEstimator>(m, "FollowingEstimator",
                                  "An estimator whose prior follows the speeds and whose noise follows the residuals.")
@@ -90,6 +93,7 @@ void bind_estimators(nb::module_& m) {
           "name"_a, "model"_a, "filter"_a, "settings"_a)
       .def("learn", &FollowingEstimator::learn, "inputs"_a, "segment"_a)
       .def("estimate", &FollowingEstimator::estimate)
+      .def("running", &FollowingEstimator::running)
       .def_prop_ro("model", &FollowingEstimator::model)
       .def_prop_ro("prior_std", &FollowingEstimator::prior_std)
       .def_prop_ro("noise_scale", &FollowingEstimator::noise_scale);

@@ -17,6 +17,7 @@ NB_MODULE(_core, m) {
   bind_rollout(m);
   bind_planning(m);
   bind_estimate(m);
+  bind_coloured_slip(m);
   bind_regression(m);
   bind_estimators(m);
 }

@@ -53,13 +53,14 @@ _HOMES = {
 }
 
 
-def calibrate(
+def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
     log: Log,
     *,
     basis: str | None = None,
     input_name: str | None = None,
     settings: Settings | None = None,
-    batch: bool = False,
+    estimator: str | None = None,
+    smooth: bool = False,
 ) -> Calibration:
     """Learn the motion model of the robot in `log`; see `slipwise.calibration.calibrate`.
 
@@ -68,18 +69,18 @@ def calibrate(
         basis: "auto" or a named basis; short for `settings` with that basis.
         input_name: "command" or "wheel"; by default commands where the log has them.
         settings: what to learn and how.
-        batch: fit all windows at once off-line.
+        estimator: "average", "iekf", "delayed-state", "ekf-thesis", "gradient-descent", or "batch", which
+            fits all windows at once, off-line; short for `settings` with that estimator.
+        smooth: also say what the slip was during each window, given the whole log.
 
     Raises:
         LogError: the log has no such input, no poses, or no window to learn from.
-        SettingsError: the basis is unknown.
+        SettingsError: the basis or the estimator is unknown.
     """
     from slipwise import calibration
 
-    chosen = settings or calibration.Settings()
-    if basis is not None:
-        chosen = chosen.model_copy(update={"basis": basis})
-    return calibration.calibrate(log, input_name=input_name, settings=chosen, batch=batch)
+    chosen = (settings or calibration.Settings()).choosing(basis, estimator)
+    return calibration.calibrate(log, input_name=input_name, settings=chosen, smooth=smooth)
 
 
 def __getattr__(name: str) -> Any:

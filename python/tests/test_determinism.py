@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from sample_logs import Drive, simulated_log
 
-from slipwise.calibration import calibrate
+from slipwise.calibration import Settings, calibrate
 from slipwise.evaluation import EvaluationOptions, evaluate, write_predictions
 from slipwise.logs import Log, open_log
 
@@ -22,13 +22,14 @@ def log_of(source: str, request: pytest.FixtureRequest) -> Log:
     return open_log(folder / "warthog/grass_8_8_16h11s19.csv.gz")
 
 
-@pytest.mark.parametrize("batch", [False, True])
+@pytest.mark.parametrize("estimator", ["average", "batch"])
 @pytest.mark.parametrize("source", ["simulated", "real"])
 def test_model_files_are_equal_byte_by_byte(
-    source: str, batch: bool, tmp_path: Path, request: pytest.FixtureRequest
+    source: str, estimator: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
+    settings = Settings(estimator=estimator)
     paths = [
-        calibrate(log_of(source, request), input_name="wheel", batch=batch).model.save(tmp_path / name)
+        calibrate(log_of(source, request), input_name="wheel", settings=settings).model.save(tmp_path / name)
         for name in ("one.yaml", "two.yaml")
     ]
     assert paths[0].read_bytes() == paths[1].read_bytes()

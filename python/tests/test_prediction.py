@@ -138,6 +138,6 @@ def test_plain_model_and_vendor_multiplier_are_their_formulas(v: float, omega: f
         (plain_forecaster(Settings()), omega),
         (vendor_forecaster(1.875, Settings()), omega / 1.875),
     ):
-        at = _core.linearize_segment(forecaster.model, forecaster.belief(0).mean, track, segment)
+        at = _core.linearize_segment(forecaster.belief(0).motion, forecaster.belief(0).mean, track, segment)
         expected = _core.exp(np.array([v, 0.0, rate]) * 3.0).vector()
         assert at.predicted.vector() == pytest.approx(expected, abs=1e-12)

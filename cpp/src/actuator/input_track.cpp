@@ -6,35 +6,37 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace slipwise {
 
 InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
-                       std::span<const double> omega)
-    : t_(t.begin(), t.end()) {
+                       std::span<const double> omega) {
   if (v.size() != t.size() || vy.size() != t.size() || omega.size() != t.size()) {
     throw std::invalid_argument("inputs t, v, vy, omega must have equal lengths, got " + std::to_string(t.size()) +
                                 ", " + std::to_string(v.size()) + ", " + std::to_string(vy.size()) + ", " +
                                 std::to_string(omega.size()));
   }
-  samples_.reserve(t.size());
+  Samples samples{.t = {t.begin(), t.end()}, .twist = {}};
+  samples.twist.reserve(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
     const bool finite = std::isfinite(t[i]) && std::isfinite(v[i]) && std::isfinite(vy[i]) && std::isfinite(omega[i]);
     if (!finite || (i > 0 && t[i] <= t[i - 1])) {
       throw std::invalid_argument("input " + std::to_string(i) +
                                   " is not finite or its time does not increase; clean the log first");
     }
-    samples_.push_back({v[i], vy[i], omega[i]});
+    samples.twist.push_back({v[i], vy[i], omega[i]});
   }
+  samples_ = std::make_shared<const Samples>(std::move(samples));
 }
 
 std::size_t InputTrack::count_until(double t) const {
-  return static_cast<std::size_t>(std::ranges::upper_bound(t_, t) - t_.begin());
+  return static_cast<std::size_t>(std::ranges::upper_bound(samples_->t, t) - samples_->t.begin());
 }
 
 BodyTwist InputTrack::at(double t) const {
   const std::size_t count = count_until(t);
-  return count == 0 ? BodyTwist{} : samples_[count - 1];
+  return count == 0 ? BodyTwist{} : samples_->twist[count - 1];
 }
 
 }  // namespace slipwise

@@ -45,11 +45,11 @@ Eigen::VectorXd FollowingEstimator::prior_std() const {
 IekfUpdate FollowingEstimator::learn(const InputTrack& inputs, const Segment& segment) {
   driven_.see(inputs, segment);
   follow();
-  const SegmentPath path = integrate_segment(model(), estimate().mean, inputs, segment);
+  const SegmentPath path = integrate_segment(model(), running().mean, inputs, segment);
   const Eigen::Matrix3d expected =
       segment_noise(path, segment.measured, settings_.noise.shape, Eigen::Vector3d::Ones());
   IekfUpdate update = estimator_.learn(inputs, segment);
-  noise_scale_.learn(model(), estimate(), inputs, segment, expected.diagonal());
+  noise_scale_.learn(model(), running(), inputs, segment, expected.diagonal());
   estimator_.scale_noise(noise_scale_.value());
   return update;
 }

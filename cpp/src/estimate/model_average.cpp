@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causal model averaging with a fixed share (Herbster and Warmuth 1998) of a tempered predictive density (Gruenwald
-// 2012).
+// Causal model averaging, and the trial of what forgot against what did not after a change of ground.
 #include "slipwise/estimate/model_average.hpp"
 
 #include <Eigen/Cholesky>
@@ -10,7 +9,6 @@
 #include <string>
 #include <utility>
 
-#include "slipwise/estimate/predictive_score.hpp"
 
 namespace slipwise {
 namespace {
@@ -23,6 +21,22 @@ Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
     throw std::invalid_argument("a model average needs at least one slip basis");
   }
   return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
+}
+
+/// Weights beforehand: `richest` for the basis with the most terms, the rest in equal parts.
+Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double richest) {
+  if (!(richest > 0.0 && richest < 1.0)) {
+    throw std::invalid_argument("the weight of the richest basis must lie between 0 and 1, got " +
+                                std::to_string(richest));
+  }
+  const auto most = std::ranges::max_element(bases, {}, &Basis::size);
+  if (bases.size() == 1) {
+    return Eigen::VectorXd::Ones(1);
+  }
+  const auto others = static_cast<double>(bases.size() - 1);
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(std::ssize(bases), (1.0 - richest) / others);
+  weights[most - bases.begin()] = richest;
+  return weights;
 }
 
 std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& whole) {
@@ -54,26 +68,12 @@ std::vector<Eigen::Index> changing_terms(const Basis& basis) {
 
 }  // namespace
 
-Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
-                          const ModelAverageSettings& settings) {
-  if (weights.size() != log_scores.size() || weights.size() == 0) {
-    throw std::invalid_argument("each model needs a weight and a log score, got " + std::to_string(weights.size()) +
-                                " weights and " + std::to_string(log_scores.size()) + " scores");
-  }
-  const double equal = 1.0 / static_cast<double>(weights.size());
-  // Shared before the segment speaks, not after: what is spread to models that it refutes never reaches a prediction.
-  const Eigen::ArrayXd shared = (1.0 - settings.share) * weights.array() + settings.share * equal;
-  const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
-  const Eigen::VectorXd heavier = shared * tempered.exp();
-  return heavier / heavier.sum();
-}
-
 ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                            const CausalFilterSettings& filter, const ModelAverageSettings& settings)
     : model_(averaged_basis(std::move(name), bases), learned),
       settings_(settings),
-      weights_(
-          Eigen::VectorXd::Constant(static_cast<Eigen::Index>(bases.size()), 1.0 / static_cast<double>(bases.size()))),
+      prior_(prior_weights(bases, settings.richest)),
+      weights_(prior_),
       changing_(changing_terms(model_.basis())),
       detector_(settings.change) {
   for (const Basis& basis : bases) {
@@ -98,7 +98,9 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
-  weights_ = reweighed(weights_, common_log_scores(weights_, innovations, covariances), settings_);
+  const Eigen::Index rivals = weights_.size() / prior_.size();
+  const Eigen::VectorXd prior = prior_.replicate(rivals, 1) / static_cast<double>(rivals);
+  weights_ = reweighed(weights_, common_log_scores(weights_, innovations, covariances), prior, settings_.weighing);
   if (on_trial_ > 0) {
     --on_trial_;
     if (on_trial_ == 0) {

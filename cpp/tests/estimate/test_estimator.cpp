@@ -90,7 +90,7 @@ TEST_CASE("the thesis's filter is Table 6.1 line by line") {
 TEST_CASE("an unknown name is refused with the names that are known, a wrong prior with its size") {
   const MotionModel model(named_basis("edd-2"), {});
   CHECK_THROWS_WITH_AS(make_estimator("magic", model, wide_prior(model), {}),
-                       "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state",
+                       "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state, batch",
                        std::invalid_argument);
   CHECK_THROWS_AS(learns_overlapping_segments("magic"), std::invalid_argument);
   CHECK_THROWS_AS(make_estimator("iekf", model, {Eigen::VectorXd::Zero(2), Eigen::MatrixXd::Identity(3, 3)}, {}),
@@ -121,7 +121,7 @@ TEST_CASE("every estimator takes a prior of other speeds") {
   const auto drive =
       tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.2), {.seed = 90, .windows = 40, .noise = kNoise});
   const Eigen::Vector2d old_std(0.2, 0.2), new_std(0.4, 0.1);
-  for (const std::string& name : {std::string("iekf"), std::string("delayed-state")}) {
+  for (const std::string& name : {std::string("iekf"), std::string("delayed-state"), std::string("batch")}) {
     CAPTURE(name);
     EstimatorSettings settings;
     settings.noise = kNoise;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""From a log to a model with a verdict: the causal pass by default, the batch fit where asked for."""
+"""From a log to a model with a verdict: what is kept, judged by what was known causally."""
 
 from __future__ import annotations
 
@@ -8,9 +8,6 @@ from importlib.metadata import version
 
 import numpy as np
 
-from slipwise import _core
-from slipwise.calibration.batch import fit_batch
-from slipwise.calibration.causal_pass import CausalPass, HistoryRecorder
 from slipwise.calibration.drive import (
     DriveRun,
     WindowSet,
@@ -19,11 +16,12 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
-from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
+from slipwise.calibration.learner import Belief, Progress
+from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.plain import plain_forecaster
-from slipwise.calibration.result import Calibration, History, Verdict
+from slipwise.calibration.result import Calibration, Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import StructureChoice, learning_pass
+from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Judgement, give_verdict, judge
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
@@ -37,7 +35,6 @@ JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
 class _Learned:
     """What learning gave, before it is put into a model file."""
 
-    motion: _core.MotionModel
     belief: Belief
     tails: dict[float, schema.Tail]
     judgement: Judgement
@@ -49,7 +46,7 @@ def calibrate(
     *,
     input_name: str | None = None,
     settings: Settings | None = None,
-    batch: bool = False,
+    smooth: bool = False,
     progress: Progress | None = None,
 ) -> Calibration:
     """Learn the motion model of the robot in `log`.
@@ -57,8 +54,10 @@ def calibrate(
     Args:
         log: what `open_log` returned.
         input_name: "command" or "wheel"; by default commands where the log has them.
-        settings: what to learn and how.
-        batch: fit all windows at once off-line; the verdict is still that of the causal pass.
+        settings: what to learn and how. Where the estimator fits all windows at once, off-line, the verdict
+            is that of the filter that runs along.
+        smooth: also say what the slip was during each window, given the whole log: for slip that changes
+            slowly. The model stays what it is.
         progress: called with the share done, 0 to 1.
 
     Raises:
@@ -70,24 +69,16 @@ def calibrate(
     drive = prepare_drive(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    learner = make_learner(settings, input_name)
-    average = learner.fresh()
-    names = tuple(basis.name for basis in learner.bases)
-    recorder = HistoryRecorder(average.model, windows, names, progress)
-    passing = (
-        CausalPass(average, windows, recorder)
-        if batch
-        else learning_pass(average, windows, settings, recorder)
-    )
-    shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", average.model, shape, passing.belief, learner.dynamics)
-    learned = _judged(forecaster, passing, windows, settings)
-    history = recorder.history if isinstance(passing, CausalPass) else passing.history(recorder.history)
-    if batch:
-        learned = fit_batch_over(learned, learner, windows, average.reference_speeds)
-    model = Model(_content(learned, (log, input_name, settings), windows, history))
+    run = start_learning(settings, input_name, windows, record=True, progress=progress)
+    learned = _judged(run, windows, settings)
+    model = Model(_content(learned, (log, input_name, settings), windows, run.bases))
     return Calibration(
-        model, learned.verdict, None if batch else history, log.left_out + windows.left_out, log.notes
+        model,
+        learned.verdict,
+        run.history(),
+        log.left_out + windows.left_out,
+        log.notes,
+        smooth_windows(learned.belief, windows, settings) if smooth else None,
     )
 
 
@@ -111,50 +102,41 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(
-    forecaster: Forecaster, passing: CausalPass | StructureChoice, windows: WindowSet, settings: Settings
-) -> _Learned:
-    """Judge the causal pass on its own held-out windows, at the longest horizon with enough of them."""
+def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
+    """Judge what is known causally on held-out windows, at the longest horizon with enough of them."""
+    shape = settings.filter_settings().noise.shape
+    forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
-    belief = passing.finish()
-    tails = {p.horizon: final_tail(p, cascade=belief.motion is not None) for p in predictions}
+    belief = run.kept()
+    tails = {p.horizon: final_tail(p, belief.structure) for p in predictions}
     enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    motion = belief.motion or forecaster.model
-    names = tuple(info.name for info in motion.parameters)
-    return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))
-
-
-def fit_batch_over(
-    learned: _Learned, learner: Learner, windows: WindowSet, speeds: tuple[float, float]
-) -> _Learned:
-    """Replace the causal belief by the batch fit over all windows; the verdict stays the causal one's."""
-    noise = learner.settings.filter_settings().noise.shape
-    belief = fit_batch(learned.motion, windows, learner.settings, (noise, learned.belief.noise_scale), speeds)
-    return _Learned(learned.motion, belief, learned.tails, learned.judgement, learned.verdict)
+    names = tuple(info.name for info in belief.motion.parameters)
+    return _Learned(belief, tails, judgement, give_verdict(judgement, names, belief))
 
 
 def _content(
-    learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, history: History
+    learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, bases: tuple[str, ...]
 ) -> schema.ModelFile:
     log, input_name, settings = given
-    basis = learned.motion.basis
+    motion = learned.belief.motion
+    basis = motion.basis
     return schema.ModelFile(
         slipwise_model=schema.SCHEMA_VERSION,
         input="command" if input_name == "command" else "wheel",
         slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
-        dynamics=learned.motion.dynamics,
-        clock_offset=learned.motion.clock_offset,
-        response=learned.motion.response,
-        parameters=_parameters(learned.motion, learned.belief),
+        dynamics=motion.dynamics,
+        clock_offset=motion.clock_offset,
+        response=motion.response,
+        parameters=_parameters(learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
         range=_range(windows.drive),
-        weights=dict(zip(history.bases, map(float, learned.belief.weights), strict=False)),
+        weights=dict(zip(bases, map(float, learned.belief.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=version("slipwise"),
             logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
@@ -172,7 +154,7 @@ def _content(
     )
 
 
-def _parameters(motion: _core.MotionModel, belief: Belief) -> list[schema.Parameter]:
+def _parameters(belief: Belief) -> list[schema.Parameter]:
     stds = np.sqrt(np.diag(belief.covariance))
     return [
         schema.Parameter(
@@ -183,7 +165,7 @@ def _parameters(motion: _core.MotionModel, belief: Belief) -> list[schema.Parame
             prior_std=float(belief.prior_std[i]),
             determined=bool(belief.variance_ratio[i] <= UNDETERMINED_RATIO),
         )
-        for i, info in enumerate(motion.parameters)
+        for i, info in enumerate(belief.motion.parameters)
     ]
 
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.core_learners import AverageLearner, EstimatorLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
-from slipwise.calibration.learner import Belief, make_learner
+from slipwise.calibration.learner import CASCADE, Belief, make_learner
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings
 from slipwise.calibration.wheel_drive import chain_runs, wheel_runs
 
@@ -25,46 +26,30 @@ class CascadePass:
 
     def __init__(self, windows: WindowSet, settings: Settings) -> None:
         """`windows` are those of the commands; each of their runs has wheel speeds."""
-        self._windows = windows
         rules = replace(settings.rules(), whole_frames=True)
-        self._slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
-        self._chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, rules)
-        slip = make_learner(settings, "wheel").fresh()
-        self._slip = CausalPass(slip, self._slip_windows, self._see)
+        slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
+        chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, rules)
+        average = make_learner(settings, "wheel").fresh()
+        self._average = AverageLearner(average)
+        self._slip = CausalPass(self._average, slip_windows, self._see, pace=windows)
+        self._chain = CausalPass(EstimatorLearner(_chain_estimator(settings)), chain_windows, pace=windows)
         self._changes: list[_core.ChangeTest] = []
-        self._chain = _chain_estimator(settings)
-        self._chain_learned = 0
-        self._offset = slip.model.clock_offset
-        self.motion = _core.MotionModel.with_response(slip.model.basis, self._offset)
+        self.motion = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
-        slip = self._slip.belief(self._passed(self._slip_windows, count))
-        until = self._passed(self._chain_windows, count)
-        for i in range(self._chain_learned, until):
-            self._chain.learn(self._chain_windows.track(i), self._chain_windows.segments[i])
-        self._chain_learned = max(self._chain_learned, until)
-        return self._joined(slip, noise_scale)
+        return self._joined(self._slip.belief(count), self._chain.belief(count), noise_scale)
 
     def change(self, i: int) -> _core.ChangeTest:
         """Return the strongest test for a change of ground while window i of the commands passed."""
-        before, after = (self._passed(self._slip_windows, count) for count in (i, i + 1))
-        tests = self._changes[before:after] or [_core.ChangeTest()]
+        tests = self._changes[self._slip.passed(i) : self._slip.passed(i + 1)] or [_core.ChangeTest()]
         return max(tests, key=lambda test: (test.alarm, test.log_odds))
 
-    def _see(self, _i: int, _update: _core.IekfUpdate, change: _core.ChangeTest, _belief: Belief) -> None:
-        self._changes.append(change)
+    def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
+        self._changes.append(self._average.change)
 
-    def _passed(self, windows: WindowSet, count: int) -> int:
-        """How many of `windows` had ended when the last of `count` windows of the commands did."""
-        if count == 0 or len(windows) == 0:
-            return 0
-        last = slice(count - 1, count)
-        return int(windows.count_until(self._windows.position[last], self._windows.end[last])[0])
-
-    def _joined(self, slip: Belief, noise_scale: np.ndarray) -> Belief:
+    def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
         """Put slip, chain and clock offset, which is learned with the slip, into one belief."""
-        chain = self._chain.estimate()
         size, slips, chains = self.motion.size, self.motion.slip_size, len(chain.mean)
         with_slip = np.r_[0:slips, slips + chains : size]
         of_chain = np.arange(slips, slips + chains)
@@ -73,10 +58,11 @@ class CascadePass:
         mean[with_slip], mean[of_chain] = slip.mean, chain.mean
         covariance[np.ix_(with_slip, with_slip)] = slip.covariance
         covariance[np.ix_(of_chain, of_chain)] = chain.covariance
-        prior_std[with_slip], prior_std[of_chain] = slip.prior_std, self._chain.prior_std
-        ratio[with_slip] = slip.variance_ratio
-        ratio[of_chain] = np.diag(chain.covariance) / np.array(self._chain.prior_std) ** 2
-        return Belief(mean, covariance, noise_scale, prior_std, ratio, slip.weights, self.motion)
+        prior_std[with_slip], prior_std[of_chain] = slip.prior_std, chain.prior_std
+        ratio[with_slip], ratio[of_chain] = slip.variance_ratio, chain.variance_ratio
+        return Belief(
+            self.motion, mean, covariance, noise_scale, prior_std, ratio, slip.weights, structure=CASCADE
+        )
 
 
 def _chain_estimator(settings: Settings) -> _core.FollowingEstimator:

@@ -20,6 +20,7 @@ Ints = NDArray[np.int64]
 
 INPUT_NAMES = ("command", "wheel")
 EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
+RECENT_WINDOWS, RECENT_SECONDS = 12, 30.0  # at most, that tell of the slip now
 LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
 
 
@@ -76,6 +77,21 @@ class WindowSet:
             at = clocks[position] == clock
             counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
         return counts
+
+    def passed(self, pace: WindowSet, count: int) -> int:
+        """Return how many windows had ended when the last of `count` windows of `pace` did."""
+        if count == 0 or len(self) == 0:
+            return 0
+        last = slice(count - 1, count)
+        return int(self.count_until(pace.position[last], pace.end[last])[0])
+
+    def recent(self, count: int, position: int, time: float) -> list[_core.Segment]:
+        """Return those of the first `count` windows that lie in run `position` shortly before `time` [s]."""
+        return [
+            self.segments[i]
+            for i in range(max(0, count - RECENT_WINDOWS), count)
+            if self.position[i] == position and self.start[i] > time - RECENT_SECONDS
+        ]
 
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.coloured_pass import motion_belief
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
@@ -18,15 +19,13 @@ from slipwise.models.schema import Tail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
 class Forecaster:
-    """One method at work: a model, and the belief after any number of learned windows."""
+    """One method at work: the belief after any number of learned windows."""
 
     method: str
-    model: _core.MotionModel
     noise: _core.MotionNoise
     belief: Callable[[int], Belief]  # asked for in the order learned: the number of windows never decreases
     starts_from_wheels: bool  # the drive's measured twist at the start is used
@@ -46,11 +45,12 @@ class _Draft:
 
     targets: WindowSet
     counts: Ints  # windows learned before the prediction
+    recent_counts: Ints  # windows that ended by its start: what they say of the slip now is used
     in_sample_counts: Ints
     pose: Floats
     covariance: Floats
     in_sample: Floats
-    cascade: Bools  # predicted by the method's other structure: its errors are another population
+    structure: Ints  # that predicted: the errors of each are a population of their own
 
 
 def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> Predictions:
@@ -70,9 +70,9 @@ def forecast_all(
     for k in np.argsort(count, kind="stable").tolist():
         belief, draft = forecaster.belief(int(count[k])), drafts[kind[k] // 2]
         if kind[k] % 2 == 0:
-            _predict(forecaster, belief, draft, int(index[k]))
+            _predict((forecaster, learned), belief, draft, int(index[k]))
         else:
-            _predict_in_sample(forecaster, belief, draft, int(index[k]))
+            _predict_in_sample(belief, draft, int(index[k]))
     return tuple(_finished(forecaster, learned, draft) for draft in drafts)
 
 
@@ -82,33 +82,39 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
     return _Draft(
         targets,
         counts,
+        learned.count_until(targets.position, targets.start),
         in_sample_counts,
         np.empty((size, 3)),
         np.empty((size, 3, 3)),
         np.empty((size, 3)),
-        np.zeros(size, dtype=bool),
+        np.zeros(size, dtype=np.int64),
     )
 
 
-def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
-    targets = draft.targets
-    at = _core.linearize_segment(
-        belief.motion or forecaster.model, belief.mean, targets.track(i), targets.segments[i]
+def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft, i: int) -> None:
+    forecaster, learned = given
+    targets, position = draft.targets, int(draft.targets.position[i])
+    draft.structure[i] = belief.structure
+    if belief.coloured is None:
+        at = _core.linearize_segment(belief.motion, belief.mean, targets.track(i), targets.segments[i])
+        draft.pose[i] = at.predicted.vector()
+        draft.covariance[i] = _core.prediction_covariance(
+            at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
+        )
+        return
+    expected = belief.coloured.predict(
+        motion_belief(belief, forecaster.noise),
+        targets.track(i),
+        learned.recent(int(draft.recent_counts[i]), position, float(targets.start[i])),
+        targets.segments[i],
     )
-    draft.pose[i], draft.cascade[i] = at.predicted.vector(), belief.motion is not None
-    draft.covariance[i] = _core.prediction_covariance(
-        at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
-    )
+    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
 
 
-def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
+def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     path = _core.integrate_segment(
-        belief.motion or forecaster.model,
-        belief.mean,
-        targets.track(i),
-        targets.segments[i],
-        _core.Integrator.Exact,
+        belief.motion, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
     )
     draft.in_sample[i] = path.poses[-1]
 
@@ -117,7 +123,7 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
     targets, pose = draft.targets, draft.pose
     known = targets.count_until(targets.position, targets.start - targets.length)
     squared = normalised_squared(residual(targets.measured, pose), draft.covariance)
-    tails = _tails_of_each(known, squared, draft.cascade)
+    tails = _tails_of_each(known, squared, draft.structure)
     left = residual(targets.measured, draft.in_sample)
     return Predictions(
         method=forecaster.method,
@@ -129,27 +135,27 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         covariance=draft.covariance * tails.growth[:, None, None],
         growth=tails.growth,
         dof=tails.dof,
-        cascade=draft.cascade,
+        structure=draft.structure,
         measured=targets.measured,
         learned_until=_learned_until(forecaster, (learned, draft.counts), (targets, known), targets),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 
 
-def _tails_of_each(known: Ints, squared: Floats, cascade: Bools) -> Tails:
+def _tails_of_each(known: Ints, squared: Floats, structure: Ints) -> Tails:
     """The tails of each structure's predictions, from the errors of that structure alone."""
     growth, dof = np.empty(len(known)), np.empty(len(known))
-    for structure in (False, True):
-        at = cascade == structure
+    for each in np.unique(structure).tolist():
+        at = structure == each
         earlier = np.concatenate(([0], np.cumsum(at)))
         tails = learn_tails(earlier[known[at]], squared[at])
         growth[at], dof[at] = tails.growth, tails.dof
     return Tails(growth, dof)
 
 
-def final_tail(predictions: Predictions, *, cascade: bool) -> Tail:
+def final_tail(predictions: Predictions, structure: int) -> Tail:
     """Growth and degrees of freedom at this horizon from all held-out windows of the structure kept."""
-    squared = predictions.stated_nis[predictions.cascade == cascade]
+    squared = predictions.stated_nis[predictions.structure == structure]
     tails = learn_tails(np.array([len(squared)]), squared)
     return Tail(growth=float(tails.growth[0]), dof=float(tails.dof[0]))
 

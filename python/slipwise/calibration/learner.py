@@ -15,19 +15,24 @@ from slipwise.calibration.settings import Settings
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
+STRUCTURES = ("together", "cascade")  # how chain and slip are learned from commands
+TOGETHER, CASCADE = range(len(STRUCTURES))
+
 
 @dataclass(frozen=True, eq=False)
 class Belief:
     """What is believed of a model's parameters at one moment."""
 
+    motion: _core.MotionModel  # whose parameters these are
     mean: Floats  # [P]
     covariance: Floats  # [P, P]
     noise_scale: Floats  # [3]
     prior_std: Floats  # [P]
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
-    motion: _core.MotionModel | None = None  # whose parameters these are, where it is not the forecaster's
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
+    coloured: _core.ColouredSlip | None = None  # how slip wanders about this belief, where that is learned
+    structure: int = TOGETHER  # of STRUCTURES; the errors of each are a population of their own
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,16 +60,3 @@ def make_learner(settings: Settings, input_name: str) -> Learner:
     """Return the learner that the settings ask for: commands bring lag and delay, wheels a clock offset."""
     dynamics = input_name == "command"
     return Learner(settings, tuple(settings.bases()), dynamics, settings.learn_clock_offset and not dynamics)
-
-
-def belief_of(average: _core.ModelAverage) -> Belief:
-    """Return the belief of the estimator now."""
-    state = average.state()
-    return Belief(
-        mean=np.array(state.estimate.mean),
-        covariance=np.array(state.estimate.covariance),
-        noise_scale=np.array(state.noise_scale),
-        prior_std=np.array(state.prior_std),
-        variance_ratio=np.array(state.variance_ratio),
-        weights=np.array(state.weights),
-    )

@@ -37,11 +37,13 @@ def model_forecaster(model: Model) -> Forecaster:
     """`model`: a model file as it is."""
     size = len(model.mean)
     noise = np.array(model.content.noise.scale)
-    belief = Belief(model.mean, model.covariance, noise, np.ones(size), np.ones(size), np.ones(1))
-    return Forecaster("model", model.motion, model.noise, lambda _: belief, model.content.dynamics)
+    belief = Belief(
+        model.motion, model.mean, model.covariance, noise, np.ones(size), np.ones(size), np.ones(1)
+    )
+    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics)
 
 
 def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:
     size = len(mean)
-    belief = Belief(mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1))
-    return Forecaster(method, model, settings.filter_settings().noise.shape, lambda _: belief, False)
+    belief = Belief(model, mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1))
+    return Forecaster(method, settings.filter_settings().noise.shape, lambda _: belief, False)

@@ -12,7 +12,6 @@ from slipwise.student import share_inside
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +27,7 @@ class Predictions:
     covariance: Floats  # [N, 3, 3] of a Student t, growth included
     growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
     dof: Floats  # [N] degrees of freedom of the t, from the same windows; few are heavy tails
-    cascade: Bools  # [N] predicted by chain and slip in cascade
+    structure: Ints  # [N] of STRUCTURES, that predicted
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
     in_sample: Floats  # [N, 2] position [m], heading [rad] error after learning the window (Table 6.2)

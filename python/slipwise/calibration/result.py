@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.logs.log import LeftOut
 from slipwise.models.model import Model
 
@@ -60,3 +61,4 @@ class Calibration:
     history: History | None  # None for a batch fit
     left_out: tuple[LeftOut, ...]  # of the log and of the segmentation
     notes: tuple[str, ...]
+    smoothed: SmoothedCourse | None = None  # where it was asked for

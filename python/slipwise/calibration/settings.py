@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
 from slipwise.errors import SettingsError
@@ -16,12 +16,15 @@ from slipwise.segments import WindowRules
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
+AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
+ESTIMATORS = (AVERAGE, *_core.estimator_names())
 WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
 _ESTIMATORS = _core.EstimatorSettings()
 _AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
-_CHANGE = _core.ChangeSettings()
+_CHANGE, _DRIFT = _core.ChangeSettings(), _core.DriftSettings()
+_COLOURED = _core.ColouredSlipSettings()
 
 
 class _Section(BaseModel):
@@ -70,11 +73,34 @@ class NoiseTable(_Section):
     adapt: bool = _NOISE.adapt
 
 
+def _known_estimator(name: str) -> str:
+    if name not in ESTIMATORS:
+        raise ValueError(f"unknown estimator '{name}'; known are {', '.join(ESTIMATORS)}")
+    return name
+
+
 Jacobian = Literal["exact", "thesis"]
 
 
 def _name(jacobian: _core.SegmentJacobian) -> Jacobian:
     return cast(Jacobian, jacobian.name.lower())
+
+
+Drift = Literal["mean-reverting", "random-walk"]
+_DRIFTS = {"mean-reverting": _core.Drift.MeanReverting, "random-walk": _core.Drift.RandomWalk}
+
+
+class SmoothingTable(_Section):
+    """Smoothing of slip that changes slowly, with the distance driven."""
+
+    drift: Drift = cast(Drift, {value: name for name, value in _DRIFTS.items()}[_DRIFT.drift])
+    length: Positive = _DRIFT.length
+
+    def drift_settings(self) -> _core.DriftSettings:
+        """Return the core's settings."""
+        settings = _core.DriftSettings()
+        settings.drift, settings.length = _DRIFTS[self.drift], self.length
+        return settings
 
 
 class GradientDescentTable(_Section):
@@ -96,9 +122,21 @@ class AutoTable(_Section):
     """Averaging of bases by how well they predict."""
 
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
-    learning_rate: Positive = _AVERAGE.learning_rate
-    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.share
+    learning_rate: Positive = _AVERAGE.weighing.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.weighing.share
+    richest: Annotated[float, Field(gt=0.0, lt=1.0)] = _AVERAGE.richest
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
+
+
+class ColouredTable(_Section):
+    """Slip that wanders about what was learned: candidates of how far and how slowly."""
+
+    learn: bool = True
+    fractions: list[Positive] = list(_COLOURED.fractions)
+    time_constants: list[Positive] = list(_COLOURED.time_constants)
+    white: Annotated[float, Field(gt=0.0, lt=1.0)] = _COLOURED.white
+    learning_rate: Positive = _COLOURED.weighing.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
 
 
 class ChangeTable(_Section):
@@ -130,6 +168,7 @@ class Settings(_Section):
     """Everything that changes what is learned."""
 
     basis: str = "auto"  # "auto", "custom" (terms below) or a named basis
+    estimator: Annotated[str, AfterValidator(_known_estimator)] = AVERAGE
     terms: BasisTerms = BasisTerms()
     learn_clock_offset: bool = True  # wheel input; from commands the offset is part of the delay
     window: WindowTable = WindowTable()
@@ -137,7 +176,9 @@ class Settings(_Section):
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
+    coloured: ColouredTable = ColouredTable()
     change: ChangeTable = ChangeTable()
+    smoothing: SmoothingTable = SmoothingTable()
     gradient_descent: GradientDescentTable = GradientDescentTable()
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
@@ -177,13 +218,29 @@ class Settings(_Section):
         settings.gradient_descent, settings.ekf_thesis = descent, kalman
         return settings
 
+    def coloured_settings(self) -> _core.ColouredSlipSettings:
+        """Return the core's settings of slip that wanders."""
+        settings, table = _core.ColouredSlipSettings(), self.coloured
+        settings.fractions, settings.time_constants = table.fractions, table.time_constants
+        settings.white, settings.weighing = table.white, _weighing(table)
+        return settings
+
     def average_settings(self) -> _core.ModelAverageSettings:
         """Return the core's settings of model averaging, and of finding a change of ground."""
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
         _copy(self.change, change)
         settings.change = change
-        settings.learning_rate, settings.share = self.auto.learning_rate, self.auto.share
+        settings.weighing, settings.richest = _weighing(self.auto), self.auto.richest
         return settings
+
+    def choosing(self, basis: str | None, estimator: str | None) -> Settings:
+        """Return these settings with another basis or estimator, where one is given.
+
+        Raises:
+            SettingsError: there is no such estimator.
+        """
+        given = {"basis": basis, "estimator": estimator}
+        return make_settings(self.model_dump() | {key: name for key, name in given.items() if name})
 
     def bases(self) -> list[_core.Basis]:
         """Return the bases to learn: several for `auto`, otherwise one.
@@ -240,6 +297,12 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
         raise SettingsError(
             f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
         ) from problem
+
+
+def _weighing(table: AutoTable | ColouredTable) -> _core.WeighingSettings:
+    settings = _core.WeighingSettings()
+    settings.learning_rate, settings.share = table.learning_rate, table.share
+    return settings
 
 
 def _copy(table: _Section, target: object) -> None:

@@ -10,6 +10,7 @@ import typer
 
 from slipwise.cli.options import (
     Basis,
+    Estimator,
     Input,
     Json,
     Logs,
@@ -39,7 +40,15 @@ def calibrate(
     input_name: Input = None,
     basis: Basis = None,
     settings: SettingsFile = None,
-    batch: Annotated[bool, typer.Option("--batch", help="Fit all windows at once, off-line.")] = False,
+    estimator: Estimator = None,
+    smooth: Annotated[
+        bool,
+        typer.Option(
+            "--smooth",
+            help="Also smooth over the whole log (RTS), for slip that changes slowly: smoothed.csv in the "
+            "run folder, and figures in the report. Settings: [smoothing].",
+        ),
+    ] = False,
     report: Report = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no HTML report.")] = False,
     runs: Runs = Path("runs"),
@@ -56,6 +65,7 @@ def calibrate(
       slipwise calibrate drive.mcap -o model.yaml
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
+      slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.calibration import calibrate as learn
@@ -67,7 +77,7 @@ def calibrate(
     from slipwise.logs import open_log
 
     out = Output(json)
-    chosen = chosen_settings(settings, basis)
+    chosen = chosen_settings(settings, basis, estimator)
     refuse_unwritable(output, report, out.written_file)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
@@ -76,13 +86,15 @@ def calibrate(
                 log,
                 input_name=input_name and input_name.value,
                 settings=chosen,
-                batch=batch,
+                smooth=smooth,
                 progress=lambda share: update("learning", share),
             )
             files = {
                 "model": calibration.model.save(folder / "model.yaml"),
                 "settings": write_settings(folder, chosen),
             }
+            if calibration.smoothed is not None:
+                files["smoothed"] = calibration.smoothed.save(folder / "smoothed.csv")
             if not no_report:
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
@@ -139,12 +151,16 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
 
 
 def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
-    """Judge the basis beside doing nothing and edd-2, and write the page."""
+    """Judge what was learned beside doing nothing and edd-2, and write the page."""
+    from slipwise.calibration.settings import AVERAGE
     from slipwise.cli.command_line import command_line
     from slipwise.evaluation import EvaluationOptions, evaluate
     from slipwise.reporting import write_report
 
-    methods = tuple(dict.fromkeys(("none", "edd-2", settings.basis)))
+    learned = [settings.basis if settings.estimator == AVERAGE else settings.estimator]
+    if calibration.history is None:
+        learned.insert(0, "iekf")  # the filter that ran along is what was judged
+    methods = tuple(dict.fromkeys(("none", "edd-2", *learned)))
     evaluation = evaluate(
         log,
         input_name=calibration.model.content.input,

@@ -181,16 +181,16 @@ def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibratio
     """Learn what the judged method learns, for its parameters; None where no method learns."""
     from slipwise import _core
     from slipwise.calibration import calibrate
-    from slipwise.calibration.estimator_pass import estimator_basis
+    from slipwise.calibration.settings import AVERAGE
     from slipwise.cli.evaluation_verdict import judged_method
 
     method = judged_method(evaluation.methods)
     if method is None:
         return None
-    if method in _core.estimator_names():  # its basis, learned by the filter that calibrates
-        settings = settings.model_copy(update={"basis": estimator_basis(settings)})
+    if method in _core.estimator_names():
+        settings = settings.model_copy(update={"estimator": method})
     elif method != "model":
-        settings = settings.model_copy(update={"basis": method})
+        settings = settings.model_copy(update={"basis": method, "estimator": AVERAGE})
     return calibrate(log, input_name=evaluation.input, settings=settings)
 
 

@@ -48,6 +48,15 @@ Basis = Annotated[
         help="Slip basis, such as edd-2 or odd-even-10; default auto, an average of several.",
     ),
 ]
+Estimator = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        show_default=False,
+        help="How to learn: average (the default, weighs bases by how well they predict), iekf, "
+        "delayed-state, ekf-thesis, gradient-descent; batch fits all windows at once, off-line.",
+    ),
+]
 SettingsFile = Annotated[
     Path | None,
     typer.Option("--settings", metavar="FILE.toml", show_default=False, help="Settings of learning."),
@@ -104,17 +113,15 @@ def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
     return wrapper
 
 
-def chosen_settings(file: Path | None, basis: str | None) -> Settings:
-    """Return the settings of a file, or the defaults, with the basis replaced where one is given.
+def chosen_settings(file: Path | None, basis: str | None, estimator: str | None = None) -> Settings:
+    """Return the settings of a file, or the defaults, with what is given replaced.
 
     Raises:
-        SettingsError: the file or the basis is wrong.
+        SettingsError: the file, the basis or the estimator is wrong.
     """
     from slipwise.calibration import Settings, load_settings
 
-    settings = load_settings(file) if file is not None else Settings()
-    if basis is not None:
-        settings = settings.model_copy(update={"basis": basis})
+    settings = (load_settings(file) if file is not None else Settings()).choosing(basis, estimator)
     settings.bases()
     return settings
 

@@ -6,24 +6,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
 from slipwise import _core
-from slipwise.calibration.batch import fit_batch
-from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.estimator_pass import EstimatorPass, estimator_motion
 from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import make_learner
+from slipwise.calibration.learning_run import start_learning
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
-from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import learning_pass
+from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_forecaster
 from slipwise.models.model import Model
-
-BATCH_BASIS = "odd-even-10"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +48,8 @@ def method_names(contest: Contest) -> tuple[str, ...]:
         names.append("model")
     if contest.settings.basis == "custom":
         names.append("custom")
+    if contest.settings.estimator not in (AVERAGE, *names):
+        names.append(contest.settings.estimator)
     return (*names, "auto")
 
 
@@ -68,9 +62,6 @@ def method_info(name: str) -> MethodInfo:
     special = {
         "none": MethodInfo(lambda _, c: plain_forecaster(c.settings), "the plain model: no slip, no lag"),
         "vendor": MethodInfo(_vendor, "a vendor's wheel-separation multiplier"),
-        "batch": MethodInfo(
-            _batch, f"one fit of {BATCH_BASIS} over the whole log, the windows judged included"
-        ),
         "model": MethodInfo(_model, "the model file as it is"),
         "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
         "slip-ratio-ekf": MethodInfo(
@@ -93,25 +84,29 @@ def method_info(name: str) -> MethodInfo:
     if name in _core.basis_names():
         return MethodInfo(_learned, f"the basis {name}, learned causally")
     if name in _core.estimator_names():
-        return MethodInfo(_estimator, f"the estimator {name} with the basis of the settings")
+        off_line = ", fitted to the whole log, the windows judged included"
+        about = off_line if _core.fits_all_segments(name) else ""
+        return MethodInfo(_estimator, f"the estimator {name} with the basis of the settings{about}")
     known = ", ".join([*special, *_core.basis_names(), *_core.estimator_names()])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
 
 
 def _learned(name: str, contest: Contest) -> Forecaster:
-    settings = contest.settings.model_copy(update={"basis": name})
-    learner = make_learner(settings, contest.input_name)
-    average = learner.fresh()
-    shape = settings.filter_settings().noise.shape
-    passing = learning_pass(average, contest.windows, settings)
-    return Forecaster(name, average.model, shape, passing.belief, learner.dynamics)
+    return _run(name, contest, {"basis": name, "estimator": AVERAGE})
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:
-    motion = estimator_motion(name, contest.settings, contest.input_name)
-    passing = EstimatorPass(name, motion, contest.settings, contest.windows)
-    shape = contest.settings.filter_settings().noise.shape
-    return Forecaster(name, motion, shape, passing.belief, motion.dynamics)
+    return _run(name, contest, {"estimator": name})
+
+
+def _run(name: str, contest: Contest, chosen: dict[str, str]) -> Forecaster:
+    settings = contest.settings.model_copy(update=chosen)
+    run = start_learning(settings, contest.input_name, contest.windows)
+    shape = settings.filter_settings().noise.shape
+    if run.causal:
+        return Forecaster(name, shape, run.belief, run.dynamics)
+    kept = run.kept()
+    return Forecaster(name, shape, lambda _: kept, run.dynamics, causal=False)
 
 
 def _surface(name: str, contest: Contest) -> Forecaster:
@@ -134,18 +129,3 @@ def _model(name: str, contest: Contest) -> Forecaster:
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
     return model_forecaster(contest.model)
-
-
-def _batch(name: str, contest: Contest) -> Forecaster:
-    learner = make_learner(contest.settings.model_copy(update={"basis": BATCH_BASIS}), contest.input_name)
-    average = learner.fresh()
-    last = CausalPass(average, contest.windows).finish()
-    shape = contest.settings.filter_settings().noise.shape
-    belief = fit_batch(
-        average.model,
-        contest.windows,
-        learner.settings,
-        (shape, np.array(last.noise_scale)),
-        average.reference_speeds,
-    )
-    return Forecaster(name, average.model, shape, lambda _: belief, learner.dynamics, causal=False)

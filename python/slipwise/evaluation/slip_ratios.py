@@ -5,10 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from slipwise import _core
+from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import Belief
@@ -18,34 +20,15 @@ from slipwise.errors import SettingsError
 SIZE = 6  # parameters of full-linear-6, in which both rivals predict
 
 
+UpdateT = TypeVar("UpdateT")
+
+
 @dataclass(frozen=True)
-class Rival:
+class Rival(Generic[UpdateT]):
     """An estimator of slip ratios: how it learns a window, and what it believes now."""
 
-    learn: Callable[[_core.InputTrack, _core.Segment], object]
+    learn: Callable[[_core.InputTrack, _core.Segment], UpdateT]
     belief: Callable[[], Belief]
-
-
-class RivalPass:
-    """Learns windows in order, only as far as it is asked to."""
-
-    def __init__(self, rival: Rival, windows: WindowSet) -> None:
-        """Start before the first window."""
-        self._rival, self._windows = rival, windows
-        self._learned = 0
-
-    def belief(self, count: int) -> Belief:
-        """Return the belief after `count` windows.
-
-        Raises:
-            ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
-        """
-        if count < self._learned:
-            raise ValueError(f"the belief after {count} windows is gone: {self._learned} are learned")
-        for i in range(self._learned, count):
-            self._rival.learn(self._windows.track(i), self._windows.segments[i])
-        self._learned = count
-        return self._rival.belief()
 
 
 def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
@@ -65,7 +48,7 @@ def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -
         linear = estimator.linear_estimate()
         return _belief(np.array(linear.mean), np.array(linear.covariance))
 
-    return _forecaster(name, settings, RivalPass(Rival(estimator.learn, belief), windows))
+    return _forecaster(name, settings, Rival(estimator.learn, belief), windows)
 
 
 def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
@@ -83,7 +66,7 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
     def belief() -> Belief:
         return _belief(np.array(estimator.linear_mean()), np.zeros((SIZE, SIZE)))
 
-    return _forecaster(name, settings, RivalPass(Rival(estimator.learn, belief), windows))
+    return _forecaster(name, settings, Rival(estimator.learn, belief), windows)
 
 
 def _refuse_commands(name: str, input_name: str) -> None:
@@ -97,9 +80,9 @@ def _refuse_commands(name: str, input_name: str) -> None:
 
 def _belief(mean: np.ndarray, covariance: np.ndarray) -> Belief:
     ones = np.ones(SIZE)
-    return Belief(mean, covariance, np.ones(3), ones, ones, np.ones(1))
+    return Belief(_core.slip_ratio_model(), mean, covariance, np.ones(3), ones, ones, np.ones(1))
 
 
-def _forecaster(name: str, settings: Settings, learned: RivalPass) -> Forecaster:
+def _forecaster(name: str, settings: Settings, rival: Rival[UpdateT], windows: WindowSet) -> Forecaster:
     shape = settings.filter_settings().noise.shape
-    return Forecaster(name, _core.slip_ratio_model(), shape, learned.belief, False)
+    return Forecaster(name, shape, CausalPass(rival, windows).belief, False)

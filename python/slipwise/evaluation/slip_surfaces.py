@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.estimator_pass import estimator_basis
+from slipwise.calibration.estimators import estimator_basis
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import Belief, make_learner
 from slipwise.calibration.settings import Settings
@@ -68,7 +69,7 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     if name == "surface-gaussian-process":
         require_scikit_learn()
     learned = SurfacePass(rules, learner.fresh(), windows)
-    return Forecaster(name, motion, shape, learned.belief, learner.dynamics)
+    return Forecaster(name, shape, learned.belief, learner.dynamics)
 
 
 class SurfacePass:
@@ -80,12 +81,11 @@ class SurfacePass:
     def __init__(self, rules: SurfaceRules, chain: _core.ModelAverage, windows: WindowSet) -> None:
         """`chain` has learned nothing yet; it gives lag, delay and offset, and tells slip from curves."""
         self._rules, self._windows = rules, windows
-        self._chain = CausalPass(chain, windows, self._observe)
+        self._chain = CausalPass(AverageLearner(chain), windows, self._learn)
         self._weight = np.zeros(len(windows))
         self._chain_start = chain.model.slip_size
         self._reference = chain.model
         self._regression = SurfaceRegression(rules)
-        self._learned = 0
 
     def belief(self, count: int) -> Belief:
         """Return the belief after `count` windows.
@@ -93,21 +93,12 @@ class SurfacePass:
         Raises:
             ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
         """
-        if count < self._learned:
-            raise ValueError(f"the belief after {count} windows is gone: {self._learned} are learned")
-        chain = self._chain.belief(self._learned)
-        for i in range(self._learned, count):
-            chain = self._chain.belief(i + 1)
-            self._learn(i, chain)
-        self._learned = count
-        return self._joined(chain)
+        return self._joined(self._chain.belief(count))
 
-    def _observe(self, i: int, update: _core.IekfUpdate, _change: _core.ChangeTest, _: Belief) -> None:
-        self._weight[i] = update.weight
-
-    def _learn(self, i: int, chain: Belief) -> None:
+    def _learn(self, i: int, update: _core.IekfUpdate, chain: Belief) -> None:
         """Learn window i, unless the filter of the chain left it out as an outlier."""
-        if self._weight[i] == 0.0:
+        self._weight[i] = update.weight
+        if update.weight == 0.0:
             return
         if self._regression.due:
             places = np.flatnonzero(self._weight[: i + 1] > 0.0)
@@ -129,6 +120,7 @@ class SurfacePass:
         variance = np.square(slip.noise_std) + np.square(slip.projection_rms)
         noise = self._slip_noise(variance * self._windows.length) if self._regression.fitted else None
         return Belief(
+            motion=self._rules.motion,
             mean=np.concatenate((slip.alpha, chain.mean[start:])),
             covariance=covariance,
             noise_scale=np.ones(3),

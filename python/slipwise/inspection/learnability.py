@@ -9,9 +9,9 @@ import numpy as np
 
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
-from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.learner import Belief, make_learner
+from slipwise.calibration.structure_choice import average_pass
 from slipwise.calibration.verdict import UNDETERMINED_RATIO, drives_for
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
@@ -58,10 +58,9 @@ def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnabili
     except LogError as nothing:
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
-    average = make_learner(settings, input_name).fresh()
-    belief = CausalPass(average, windows).finish()
+    belief = average_pass(make_learner(settings, input_name).fresh(), windows).finish()
     parameters = tuple(
-        _parameter((info.name, info.unit), belief, i) for i, info in enumerate(average.model.parameters)
+        _parameter((info.name, info.unit), belief, i) for i, info in enumerate(belief.motion.parameters)
     )
     unknown = tuple(parameter.name for parameter in parameters if not parameter.determined)
     return Learnability(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Body twists from wheel speeds and steering angles, for logs that hold only these."""
+"""Body twists from wheel speeds, curvatures and steering angles, for logs that hold only these."""
 
 from __future__ import annotations
 
@@ -13,6 +13,11 @@ def twist_from_wheels(
     """Return (v [m/s], omega [rad/s]) of a differential drive from its wheel speeds [N] in rad/s."""
     twists = _core.DifferentialDrive(wheel_radius, track).twists(left, right)
     return twists[:, 0], twists[:, 1]
+
+
+def omega_from_curvature(v: Floats, curvature: Floats) -> Floats:
+    """Return the yaw rate [rad/s] from speed [N] in m/s and curvature [N] in 1/m: kappa V (thesis 3.2)."""
+    return curvature * v
 
 
 def omega_from_steering(v: Floats, steer: Floats, *, wheelbase: float) -> Floats:

@@ -9,7 +9,7 @@ from typing import NoReturn
 import numpy as np
 
 from slipwise.errors import LogError
-from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.options import LogOptions
@@ -17,12 +17,13 @@ from slipwise.logs.table import Table
 
 TEXT = ("run", "frame", "terrain")
 NUMERIC = (
-    *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_steer", "odo_v", "odo_vy", "odo_omega"),
-    *("wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
+    *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_curvature", "cmd_steer", "odo_v", "odo_vy"),
+    *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
 )
 USED = frozenset(
     ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
+_AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
 
@@ -51,7 +52,8 @@ def require_columns(table: Table) -> None:
     commands = "cmd_v" in names or "cmd_vx" in names
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     if not commands and not wheels:
-        missing.append("cmd_v and cmd_omega, or odo_v and odo_omega")
+        alone = "cmd_curvature" in names  # without a speed it is no motion
+        missing.append("cmd_v, the speed that cmd_curvature is driven at" if alone else _AN_INPUT)
     if missing:
         found = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
         raise LogError(
@@ -70,6 +72,8 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     names = table.names
     forward = "cmd_v" if "cmd_v" in names else "cmd_vx"
     if forward not in names:
+        if "cmd_curvature" in names:
+            notes.append(f"{table.path.name}: cmd_curvature has no cmd_v beside it and is not used")
         return None
     v = table.numbers(forward, tally)
     omega = _command_omega(table, v, options, tally, notes)
@@ -123,18 +127,28 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
 def _command_omega(
     table: Table, v: Floats, options: LogOptions, tally: Tally, notes: list[str]
 ) -> Floats | None:
-    """Take cmd_omega and, where it is empty, the steering angle."""
+    """Take cmd_omega; where it is empty the curvature (thesis 3.2), and then the steering angle."""
     names = table.names
     omega = table.numbers("cmd_omega", tally) if "cmd_omega" in names else None
-    if "cmd_steer" not in names or options.wheelbase is None:
-        return omega
-    steered = omega_from_steering(v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase)
-    filled = steered if omega is None else np.where(np.isnan(omega), steered, omega)
+    if "cmd_curvature" in names:
+        turned = omega_from_curvature(v, table.numbers("cmd_curvature", tally))
+        omega = _filled(omega, turned, f"{table.path.name}: cmd_omega from cmd_curvature and speed", notes)
+    if "cmd_steer" in names and options.wheelbase is not None:
+        steered = omega_from_steering(v, table.numbers("cmd_steer", tally), wheelbase=options.wheelbase)
+        note = f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m"
+        omega = _filled(omega, steered, note, notes)
+    return omega
+
+
+def _filled(omega: Floats | None, other: Floats, note: str, notes: list[str]) -> Floats:
+    """Fill what is empty of `omega`, and note it where something was."""
+    filled = other if omega is None else np.where(np.isnan(omega), other, omega)
     if omega is None or bool((np.isnan(omega) & ~np.isnan(filled)).any()):
-        notes.append(f"{table.path.name}: cmd_omega from cmd_steer and wheelbase {options.wheelbase} m")
+        notes.append(note)
     return filled
 
 
 def _raise_no_omega(table: Table, missing: str, *, steer: bool) -> NoReturn:
-    advice = "give the wheelbase, the table has cmd_steer" if steer else f"add a column {missing} [rad/s]"
+    turns = f"add a column {missing} [rad/s]" + (" or cmd_curvature [1/m]" if missing == "cmd_omega" else "")
+    advice = "give the wheelbase, the table has cmd_steer" if steer else turns
     raise LogError(f"missing columns: {missing}", where=str(table.path), advice=advice)

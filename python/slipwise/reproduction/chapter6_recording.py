@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import DriveRun, WindowSet, collect_windows, prepare_drive
-from slipwise.calibration.estimator_pass import THESIS_STRIDE, THESIS_WINDOW, estimator_motion
+from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
+from slipwise.calibration.estimators import estimator_motion, fed_windows
 from slipwise.calibration.forecast import Forecaster, forecast
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions
@@ -65,12 +65,14 @@ class Recording:
             k = int(self.fed.count_until(self.windows.position[last], self.windows.end[last])[0])
         covariance, prior_std = self.covariance[k], self.prior_std[k]
         ratio = np.diag(covariance) / prior_std**2
-        return Belief(self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1))
+        return Belief(
+            self.motion, self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1)
+        )
 
     def predictions(self, targets: WindowSet, name: str) -> Predictions:
         """Predict windows causally, and once more after they were learned."""
         shape = self.course.settings.filter_settings().noise.shape
-        forecaster = Forecaster(name, self.motion, shape, self.belief, self.motion.dynamics)
+        forecaster = Forecaster(name, shape, self.belief, self.motion.dynamics)
         return forecast(forecaster, self.windows, targets)
 
 
@@ -82,12 +84,6 @@ def drive_windows(log: Log, course: Course, length: float | None = None) -> Wind
     return collect_windows(drive, length, course.settings.rules())
 
 
-def overlapping_windows(drive: tuple[DriveRun, ...], course: Course) -> WindowSet:
-    """Cut windows as the thesis does: 5 s each, 20 a second."""
-    rules = replace(course.settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
-    return collect_windows(drive, THESIS_WINDOW, rules)
-
-
 def record(log: Log, course: Course) -> Recording:
     """Learn a drive from nothing and keep every belief."""
     motion = estimator_motion(course.estimator, course.settings, course.input_name)
@@ -97,8 +93,7 @@ def record(log: Log, course: Course) -> Recording:
         course.estimator, motion, course.settings.filter_settings(), settings
     )
     windows = drive_windows(log, course)
-    overlap = _core.learns_overlapping_segments(course.estimator)
-    fed = overlapping_windows(windows.drive, course) if overlap else windows
+    fed = fed_windows(course.estimator, course.settings, windows)
     beliefs = [_now(estimator)]
     innovation = np.empty((len(fed), 3))
     for i in range(len(fed)):

@@ -32,7 +32,7 @@ NO_OUTLIERS = (1e9, 1e18)  # Huber's limit and the gate: the noise is Gaussian
 class Feeding:
     """An estimator, and how it is fed."""
 
-    estimator: str  # a name of `make_estimator`, or "batch"
+    estimator: str  # a name of `make_estimator`
     stride: int = WINDOW_STEPS  # steps between the starts of windows; one more and neighbours share no pose
     jacobian: _core.SegmentJacobian = _core.SegmentJacobian.Exact  # of ekf-thesis
 
@@ -107,14 +107,11 @@ def known_drive(basis: str, seed: int, noise: _core.MotionNoise = NOISE, *, minu
 
 def learned(feeding: Feeding, drive: KnownDrive) -> _core.Estimate:
     """Learn the whole drive."""
-    segments = list(drive.segments(feeding.stride))
-    if feeding.estimator == "batch":
-        return _batch(drive, segments)
     settings = _core.EstimatorSettings()
     settings.noise, settings.ekf_thesis.jacobian = drive.noise, feeding.jacobian
     settings.iekf.huber, settings.iekf.gate = NO_OUTLIERS
     estimator = _core.make_estimator(feeding.estimator, drive.model, drive.prior, settings)
-    for segment in segments:
+    for segment in drive.segments(feeding.stride):
         estimator.learn(drive.track, segment)
     return estimator.estimate()
 
@@ -149,20 +146,6 @@ def summary(results: Sequence[RunResult], size: int) -> dict[str, float | tuple[
         "within_90": float(np.mean([r.within_90 for r in results])),
         "in_90_region": float(np.mean([r.in_region_90 for r in results])),
     }
-
-
-def _batch(drive: KnownDrive, segments: list[_core.Segment]) -> _core.Estimate:
-    settings = _core.BatchSettings()
-    settings.huber = NO_OUTLIERS[0]
-    noise = []
-    for segment in segments:
-        path = _core.integrate_segment(
-            drive.model, drive.prior.mean, drive.track, segment, _core.Integrator.Exact
-        )
-        slip = _core.slip_covariance(path, drive.noise)
-        noise.append(slip + _core.pose_noise_covariance(segment.measured, drive.noise))
-    tracks = [drive.track] * len(segments)
-    return _core.batch_fit(drive.model, drive.prior, tracks, segments, noise, settings).estimate
 
 
 def _commands(rng: np.random.Generator, minutes: float) -> tuple[Floats, Floats, Floats]:

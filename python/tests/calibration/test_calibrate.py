@@ -34,11 +34,11 @@ TRUTHS = {
 
 
 @cache
-def recovered(basis: str, input_name: str, seed: int, *, batch: bool = False) -> Calibration:
+def recovered(basis: str, input_name: str, seed: int, estimator: str = "average") -> Calibration:
     drive = Drive(seconds=150.0, seed=seed, basis=_core.named_basis(basis), alpha=TRUTHS[basis])
     drive = replace(drive, lag=0.4, delay=0.2) if input_name == "command" else replace(drive, late=0.15)
-    settings = make_settings({"basis": basis})
-    return calibrate(simulated_log(drive), input_name=input_name, settings=settings, batch=batch)
+    settings = make_settings({"basis": basis, "estimator": estimator})
+    return calibrate(simulated_log(drive), input_name=input_name, settings=settings)
 
 
 def truth_of(basis: str, input_name: str) -> np.ndarray:
@@ -46,12 +46,12 @@ def truth_of(basis: str, input_name: str) -> np.ndarray:
     return np.array(TRUTHS[basis] + chain)
 
 
-@pytest.mark.parametrize("batch", [False, True])
+@pytest.mark.parametrize("estimator", ["average", "delayed-state", "batch"])
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 @pytest.mark.parametrize("basis", TRUTHS)
-def test_true_parameters_lie_within_three_sigma(basis: str, input_name: str, batch: bool) -> None:
+def test_true_parameters_lie_within_three_sigma(basis: str, input_name: str, estimator: str) -> None:
     for seed in (1, 2):
-        model = recovered(basis, input_name, seed, batch=batch).model
+        model = recovered(basis, input_name, seed, estimator).model
         sigma = np.sqrt(np.diag(model.covariance))
         assert (np.abs(model.mean - truth_of(basis, input_name)) < 3.0 * sigma).all()
 
@@ -132,8 +132,8 @@ def test_one_wild_pose_does_not_spoil_the_model() -> None:
     assert model.mean[:2] == pytest.approx(TRUTHS["edd-2"], abs=0.03)
 
 
-def test_batch_fit_keeps_the_verdict_of_the_causal_pass() -> None:
-    causal, batch = (recovered("edd-2", "wheel", 1, batch=b) for b in (False, True))
+def test_batch_fit_keeps_the_verdict_of_the_filter_that_runs_along() -> None:
+    causal, batch = (recovered("edd-2", "wheel", 1, name) for name in ("iekf", "batch"))
     assert batch.verdict == causal.verdict
     assert batch.history is None
     assert not np.array_equal(batch.model.mean, causal.model.mean)

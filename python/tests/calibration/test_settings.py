@@ -17,6 +17,7 @@ from slipwise.segments import WindowRules
 EVERY_KEY = """
 basis = "custom"
 learn_clock_offset = false
+estimator = "iekf"
 
 [terms]
 lon = ["V", "V*abs(w)"]
@@ -67,6 +68,10 @@ threshold = 12.0
 fraction = 0.2
 forget = 0.1
 
+[smoothing]
+drift = "random-walk"
+length = 20.0
+
 [gradient_descent]
 learning_rate = 0.2
 damping = 0.1
@@ -109,13 +114,15 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
     assert settings.vehicle.track == 1.08
+    drift = settings.smoothing.drift_settings()
+    assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     estimators = settings.estimator_settings()
     descent, kalman = estimators.gradient_descent, estimators.ekf_thesis
     assert (descent.learning_rate, descent.damping, kalman.process_std) == (0.2, 0.1, 0.01)
     assert descent.jacobian == _core.SegmentJacobian.Thesis
     assert kalman.jacobian == _core.SegmentJacobian.Exact
     average = settings.average_settings()
-    assert (average.learning_rate, average.share) == (0.7, 0.01)
+    assert (average.weighing.learning_rate, average.weighing.share) == (0.7, 0.01)
     (basis,) = settings.bases()
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
 

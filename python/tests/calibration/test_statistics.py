@@ -34,7 +34,7 @@ def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) 
         dof=np.full(size, MOST_DOF),
         measured=measured,
         learned_until=t,
-        cascade=np.zeros(size, np.bool_),
+        structure=np.zeros(size, np.int64),
         in_sample=np.zeros((size, 2)),
     )
 

@@ -13,8 +13,8 @@ from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learner import make_learner
-from slipwise.calibration.structure_choice import STRUCTURES, StructureChoice, learning_pass
+from slipwise.calibration.learner import CASCADE, STRUCTURES, TOGETHER, make_learner
+from slipwise.calibration.structure_choice import StructureChoice, learning_pass
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 
 LAG, DELAY, SLOW_SHARE, SLOW_LAG = (0.3, 0.5), (0.12, 0.2), (0.2, 0.4), (1.6, 2.2)
@@ -101,8 +101,19 @@ def test_a_cascade_is_chosen_where_it_predicts_better(log):
     calibration = calibrate(log)
     assert calibration.model.content.response
     assert calibration.history.structures == STRUCTURES
-    assert calibration.history.structure_weight[-1, 1] > 0.8
+    assert calibration.history.structure_weight[-1, CASCADE] > 0.8
     assert list(calibration.history.names) == [p.name for p in calibration.model.content.parameters]
+
+
+def test_a_belief_states_whose_parameters_it_holds(log):
+    settings = Settings()
+    windows = learning_windows(prepare_drive(log, "command"), "command", settings)
+    passing = StructureChoice(make_learner(settings, "command").fresh(), windows, settings)
+    for count, structure in ((0, TOGETHER), (len(windows), CASCADE)):
+        belief = passing.belief(count)
+        assert belief.structure == structure
+        assert belief.motion.response == (structure == CASCADE)
+        assert len(belief.mean) == belief.motion.size
 
 
 def test_a_model_with_a_response_is_saved_and_read_back(log, tmp_path):

@@ -70,6 +70,39 @@ def test_the_settings_of_a_run_give_the_same_model_again(slipwise: Slipwise, dri
     assert Path("first.yaml").read_bytes() == Path("second.yaml").read_bytes()
 
 
+@pytest.mark.parametrize("estimator", ["delayed-state", "ekf-thesis", "batch"])
+def test_calibrate_learns_by_the_estimator_that_is_named(
+    slipwise: Slipwise, drive_csv: Path, estimator: str
+) -> None:
+    asked = ("--estimator", estimator, "--basis", "edd-2", "--input", "wheel")
+    result = slipwise("calibrate", drive_csv, *asked, "-o", "model.yaml")
+    assert (result.code, result.err) == (0, "")
+    assert load_model("model.yaml").content.provenance.settings["estimator"] == estimator
+    assert estimator in Path("runs/latest/report.html").read_text(encoding="utf-8")
+    settings = Path("runs/latest/settings.toml")
+    slipwise(
+        "calibrate", drive_csv, "--settings", settings, "--input", "wheel", "--no-report", "-o", "again.yaml"
+    )
+    assert Path("again.yaml").read_bytes() == Path("model.yaml").read_bytes()
+
+
+def test_calibrate_refuses_an_estimator_that_does_not_exist(slipwise: Slipwise, drive_csv: Path) -> None:
+    result = slipwise("calibrate", drive_csv, "--estimator", "magic")
+    assert result.code == 2
+    assert "unknown estimator 'magic'; known are average, gradient-descent, ekf-thesis" in result.err
+    assert not Path("runs").exists()
+
+
+def test_smoothed_parameters_are_written_and_shown_where_asked_for(
+    slipwise: Slipwise, drive_csv: Path
+) -> None:
+    result = slipwise("calibrate", drive_csv, "--basis", "edd-2", "--smooth", "--json", "-")
+    table = Path(result.json["files"]["smoothed"])
+    assert table == Path("runs") / Path(result.json["files"]["settings"]).parent.name / "smoothed.csv"
+    assert table.read_text().startswith("run,t_start,t_end,lon.V,std(lon.V),ang.w,")
+    assert "figure-smoothed-1" in Path("runs/latest/report.html").read_text(encoding="utf-8")
+
+
 def test_json_on_stdout_is_all_that_is_printed(slipwise: Slipwise, drive_csv: Path) -> None:
     result = slipwise("calibrate", drive_csv, "--no-report", "--json", "-")
     assert result.err == ""

@@ -50,7 +50,7 @@ def test_the_settings_blocks_of_other_pages_are_valid() -> None:
 
 
 def test_the_table_of_bases_has_the_terms_that_ship() -> None:
-    rows = table_rows(read("choosing-a-basis.md"), "| name | lon |")
+    rows = table_rows(read("choosing-a-model.md"), "| name | lon |")
     shown = {code_words(row[0])[0]: [code_words(cell) for cell in row[1:4]] for row in rows}
     assert set(shown) == {"none", *_core.basis_names()}
     shown["ipem-13"] = [shown["ipem-9"][i] + shown["ipem-13"][i][1:] for i in range(3)]

@@ -104,6 +104,33 @@ def test_steering_gives_omega_with_a_wheelbase(tmp_path: Path) -> None:
     assert commands.omega[0] == pytest.approx(2.0 * math.tan(0.1) / 0.5, rel=1e-14)
 
 
+def test_a_commanded_curvature_is_a_yaw_rate_at_the_commanded_speed(tmp_path: Path) -> None:
+    rows = ["0,2,0.25,0,0,0", "0.1,-1,0.25,0,0,0", "0.2,0,0.25,0,0,0"]
+    log = open_log(table(tmp_path, *rows, header="t,cmd_v,cmd_curvature,x,y,yaw"))
+    commands = log.runs[0].commands
+    assert commands is not None
+    assert commands.omega.tolist() == [0.5, -0.25, 0.0]
+    assert any("cmd_omega from cmd_curvature" in note for note in log.notes)
+
+
+def test_a_commanded_yaw_rate_counts_before_a_curvature(tmp_path: Path) -> None:
+    rows = ["0,2,0.3,0.25,0,0,0", "0.1,2,,0.25,0,0,0"]
+    commands = (
+        open_log(table(tmp_path, *rows, header="t,cmd_v,cmd_omega,cmd_curvature,x,y,yaw")).runs[0].commands
+    )
+    assert commands is not None
+    assert commands.omega.tolist() == [0.3, 0.5]
+
+
+def test_a_curvature_without_a_speed_is_no_command(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="missing columns: cmd_v, the speed that cmd_curvature is driven at"):
+        open_log(table(tmp_path, "0,0.25,0,0,0", header="t,cmd_curvature,x,y,yaw"))
+    header = "t,cmd_curvature,odo_v,odo_omega,x,y,yaw"
+    log = open_log(table(tmp_path, "0,0.25,1,0,0,0,0", "0.1,0.25,1,0,0.1,0,0", header=header))
+    assert log.runs[0].commands is None
+    assert any("cmd_curvature has no cmd_v beside it" in note for note in log.notes)
+
+
 def test_sideways_commands_of_an_omnidirectional_robot(tmp_path: Path) -> None:
     commands = (
         open_log(table(tmp_path, "0,1,0.5,0,0,0,0", header="t,cmd_v,cmd_vy,cmd_omega,x,y,yaw"))

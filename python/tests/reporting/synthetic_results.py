@@ -196,7 +196,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         dof=np.full(len(rows), 5.0),
         measured=measured,
         learned_until=t_start,
-        cascade=np.zeros(len(rows), np.bool_),
+        structure=np.zeros(len(rows), np.int64),
         in_sample=np.full((len(rows), 2), 0.01),
     )
 

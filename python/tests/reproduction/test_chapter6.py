@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from slipwise import _core
-from slipwise.calibration.estimator_pass import EstimatorPass, estimator_motion
 from slipwise.calibration.forecast import forecast
+from slipwise.calibration.learning_run import start_learning
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.logs import Log
 from slipwise.reproduction import SMALL, Bench, Exhibit, Heat, Line
@@ -92,10 +92,10 @@ def test_correlations_are_ones_on_the_diagonal(exhibits: Exhibits) -> None:
 def test_a_recording_believes_what_the_evaluation_does(name: str, circles: Log) -> None:
     course = Course(name)
     recording = record(circles, course)
-    motion = estimator_motion(name, course.settings, course.input_name)
-    passing = EstimatorPass(name, motion, course.settings, recording.windows)
+    settings = course.settings.model_copy(update={"estimator": name})
+    run = start_learning(settings, course.input_name, recording.windows)
     for count in (0, 7, len(recording.windows)):
-        mine, theirs = recording.belief(count), passing.belief(count)
+        mine, theirs = recording.belief(count), run.belief(count)
         np.testing.assert_array_equal(mine.mean, theirs.mean)
         np.testing.assert_array_equal(mine.covariance, theirs.covariance)
         np.testing.assert_array_equal(mine.noise_scale, theirs.noise_scale)

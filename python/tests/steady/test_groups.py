@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from slipwise import _core
 from slipwise.errors import SettingsError
-from slipwise.steady import GroupRules, SteadyPath, group_paths
+from slipwise.logs import open_log
+from slipwise.steady import GroupRules, SteadyPath, cut_paths, group_paths
 
 
 def path(v: float, omega: float) -> SteadyPath:
@@ -36,3 +40,18 @@ def test_no_segments_make_no_groups() -> None:
 def test_rules_that_make_no_sense_are_refused(rules: GroupRules) -> None:
     with pytest.raises(SettingsError):
         group_paths([path(1.0, 0.5)], rules)
+
+
+def test_commanded_curvatures_of_a_log_are_those_of_its_groups(tmp_path: Path) -> None:
+    rows, pose = ["t,cmd_v,cmd_curvature,x,y,yaw"], _core.Pose2(0.0, 0.0, 0.0)
+    for i in range(240):  # 4 s of each command, poses and commands at 20 Hz
+        v, curvature = ((1.0, 0.3), (2.0, 0.3), (1.0, -0.2))[i // 80]
+        rows.append(f"{0.05 * i},{v},{curvature},{pose.x},{pose.y},{pose.theta}")
+        pose = _core.compose(pose, _core.exp(np.array([0.05 * v, 0.0, 0.05 * v * curvature])))
+    table = tmp_path / "arcs.csv"
+    table.write_text("\n".join(rows) + "\n")
+    (run,) = open_log(table).runs
+    assert run.commands is not None
+    groups = group_paths(cut_paths(run, run.commands).paths)
+    found = [(group.v, group.curvature) for group in groups]
+    assert found == [(1.0, pytest.approx(-0.2)), (1.0, pytest.approx(0.3)), (2.0, pytest.approx(0.3))]

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,24 +11,28 @@
 
 namespace slipwise {
 
-/// Sample-and-hold inputs. Before the first sample the robot is taken to be at rest.
+/// Sample-and-hold inputs. Before the first sample the robot is taken to be at rest. Copies share their samples, which
+/// never change.
 class InputTrack {
  public:
   /// Equal lengths, strictly increasing finite times [s]. \throws std::invalid_argument otherwise.
   InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
              std::span<const double> omega);
 
-  std::size_t size() const { return t_.size(); }
-  double time(std::size_t i) const { return t_[i]; }
-  BodyTwist sample(std::size_t i) const { return samples_[i]; }
+  std::size_t size() const { return samples_->t.size(); }
+  double time(std::size_t i) const { return samples_->t[i]; }
+  BodyTwist sample(std::size_t i) const { return samples_->twist[i]; }
   /// The number of samples with time <= t: sample (count - 1) is the one held at t.
   std::size_t count_until(double t) const;
   /// The twist held at time t [s].
   BodyTwist at(double t) const;
 
  private:
-  std::vector<double> t_;
-  std::vector<BodyTwist> samples_;
+  struct Samples {
+    std::vector<double> t;
+    std::vector<BodyTwist> twist;
+  };
+  std::shared_ptr<const Samples> samples_;
 };
 
 }  // namespace slipwise

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One interface to all on-line estimators, and the estimators by name.
+// One interface to all estimators, and the estimators by name.
 #pragma once
 
 #include <concepts>
@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "slipwise/estimate/batch_estimator.hpp"
 #include "slipwise/estimate/delayed_state.hpp"
 #include "slipwise/estimate/ekf_thesis.hpp"
 #include "slipwise/estimate/gradient_descent.hpp"
@@ -16,9 +17,9 @@
 
 namespace slipwise {
 
-/// What an on-line estimator is: it learns segments in the order of time, and says what it believes.
+/// What an estimator is: it learns segments in the order of time, and says what it believes.
 template <typename T>
-concept OnlineEstimator =
+concept SegmentEstimator =
     std::copyable<T> && requires(T estimator, const T& known, const InputTrack& inputs, const Segment& segment,
                                  const Eigen::VectorXd& std, const Eigen::Vector3d& scale) {
       { estimator.learn(inputs, segment) } -> std::same_as<IekfUpdate>;
@@ -32,7 +33,7 @@ concept OnlineEstimator =
 /// Any of the estimators, as a value.
 class Estimator {
  public:
-  template <OnlineEstimator T>
+  template <SegmentEstimator T>
     requires(!std::same_as<T, Estimator>)
   explicit Estimator(T estimator) : estimator_(std::move(estimator)) {}
 
@@ -41,6 +42,18 @@ class Estimator {
   }
   Estimate estimate() const {
     return std::visit([](const auto& e) { return e.estimate(); }, estimator_);
+  }
+  /// What learning goes on from: the estimate itself, unless that is a fit over all segments at once.
+  Estimate running() const {
+    return std::visit(
+        [](const auto& e) {
+          if constexpr (requires { e.running(); }) {
+            return e.running();
+          } else {
+            return e.estimate();
+          }
+        },
+        estimator_);
   }
   const MotionModel& model() const {
     return std::visit([](const auto& e) -> const MotionModel& { return e.model(); }, estimator_);
@@ -53,13 +66,15 @@ class Estimator {
   }
 
  private:
-  std::variant<GradientDescent, EkfThesis, IekfEstimator, DelayedState> estimator_;
+  std::variant<GradientDescent, EkfThesis, IekfEstimator, DelayedState, BatchEstimator> estimator_;
 };
 
 /// Names that make_estimator knows.
 std::vector<std::string> estimator_names();
 /// True for those that the thesis feeds with overlapping segments at 20 Hz.
 bool learns_overlapping_segments(std::string_view name);
+/// True for those whose estimate is a fit over all segments at once, off-line.
+bool fits_all_segments(std::string_view name);
 /// \throws std::invalid_argument naming the known estimators, or when the prior does not fit the model.
 Estimator make_estimator(std::string_view name, const MotionModel& model, const Estimate& prior,
                          const EstimatorSettings& settings);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of the on-line estimators, each under its own name.
+// Settings of the estimators, each under its own name.
 #pragma once
 
 #include "slipwise/estimate/iekf.hpp"
@@ -27,7 +27,7 @@ struct DelayedStateSettings {
 
 struct EstimatorSettings {
   MotionNoise noise = {};  ///< of slip and poses
-  IekfSettings iekf = {};  ///< also the gate and the Huber weight of `delayed-state`
+  IekfSettings iekf = {};  ///< also gate and Huber weight of `delayed-state`, the latter of `batch`
   GradientDescentSettings gradient_descent = {};
   EkfThesisSettings ekf_thesis = {};
   DelayedStateSettings delayed_state = {};

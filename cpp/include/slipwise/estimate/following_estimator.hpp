@@ -21,6 +21,8 @@ class FollowingEstimator {
 
   const MotionModel& model() const { return estimator_.model(); }
   Estimate estimate() const { return estimator_.estimate(); }
+  /// As Estimator::running().
+  Estimate running() const { return estimator_.running(); }
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Learned factor of the noise variances of (x, y, theta).

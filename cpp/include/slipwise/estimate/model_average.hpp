@@ -10,20 +10,15 @@
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/change_detector.hpp"
 #include "slipwise/estimate/driven_speeds.hpp"
+#include "slipwise/estimate/weighing.hpp"
 
 namespace slipwise {
 
 struct ModelAverageSettings {
-  double learning_rate =
-      0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a model can come back [-]
+  WeighingSettings weighing = {};
+  double richest = 0.6;  ///< weight beforehand of the basis with the most terms: of all, it is best most often [-]
   ChangeSettings change = {};
 };
-
-/// The weights after models predicted a segment with these log scores (derivations.md, section 7).
-/// \throws std::invalid_argument when there is not one score per weight.
-Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
-                          const ModelAverageSettings& settings);
 
 /// Parameters, covariance and noise of the average, over the union of all terms.
 struct AverageState {
@@ -64,7 +59,8 @@ class ModelAverage {
   std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
-  Eigen::VectorXd weights_;
+  Eigen::VectorXd prior_;    ///< weights of the bases beforehand
+  Eigen::VectorXd weights_;  ///< one per filter
   DrivenSpeeds speeds_;
   std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
   std::deque<AverageState> before_;     ///< before each of the last segments

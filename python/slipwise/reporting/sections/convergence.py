@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,17 +10,15 @@ from numpy.typing import NDArray
 
 from slipwise.calibration.result import History
 from slipwise.models.model import Model
-from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 from slipwise.reporting.markup import details, legend, missing, number, paragraph, table
-from slipwise.reporting.palette import ALARM_COLOUR, LEARNED_STROKE, Stroke, stroke_of, transparent
-from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
-from slipwise.reporting.timeline import Timeline, with_breaks
+from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
+from slipwise.reporting.parameter_figures import parameter_figures
+from slipwise.reporting.thinning import thinned
+from slipwise.reporting.timeline import Timeline
 
-_MOST_PARAMETERS = 12
 _MOST_ALARMS = 6
-_LOGARITHM = "log_"  # lags and delays are learned as logarithms and shown in seconds
 Floats = NDArray[np.float64]
 
 
@@ -40,15 +37,21 @@ class ConvergenceSection:
         if not model.content.parameters:
             return missing("The model has no parameters: it predicts without slip.")
         values = details("All parameters of the model", _values(model))
+        smoothed = _smoothed(contents)
         if history is None:
             return (
                 missing("The model was fitted to the whole log at once, so there is no course of learning.")
+                + smoothed
                 + values
             )
         if not len(history.t):
             return missing("No window was learned, so the parameters are still the prior.") + values
         return (
-            _parameters(contents, history) + _alarms(contents, history) + values + _weights(contents, history)
+            _parameters(contents, history)
+            + _alarms(contents, history)
+            + smoothed
+            + values
+            + _weights(contents, history)
         )
 
 
@@ -91,108 +94,37 @@ def _alarm_marks(timeline: Timeline, history: History) -> list[dict[str, Any]]:
     ]
 
 
-def _order(parameter: Parameter) -> tuple[bool, float]:
-    """Determined slip first, by value over prior: the prior is a share of the motion."""
-    share = abs(parameter.value) / parameter.prior_std if parameter.prior_std > 0.0 else 0.0
-    return not parameter.determined, -share
-
-
-def _chosen(known: dict[str, Parameter], names: tuple[str, ...], slip: list[str]) -> list[str]:
-    """Choose the slip parameters that explain most, and those of lag, delay and clock."""
-    chain = [name for name in names if name in known and name not in slip]
-    slip = sorted((name for name in names if name in slip), key=lambda name: _order(known[name]))
-    return slip[: max(_MOST_PARAMETERS - len(chain), 1)] + chain[:_MOST_PARAMETERS]
-
-
 def _parameters(contents: Contents, history: History) -> str:
-    model = contents.calibration.model
-    known = {parameter.name: parameter for parameter in model.content.parameters}
-    slip = [parameter.name for parameter in model.content.parameters[: model.motion.slip_size]]
-    names = _chosen(known, history.names, slip)
-    if not names:
-        return missing("The course of learning is not that of the model's parameters.")
-    figures = [
-        _figure(contents, history, known[name], place).html() for place, name in enumerate(names, start=1)
-    ]
-    left = len(known) - len(figures)
-    keys = (("value", LEARNED_STROKE.colour, "line"), ("± 1 sigma", LEARNED_STROKE.colour, "area"))
-    more = f"; {left} more are in the table" if left > 0 else ""
-    note = f"Ordered by how much of the motion they explain{more}."
-    thinning = thinning_note(len(history.t))
-    return (
-        legend(keys) + f'<div class="grid">{"".join(figures)}</div>' + paragraph(f"{note} {thinning}".strip())
-    )
+    marks = _alarm_marks(Timeline.of(contents.log), history)
+    drawn = parameter_figures(contents, history, key="parameter", marks=marks)
+    return drawn or missing("The course of learning is not that of the model's parameters.")
 
 
-def _figure(contents: Contents, history: History, parameter: Parameter, place: int) -> Figure:
-    timeline, column = Timeline.of(contents.log), history.names.index(parameter.name)
-    keep = thinned(len(history.t), CURVE_POINTS)
-    run = history.run[keep]
-    x = timeline.at(run, history.t[keep])
-    shown = _Shown.of(parameter)
-    mean, std = history.mean[keep, column], history.std[keep, column]
-    value = {
-        "type": "scatter",
-        "mode": "lines" if len(keep) > 1 else "markers",
-        "x": numbers(with_breaks(run, x)),
-        "y": numbers(with_breaks(run, shown.values(mean))),
-        "line": {"color": LEARNED_STROKE.colour, "width": 2},
-        "hovertemplate": "%{y:.4g}<br>%{x:.1f} s<extra></extra>",
-    }
-    return Figure(
-        key=f"parameter-{place}",
-        label=f"Parameter {parameter.name} while learning",
-        heading=shown.name + ("" if parameter.determined else " (not determined)"),
-        traces=[_band(x, shown.values(mean - std), shown.values(mean + std)), value],
-        layout={
-            "xaxis": axis(timeline.title, nticks=6),
-            "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=6),
-            "shapes": timeline.shapes() + _alarm_marks(timeline, history),
-        },
-        height=240,
-        caption=shown.final(parameter),
-    )
-
-
-@dataclass(frozen=True)
-class _Shown:
-    """How a parameter is shown: its name, unit, and whether its exponential is."""
-
-    name: str
-    unit: str
-    exponential: bool
-
-    @classmethod
-    def of(cls, parameter: Parameter) -> _Shown:
-        if parameter.name.startswith(_LOGARITHM):
-            return cls(parameter.name.removeprefix(_LOGARITHM), "s", True)
-        return cls(parameter.name, parameter.unit or "-", False)
-
-    def values(self, values: Floats) -> Floats:
-        return np.exp(values) if self.exponential else values
-
-    def final(self, parameter: Parameter) -> str:
-        if not self.exponential:
-            return f"Final value {number(parameter.value)} ± {number(parameter.std, 2)} {self.unit}"
-        spread = parameter.std * np.array([0.0, -1.0, 1.0])
-        value, low, high = self.values(parameter.value + spread).tolist()
-        return f"Final value {number(value)} {self.unit}, ± 1 sigma: {number(low)} to {number(high)}"
-
-
-def _band(x: Floats, low: Floats, high: Floats) -> dict[str, Any]:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "x": numbers(np.concatenate((x, x[::-1]))),
-        "y": numbers(np.concatenate((high, low[::-1]))),
-        "fill": "toself",
-        "fillcolor": transparent(LEARNED_STROKE.colour, 0.2),
-        "line": {"width": 0},
-        "hoverinfo": "skip",
-    }
+def _smoothed(contents: Contents) -> str:
+    """Draw what the parameters were at each time, given the whole log; nothing where it was not asked for."""
+    course = contents.calibration.smoothed
+    if course is None:
+        return ""
+    return paragraph(
+        "The slip smoothed over the whole log, for slip that changes slowly: each value knows what came "
+        "before and after it, so nothing is predicted with it. Where a band is as wide as before any data, "
+        "the drive there says nothing of the parameter."
+    ) + parameter_figures(contents, course, key="smoothed")
 
 
 def _weights(contents: Contents, history: History) -> str:
+    """Draw the weights of the bases, and of the ways to learn from commands, where there are several."""
+    if history.structure_weight is None:
+        return _basis_weights(contents, history)
+    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
+    shown = (strokes, history.structure_weight)
+    heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
+    note = f"Predictions are those of the heavier way, at the end {heavier}, which this section shows."
+    figure = _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+    return _basis_weights(contents, history) + figure + paragraph(note)
+
+
+def _basis_weights(contents: Contents, history: History) -> str:
     if len(history.bases) < 2:
         return paragraph(
             f"One basis was used: {', '.join(history.bases) or contents.calibration.model.motion.basis.name}."
@@ -201,18 +133,17 @@ def _weights(contents: Contents, history: History) -> str:
     strokes = {
         name: stroke_of(name, (*contents.evaluation.methods, *history.bases)) for name in history.bases
     }
-    html = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
-    if history.structure_weight is None:
-        return html
-    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
-    shown = (strokes, history.structure_weight)
-    return html + _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+    figure = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
+    return figure + paragraph(
+        "A basis gains weight by how near its predictions come; after each window a share is dealt out "
+        "evenly. The model is the weighted mean."
+    )
 
 
 def _weights_figure(
     contents: Contents, history: History, names: tuple[str, str], shown: tuple[dict[str, Stroke], Floats]
 ) -> str:
-    """Draw weights [W, N] over time, stacked; `names` are the figure's key and what is weighed."""
+    """Draw weights [W, N] over time, stacked, the last in the legend; `names`: key and what is weighed."""
     key, what = names
     strokes, weights = shown
     timeline, keep = Timeline.of(contents.log), thinned(len(history.t))
@@ -242,4 +173,6 @@ def _weights_figure(
         },
         height=280,
     )
-    return legend((name, stroke.colour, "line") for name, stroke in strokes.items()) + figure.html()
+    last = zip(strokes.items(), weights[-1].tolist(), strict=True)
+    keys = ((f"{name} {weight:.2f}", stroke.colour, "line") for (name, stroke), weight in last)
+    return legend(keys) + figure.html()

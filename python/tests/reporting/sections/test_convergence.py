@@ -9,6 +9,7 @@ import numpy as np
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import Results, make_results, with_model, without_history
 
+from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.models.schema import Parameter, Slip
 from slipwise.reporting.palette import ALARM_COLOUR
 from slipwise.reporting.sections.convergence import ConvergenceSection
@@ -31,6 +32,26 @@ def test_weights_of_all_bases_are_stacked() -> None:
     figure = figures_of(ConvergenceSection().html(contents_of(make_results())))["figure-weights"]
     assert [trace["name"] for trace in figure["data"]] == ["none", "edd-2", "drive-5"]
     assert np.allclose(np.sum([trace["y"] for trace in figure["data"]], axis=0), 1.0, atol=1e-5)
+
+
+def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    count = len(history.t)
+    cascade = np.linspace(0.1, 0.8, count)
+    two = replace(
+        history, structures=("together", "cascade"), structure_weight=np.column_stack((1 - cascade, cascade))
+    )
+    one = replace(two, bases=("edd-2",), basis_weight=np.ones((count, 1)))
+    for shown in (two, one):
+        learned = replace(results, calibration=replace(results.calibration, history=shown))
+        html = ConvergenceSection().html(contents_of(learned))
+        together, other = figures_of(html)["figure-structures"]["data"]
+        assert (together["name"], other["name"]) == ("together", "cascade")
+        assert np.allclose(other["y"], cascade, atol=1e-5)
+        assert "those of the heavier way, at the end cascade" in text_of(html)
+        assert "cascade 0.80" in text_of(html)
 
 
 def test_lag_is_shown_in_seconds() -> None:
@@ -58,13 +79,29 @@ def test_lag_is_shown_in_seconds() -> None:
     html = ConvergenceSection().html(contents_of(learned))
     assert "lag_v" in html
     assert np.allclose(figures_of(html)["figure-parameter-3"]["data"][1]["y"], 0.8)
-    assert "Final value 0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
+    assert "In the model: 0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
 
 
 def test_batch_fit_shows_the_values_and_says_why_no_course() -> None:
     text = text_of(ConvergenceSection().html(contents_of(without_history(make_results()))))
     assert "fitted to the whole log at once" in text
     assert "lon.V m/s per V −0.04900 0.0040 0.30 yes" in text
+
+
+def test_smoothed_parameters_have_figures_of_their_own_with_or_without_a_history() -> None:
+    results = make_results()
+    history = results.calibration.history
+    assert history is not None
+    course = SmoothedCourse(
+        history.run, history.t - 1.0, history.t, history.names, history.mean + 1.0, history.std
+    )
+    for learned in (results, without_history(results)):
+        smoothed = replace(learned, calibration=replace(learned.calibration, smoothed=course))
+        html = ConvergenceSection().html(contents_of(smoothed))
+        _, value = figures_of(html)["figure-smoothed-1"]["data"]
+        assert np.allclose(value["y"], history.mean[:, 1] + 1.0, rtol=1e-5)
+        assert "nothing is predicted with it" in text_of(html)
+    assert "figure-smoothed-1" not in figures_of(ConvergenceSection().html(contents_of(results)))
 
 
 def test_single_basis_is_named_instead_of_weights() -> None:

@@ -6,14 +6,23 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import slipwise as sw
 from slipwise import _core
-from slipwise.calibration import make_settings
+from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet, prepare_drive
-from slipwise.calibration.estimator_pass import EstimatorPass, estimator_basis, estimator_motion
+from slipwise.calibration.estimators import (
+    estimator_basis,
+    estimator_learner,
+    estimator_motion,
+    fed_windows,
+)
 from slipwise.calibration.learner import make_learner
+from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.structure_choice import average_pass
+from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 
 SLIP = np.array([-0.1, -0.3])  # edd-2
@@ -47,18 +56,58 @@ def windows(settings: Settings) -> WindowSet:
     return learning_windows(prepare_drive(circling_log(), "wheel"), "wheel", settings)
 
 
+def run_of(name: str, settings: Settings, windows: WindowSet) -> LearningRun:
+    return start_learning(settings.model_copy(update={"estimator": name}), "wheel", windows)
+
+
 @pytest.mark.parametrize("name", _core.estimator_names())
 def test_every_estimator_learns_the_slip(name: str, settings: Settings, windows: WindowSet) -> None:
-    motion = estimator_motion(name, settings, "wheel")
-    belief = EstimatorPass(name, motion, settings, windows).belief(len(windows))
-    assert belief.mean == pytest.approx(SLIP, abs=0.01)
-    assert belief.variance_ratio.shape == (2,)
+    run = run_of(name, settings, windows)
+    causal, kept = run.belief(len(windows)), run.kept()
+    for belief in (causal, kept):
+        assert belief.mean == pytest.approx(SLIP, abs=0.01)
+        assert belief.variance_ratio.shape == (2,)
+    assert run.causal == (name != "batch") == np.array_equal(causal.mean, kept.mean)
+
+
+def test_what_batch_knew_on_the_way_never_depends_on_what_came_later(
+    settings: Settings, windows: WindowSet
+) -> None:
+    one, other = (run_of("batch", settings, windows) for _ in range(2))
+    early = one.belief(20)
+    one.kept()
+    assert np.array_equal(early.mean, other.belief(20).mean)
+
+
+@pytest.mark.parametrize("name", _core.estimator_names())
+def test_every_estimator_calibrates(name: str) -> None:
+    chosen = make_settings({"basis": "edd-2", "learn_clock_offset": False, "estimator": name})
+    calibration = calibrate(circling_log(), settings=chosen)
+    assert calibration.verdict.good
+    assert calibration.model.mean == pytest.approx(SLIP, abs=0.01)
+    assert calibration.model.content.provenance.settings["estimator"] == name
+    if name == "batch":
+        assert calibration.history is None
+    else:
+        assert calibration.history.mean[-1] == pytest.approx(calibration.model.mean, abs=1e-12)
+
+
+def test_the_estimator_and_smoothing_are_options_of_the_package() -> None:
+    result = sw.calibrate(circling_log(), basis="edd-2", estimator="delayed-state", smooth=True)
+    assert result.model.content.provenance.settings == {"basis": "edd-2", "estimator": "delayed-state"}
+    assert result.smoothed is not None
+    with pytest.raises(SettingsError, match="unknown estimator 'magic'"):
+        sw.calibrate(circling_log(), estimator="magic")
+
+
+def test_an_estimator_that_does_not_exist_is_refused_with_those_that_do() -> None:
+    with pytest.raises(SettingsError, match=r"estimator: .*unknown estimator 'magic'; known are average, "):
+        make_settings({"estimator": "magic"})
 
 
 def test_iekf_is_the_filter_that_calibrates(settings: Settings, windows: WindowSet) -> None:
-    motion = estimator_motion("iekf", settings, "wheel")
-    belief = EstimatorPass("iekf", motion, settings, windows).belief(40)
-    known = CausalPass(make_learner(settings, "wheel").fresh(), windows).belief(40)
+    belief = run_of("iekf", settings, windows).belief(40)
+    known = average_pass(make_learner(settings, "wheel").fresh(), windows).belief(40)
     assert belief.mean == pytest.approx(known.mean, rel=1e-9)
     assert belief.covariance == pytest.approx(known.covariance, rel=1e-9)
 
@@ -67,11 +116,12 @@ def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(
     settings: Settings, windows: WindowSet
 ) -> None:
     motion = estimator_motion("ekf-thesis", settings, "wheel")
-    thesis = EstimatorPass("ekf-thesis", motion, settings, windows)
+    learner = estimator_learner("ekf-thesis", motion, settings)
+    thesis = CausalPass(learner, fed_windows("ekf-thesis", settings, windows), pace=windows)
     at = int(np.searchsorted(windows.end, 10.0))
     assert (thesis.belief(0).mean == 0.0).all()
     thesis.belief(at)
-    assert thesis._learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
+    assert thesis.learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
     with pytest.raises(ValueError, match="is gone"):
         thesis.belief(at - 1)
 
@@ -84,11 +134,11 @@ def test_basis_is_that_of_the_settings_and_thesis_estimators_have_no_lag() -> No
     assert estimator_motion("iekf", Settings(), "wheel").clock_offset
 
 
-def test_an_unknown_estimator_is_refused_by_name(settings: Settings, windows: WindowSet) -> None:
+def test_an_unknown_estimator_is_refused_by_name(settings: Settings) -> None:
     motion = estimator_motion("iekf", settings, "wheel")
-    known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state"
+    known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state, batch"
     with pytest.raises(ValueError, match=known):
-        EstimatorPass("magic", motion, settings, windows)
+        estimator_learner("magic", motion, settings)
 
 
 @pytest.mark.parametrize(
@@ -105,10 +155,10 @@ def test_settings_reach_the_estimators_of_the_thesis(
 ) -> None:
     given = {"basis": "edd-2", "learn_clock_offset": False}
     usual = make_settings(given)
-    before = EstimatorPass(name, estimator_motion(name, usual, "wheel"), usual, windows).belief(10)
+    before = run_of(name, usual, windows).belief(10)
     same = make_settings(given | {table: getattr(usual, table).model_dump()})
-    again = EstimatorPass(name, estimator_motion(name, same, "wheel"), same, windows).belief(10)
+    again = run_of(name, same, windows).belief(10)
     changed = make_settings(given | {table: other})
-    after = EstimatorPass(name, estimator_motion(name, changed, "wheel"), changed, windows).belief(10)
+    after = run_of(name, changed, windows).belief(10)
     assert np.array_equal(before.mean, again.mean)
     assert not np.array_equal(before.mean, after.mean)

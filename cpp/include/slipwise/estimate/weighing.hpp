@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weighing rivals by how well they predict: a fixed share (Herbster and Warmuth 1998) of a tempered predictive density
+// (Gruenwald 2012).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+namespace slipwise {
+
+struct WeighingSettings {
+  double learning_rate =
+      0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
+  double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a rival can come back [-]
+};
+
+/// The weights after rivals predicted a segment with these log scores; what is spread anew is spread by `prior`, their
+/// weights beforehand (derivations.md, section 7).
+/// \throws std::invalid_argument when there is not one score and one prior weight per weight.
+Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
+                          const Eigen::VectorXd& prior, const WeighingSettings& settings);
+
+/// Log density of an innovation under a Student-t with the scale of its covariance, without constants: real residuals
+/// have heavy tails.
+double student_log_score(double nis, const Eigen::Matrix3d& covariance);
+
+/// Log scores of rivals that predicted the same segment, with innovations [M] of covariances [M], all under one
+/// covariance, their mean by weight: a rival is judged by its errors, not by how well it knows their size.
+/// \throws std::invalid_argument when there is not one of each per weight.
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
+                                  std::span<const Eigen::Matrix3d> covariances);
+
+}  // namespace slipwise

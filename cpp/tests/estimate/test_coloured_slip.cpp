@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Slip that wanders: found where it does, followed, let go with time, and not invented where it does not.
+#include <doctest/doctest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "simulated_drive.hpp"
+#include "slipwise/estimate/coloured_slip.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::ptrdiff_t kRecent = 12;
+const MotionNoise kNoise{.pose_std_xy = 0.02, .pose_std_yaw = 0.02};
+
+/// edd-2 (lon.V, ang.w), known but for what wanders.
+MotionBelief known_belief(const MotionModel& model) {
+  return {.model = model,
+          .estimate = {Eigen::Vector2d(-0.1, -0.3), Eigen::Matrix2d::Zero()},
+          .prior_std = Eigen::Vector2d(0.3, 0.3),
+          .shape = kNoise,
+          .noise_scale = Eigen::Vector3d::Ones()};
+}
+
+/// Segments of 1 s of a robot whose slip has these shares of V and w.
+template <typename SlipAt>
+std::vector<Segment> drive(const MotionModel& model, const InputTrack& inputs, int count, SlipAt slip_at) {
+  std::mt19937_64 random(7);
+  std::vector<Segment> segments;
+  for (int i = 0; i < count; ++i) {
+    Segment segment{.start = 1.0 + i, .end = 2.0 + i};
+    const Pose2 truth = integrate_segment(model, slip_at(i), inputs, segment).poses.back();
+    const Eigen::Vector3d noise = tests::normal3(random).cwiseProduct(Eigen::Vector3d(0.028, 0.028, 0.028));
+    segment.measured = Pose2::from_vector(truth.vector() + noise);
+    segments.push_back(segment);
+  }
+  return segments;
+}
+
+std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdiff_t i, std::ptrdiff_t with) {
+  const std::ptrdiff_t first = std::max<std::ptrdiff_t>(0, i - kRecent);
+  return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first + with));
+}
+
+struct Followed {
+  ColouredSlip slip;
+  double error = 0.0;        ///< mean squared heading error with what the last segments say
+  double plain_error = 0.0;  ///< without
+  double nis = 0.0;          ///< mean over the second half
+};
+
+Followed follow(const MotionBelief& belief, const InputTrack& inputs, const std::vector<Segment>& segments) {
+  Followed found{.slip = ColouredSlip({})};
+  for (std::ptrdiff_t i = 0; i < std::ssize(segments); ++i) {
+    const Segment& next = segments[static_cast<std::size_t>(i)];
+    if (2 * i >= std::ssize(segments)) {
+      const ExpectedPose expected = found.slip.predict(belief, inputs, before(segments, i, 0), next);
+      const ExpectedPose plain = found.slip.predict(belief, inputs, {}, next);
+      const Eigen::Vector3d error = next.measured.vector() - expected.pose;
+      found.error += std::pow(error.z(), 2);
+      found.plain_error += std::pow(next.measured.theta - plain.pose.z(), 2);
+      found.nis += error.dot(expected.covariance.llt().solve(error)) * 2.0 / static_cast<double>(segments.size());
+    }
+    found.slip.learn(belief, inputs, before(segments, i, 1));
+  }
+  return found;
+}
+
+struct Setting {
+  MotionModel model{named_basis("edd-2"), {}};
+  std::mt19937_64 random{3};
+  InputTrack inputs = tests::random_inputs(random, 420.0, 0.05);
+};
+
+TEST_CASE("slip that holds still is not said to wander, and predictions stay as they were") {
+  const Setting s;
+  const MotionBelief belief = known_belief(s.model);
+  const auto segments = drive(s.model, s.inputs, 300, [](int) { return Eigen::Vector2d(-0.1, -0.3); });
+  const Followed found = follow(belief, s.inputs, segments);
+  CHECK(found.slip.weights()[0] > 0.7);
+  CHECK(found.error < 1.05 * found.plain_error);
+  CHECK(found.nis == doctest::Approx(3.0).epsilon(0.2));
+}
+
+TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted better, with a true covariance") {
+  const Setting s;
+  const MotionBelief belief = known_belief(s.model);
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  std::vector<double> wander{0.0};
+  const double kept = std::exp(-1.0 / 20.0);
+  for (int i = 1; i < 300; ++i) {
+    wander.push_back(kept * wander.back() + std::sqrt(1.0 - kept * kept) * 0.09 * normal(random));
+  }
+  const auto segments = drive(s.model, s.inputs, 300, [&](int i) {
+    return Eigen::Vector2d(-0.1, -0.3 + wander[static_cast<std::size_t>(i)]);
+  });
+  const Followed found = follow(belief, s.inputs, segments);
+  double turning = 0.0;
+  for (std::size_t i = 0; i < found.slip.candidates().size(); ++i) {
+    turning += found.slip.candidates()[i].turn > 0.0 ? found.slip.weights()[static_cast<Eigen::Index>(i)] : 0.0;
+  }
+  CHECK(turning > 0.9);
+  CHECK(found.error < 0.6 * found.plain_error);
+  CHECK(found.nis > 2.0);
+  CHECK(found.nis < 4.0);
+}
+
+TEST_CASE("what was seen is let go with time, and the covariance comes back to what is usual") {
+  const Setting s;
+  const MotionBelief belief = known_belief(s.model);
+  const auto segments = drive(s.model, s.inputs, 12, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
+  const ColouredSlip slip({.fractions = {0.3}, .time_constants = {20.0}, .white = 1e-6});
+  const std::vector<double> start{0.0}, v{1.0}, vy{0.0}, omega{0.5};
+  const InputTrack steady(start, v, vy, omega);
+  const auto shift = [&](double after) {
+    const Segment segment{.start = 13.0 + after, .end = 14.0 + after};
+    const ExpectedPose with = slip.predict(belief, steady, segments, segment);
+    const ExpectedPose without = slip.predict(belief, steady, {}, segment);
+    return std::pair(std::abs(with.pose.z() - without.pose.z()), with.covariance(2, 2) / without.covariance(2, 2));
+  };
+  CHECK(shift(0.0).first > 2.0 * shift(20.0).first);
+  CHECK(shift(300.0).first < 1e-6);
+  CHECK(shift(300.0).second == doctest::Approx(1.0).epsilon(1e-6));
+}
+
+TEST_CASE("a model without linear terms is predicted as it is") {
+  const Setting s;
+  const MotionModel plain(Basis("none", {}, {}, {}), {});
+  const MotionBelief belief{plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise,
+                            Eigen::Vector3d::Ones()};
+  const auto segments = drive(s.model, s.inputs, 13, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
+  ColouredSlip slip({});
+  slip.learn(belief, s.inputs, segments);
+  const auto at = linearize_segment(plain, Eigen::VectorXd(0), s.inputs, segments.back());
+  CHECK(slip.predict(belief, s.inputs, before(segments, 12, 0), segments.back()).pose == at.predicted.vector());
+}
+
+TEST_CASE("sizes that are no sizes are refused") {
+  CHECK_THROWS_AS(ColouredSlip({.fractions = {0.1, 0.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(ColouredSlip({.time_constants = {std::numeric_limits<double>::quiet_NaN()}}), std::invalid_argument);
+  CHECK_THROWS_AS(ColouredSlip({.fractions = {}}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

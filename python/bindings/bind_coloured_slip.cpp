@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of slip that wanders about what was learned.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "slipwise/estimate/coloured_slip.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+
+void bind_coloured_slip(nb::module_& m) {
+  nb::class_<ColouredSlipSettings>(m, "ColouredSlipSettings")
+      .def(nb::init<>())
+      .def_rw("fractions", &ColouredSlipSettings::fractions)
+      .def_rw("time_constants", &ColouredSlipSettings::time_constants)
+      .def_rw("white", &ColouredSlipSettings::white)
+      .def_rw("weighing", &ColouredSlipSettings::weighing);
+  nb::class_<SlipWander>(m, "SlipWander", "One guess of how slip wanders: Gauss-Markov processes of one time constant.")
+      .def_ro("drift", &SlipWander::drift)
+      .def_ro("turn", &SlipWander::turn)
+      .def_ro("time_constant", &SlipWander::time_constant);
+  nb::class_<MotionBelief>(m, "MotionBelief", "A model as it is believed before the segments that it is asked about.")
+      .def(
+          "__init__",
+          [](MotionBelief* self, const MotionModel& model, const Estimate& estimate, const Eigen::VectorXd& prior_std,
+             const MotionNoise& shape, const Eigen::Vector3d& noise_scale) {
+            new (self) MotionBelief{model, estimate, prior_std, shape, noise_scale};
+          },
+          "model"_a, "estimate"_a, "prior_std"_a, "shape"_a, "noise_scale"_a);
+  nb::class_<ExpectedPose>(m, "ExpectedPose", "Where a segment is expected to end.")
+      .def_ro("pose", &ExpectedPose::pose)
+      .def_ro("covariance", &ExpectedPose::covariance);
+  nb::class_<ColouredSlip>(m, "ColouredSlip", "Slip that wanders about what was learned.")
+      .def(nb::init<const ColouredSlipSettings&>(), "settings"_a)
+      .def(nb::init<const ColouredSlip&>(), "other"_a)
+      .def(
+          "learn",
+          [](ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
+             const std::vector<Segment>& segments) { slip.learn(belief, inputs, segments); },
+          "belief"_a, "inputs"_a, "segments"_a, "Weighs the candidates by the last segment, foretold from the others.")
+      .def(
+          "predict",
+          [](const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
+             const std::vector<Segment>& recent,
+             const Segment& segment) { return slip.predict(belief, inputs, recent, segment); },
+          "belief"_a, "inputs"_a, "recent"_a, "segment"_a, "Predicts a segment from what recent ones say of the slip.")
+      .def_prop_ro("candidates", &ColouredSlip::candidates)
+      .def_prop_ro("weights", &ColouredSlip::weights);
+}
+
+}  // namespace slipwise::bindings

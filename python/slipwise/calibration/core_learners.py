@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The core's estimators as learners of a causal pass: an average of bases, or one estimator by name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.learner import Belief
+
+
+class AverageLearner:
+    """An average of bases, or of one."""
+
+    def __init__(self, average: _core.ModelAverage) -> None:
+        """`average` has learned nothing yet."""
+        self._average = average
+        self._motion = average.model
+        self._belief: Belief | None = None
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+        """Learn one window."""
+        self._belief = None
+        return self._average.learn(inputs, segment)
+
+    def belief(self) -> Belief:
+        """Return the belief of the average now."""
+        if self._belief is None:
+            self._belief = self._now()
+        return self._belief
+
+    @property
+    def change(self) -> _core.ChangeTest:
+        """The test for a change of ground that came with the last window."""
+        return self._average.change
+
+    def _now(self) -> Belief:
+        state = self._average.state()
+        return Belief(
+            motion=self._motion,
+            mean=np.array(state.estimate.mean),
+            covariance=np.array(state.estimate.covariance),
+            noise_scale=np.array(state.noise_scale),
+            prior_std=np.array(state.prior_std),
+            variance_ratio=np.array(state.variance_ratio),
+            weights=np.array(state.weights),
+        )
+
+
+class EstimatorLearner:
+    """One estimator, whose prior follows the speeds and whose noise follows the residuals."""
+
+    def __init__(self, estimator: _core.FollowingEstimator) -> None:
+        """`estimator` has learned nothing yet."""
+        self._estimator = estimator
+        self._motion = estimator.model
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+        """Learn one window."""
+        return self._estimator.learn(inputs, segment)
+
+    def belief(self) -> Belief:
+        """Return the belief that learning goes on from."""
+        return self._stated(self._estimator.running())
+
+    def fitted(self) -> Belief:
+        """Return the estimate: the belief, or where the estimator fits all windows at once, that fit."""
+        return self._stated(self._estimator.estimate())
+
+    def _stated(self, estimate: _core.Estimate) -> Belief:
+        covariance, prior_std = np.array(estimate.covariance), np.array(self._estimator.prior_std)
+        return Belief(
+            motion=self._motion,
+            mean=np.array(estimate.mean),
+            covariance=covariance,
+            noise_scale=np.array(self._estimator.noise_scale),
+            prior_std=prior_std,
+            variance_ratio=np.diag(covariance) / prior_std**2,
+            weights=np.ones(1),
+        )

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Slip that changes slowly: what its parameters were during each window, given the whole log."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.settings import Settings
+from slipwise.files import write_text_whole
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothedCourse:
+    """The slip parameters over a log, one row per window; off-line, so never for predictions."""
+
+    run: NDArray[np.int64]  # [W] index of the run in the log
+    start: Floats  # [W] s
+    end: Floats  # [W] s
+    names: tuple[str, ...]  # [P] names of the slip parameters
+    mean: Floats  # [W, P] parameters during the window
+    std: Floats  # [W, P] their standard deviations
+
+    @property
+    def t(self) -> Floats:
+        """When each window was half over, [W] s."""
+        return (self.start + self.end) / 2.0
+
+    def save(self, path: Path) -> Path:
+        """Write a CSV: run, t_start, t_end, then each parameter and its standard deviation; return the path.
+
+        Raises:
+            OutputError: the file cannot be written.
+        """
+        columns = [column for name in self.names for column in (name, f"std({name})")]
+        lines = [",".join(("run", "t_start", "t_end", *columns))]
+        for i in range(len(self.end)):
+            values = np.column_stack((self.mean[i], self.std[i])).ravel()
+            numbers = (self.start[i], self.end[i], *values)
+            lines.append(",".join((str(self.run[i]), *(repr(float(number)) for number in numbers))))
+        write_text_whole(path, "\n".join(lines) + "\n")
+        return path
+
+
+def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCourse:
+    """Smooth over all windows: forward filter, backward pass of Rauch, Tung and Striebel (1965).
+
+    Lag, delay and clock offset are the robot's, not the ground's: they are taken as learned.
+
+    Args:
+        belief: what was learned: its model, its prior of the slip, its chain and its noise are used.
+        windows: what was learned; they must not overlap.
+        settings: how fast the slip may change, the shape of the noise, and the filter.
+    """
+    motion, filters = belief.motion, settings.filter_settings()
+    slip = slice(motion.slip_size)
+    tracks = [windows.track(i) for i in range(len(windows))]
+    noise = [_noise(belief, filters.noise.shape, windows, i) for i in range(len(windows))]
+    drift = settings.smoothing.drift_settings()
+    course = _core.rts_smooth(
+        motion, _prior(belief), tracks, list(windows.segments), noise, drift, filters.iekf
+    )
+    return SmoothedCourse(
+        run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
+        start=windows.start,
+        end=windows.end,
+        names=tuple(info.name for info in motion.parameters[slip]),
+        mean=np.array([estimate.mean[slip] for estimate in course]),
+        std=np.array([np.sqrt(np.diag(estimate.covariance)[slip]) for estimate in course]),
+    )
+
+
+def _prior(belief: Belief) -> _core.Estimate:
+    """The slip as before any data, the chain as learned."""
+    slip = slice(belief.motion.slip_size)
+    mean, covariance = belief.mean.copy(), belief.covariance.copy()
+    mean[slip] = 0.0
+    covariance[slip, :] = covariance[:, slip] = 0.0
+    covariance[slip, slip] = np.diag(belief.prior_std[slip] ** 2)
+    return _core.Estimate(mean, np.asfortranarray(covariance))
+
+
+def _noise(belief: Belief, shape: _core.MotionNoise, windows: WindowSet, i: int) -> Floats:
+    """Covariance of the measured chart of window i, [3, 3]."""
+    segment = windows.segments[i]
+    path = _core.integrate_segment(
+        belief.motion, belief.mean, windows.track(i), segment, _core.Integrator.Exact
+    )
+    covariance = _core.slip_covariance(path, shape) + _core.pose_noise_covariance(segment.measured, shape)
+    root = np.sqrt(belief.noise_scale)
+    return np.asfortranarray(covariance * np.outer(root, root))

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters over time with their one-sigma bands, those first that explain most of the motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.models.schema import Parameter
+from slipwise.reporting.contents import Contents
+from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.markup import legend, number, paragraph
+from slipwise.reporting.palette import LEARNED_STROKE, transparent
+from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
+from slipwise.reporting.timeline import Timeline, with_breaks
+
+_MOST_PARAMETERS = 12
+_LOGARITHM = "log_"  # lags and delays are learned as logarithms and shown in seconds
+Floats = NDArray[np.float64]
+
+
+class Course(Protocol):
+    """Parameters over time: a history, or a smoothed course."""
+
+    @property
+    def run(self) -> NDArray[np.int64]:
+        """Index of the run in the log, [W]."""
+        ...
+
+    @property
+    def t(self) -> Floats:
+        """When, in the run's clock, [W] s."""
+        ...
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Parameter names, [P]."""
+        ...
+
+    @property
+    def mean(self) -> Floats:
+        """Parameters, [W, P]."""
+        ...
+
+    @property
+    def std(self) -> Floats:
+        """Their standard deviations, [W, P]."""
+        ...
+
+
+def parameter_figures(
+    contents: Contents, course: Course, *, key: str, marks: Sequence[dict[str, Any]] = ()
+) -> str:
+    """Draw the parameters that matter; empty where the course is not that of the model's parameters.
+
+    Args:
+        contents: the report.
+        course: what to draw.
+        key: what the figures' ids start with.
+        marks: shapes to draw over each figure.
+    """
+    model = contents.calibration.model
+    known = {parameter.name: parameter for parameter in model.content.parameters}
+    slip = [parameter.name for parameter in model.content.parameters[: model.motion.slip_size]]
+    names = _chosen(known, course.names, slip)
+    if not names:
+        return ""
+    figures = [
+        _figure(contents, course, known[name], (f"{key}-{place}", list(marks))).html()
+        for place, name in enumerate(names, start=1)
+    ]
+    left = len(known) - len(figures)
+    keys = (("value", LEARNED_STROKE.colour, "line"), ("± 1 sigma", LEARNED_STROKE.colour, "area"))
+    more = f"; {left} more are in the table" if left > 0 else ""
+    note = f"Ordered by how much of the motion they explain{more}."
+    thinning = thinning_note(len(course.t))
+    return (
+        legend(keys) + f'<div class="grid">{"".join(figures)}</div>' + paragraph(f"{note} {thinning}".strip())
+    )
+
+
+def _order(parameter: Parameter) -> tuple[bool, float]:
+    """Determined slip first, by value over prior: the prior is a share of the motion."""
+    share = abs(parameter.value) / parameter.prior_std if parameter.prior_std > 0.0 else 0.0
+    return not parameter.determined, -share
+
+
+def _chosen(known: dict[str, Parameter], names: tuple[str, ...], slip: list[str]) -> list[str]:
+    """Choose the slip parameters that explain most, and those of lag, delay and clock."""
+    chain = [name for name in names if name in known and name not in slip]
+    slip = sorted((name for name in names if name in slip), key=lambda name: _order(known[name]))
+    return slip[: max(_MOST_PARAMETERS - len(chain), 1)] + chain[:_MOST_PARAMETERS]
+
+
+def _figure(
+    contents: Contents, course: Course, parameter: Parameter, label: tuple[str, list[dict[str, Any]]]
+) -> Figure:
+    key, marks = label
+    timeline, column = Timeline.of(contents.log), course.names.index(parameter.name)
+    keep = thinned(len(course.t), CURVE_POINTS)
+    run = course.run[keep]
+    x = timeline.at(run, course.t[keep])
+    shown = _Shown.of(parameter)
+    mean, std = course.mean[keep, column], course.std[keep, column]
+    value = {
+        "type": "scatter",
+        "mode": "lines" if len(keep) > 1 else "markers",
+        "x": numbers(with_breaks(run, x)),
+        "y": numbers(with_breaks(run, shown.values(mean))),
+        "line": {"color": LEARNED_STROKE.colour, "width": 2},
+        "hovertemplate": "%{y:.4g}<br>%{x:.1f} s<extra></extra>",
+    }
+    return Figure(
+        key=key,
+        label=f"Parameter {parameter.name} over time",
+        heading=shown.name + ("" if parameter.determined else " (not determined)"),
+        traces=[_band(x, shown.values(mean - std), shown.values(mean + std)), value],
+        layout={
+            "xaxis": axis(timeline.title, nticks=6),
+            "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=6),
+            "shapes": timeline.shapes() + marks,
+        },
+        height=240,
+        caption=shown.final(parameter),
+    )
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """How a parameter is shown: its name, unit, and whether its exponential is."""
+
+    name: str
+    unit: str
+    exponential: bool
+
+    @classmethod
+    def of(cls, parameter: Parameter) -> _Shown:
+        if parameter.name.startswith(_LOGARITHM):
+            return cls(parameter.name.removeprefix(_LOGARITHM), "s", True)
+        return cls(parameter.name, parameter.unit or "-", False)
+
+    def values(self, values: Floats) -> Floats:
+        return np.exp(values) if self.exponential else values
+
+    def final(self, parameter: Parameter) -> str:
+        if not self.exponential:
+            return f"In the model: {number(parameter.value)} ± {number(parameter.std, 2)} {self.unit}"
+        spread = parameter.std * np.array([0.0, -1.0, 1.0])
+        value, low, high = self.values(parameter.value + spread).tolist()
+        return f"In the model: {number(value)} {self.unit}, ± 1 sigma: {number(low)} to {number(high)}"
+
+
+def _band(x: Floats, low: Floats, high: Floats) -> dict[str, Any]:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "x": numbers(np.concatenate((x, x[::-1]))),
+        "y": numbers(np.concatenate((high, low[::-1]))),
+        "fill": "toself",
+        "fillcolor": transparent(LEARNED_STROKE.colour, 0.2),
+        "line": {"width": 0},
+        "hoverinfo": "skip",
+    }
