@@ -14,7 +14,7 @@ from pathlib import Path
 from slipwise.files import sha256_of
 
 ROOT = Path(__file__).resolve().parent.parent
-PACKAGES = ("slipwise", "numpy", "pyarrow", "filterpy", "scipy")
+PACKAGES = ("slipwise", "numpy", "pyarrow", "filterpy", "scipy", "numba", "jax", "casadi")
 
 
 @dataclass(frozen=True)

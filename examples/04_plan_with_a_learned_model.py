@@ -17,8 +17,7 @@ from slipwise import planning
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-settings = sw.make_settings({"auto": {"cascade": False}})  # several manoeuvres in a row need a plain chain
-model = sw.calibrate(log, input_name="command", settings=settings).model
+model = sw.calibrate(log, input_name="command").model
 
 # %% [markdown]
 # One manoeuvre to a pose 6 m ahead and 2 m to the left, facing left. The limits are those that the model

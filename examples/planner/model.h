@@ -16,6 +16,8 @@
  *   slipwise_window window = {0.0f, 5.0f, 0, 0.0f, 0.0f};       // from 0 s to 5 s, drive follows from the commands
  *   slipwise_pose pose;
  *   if (slipwise_predict(&commands, &window, &pose, 0) == SLIPWISE_OK) { ... pose.x, pose.y, pose.yaw ... }
+ *   slipwise_real covariance[3][3];                             // of x, y, yaw: m^2, m rad, rad^2
+ *   slipwise_predict_covariance(&commands, &window, &pose, 0, covariance);
  *
  * x forward, y left, counter-clockwise; SI units. Numbers are float; define SLIPWISE_DOUBLE before including this for
  * double. In float keep times small: start them anew when the robot starts.
@@ -29,12 +31,15 @@
 typedef double slipwise_real;
 #define SLIPWISE_MATH(function) function
 #define SLIPWISE_SMALL_TURN 0.03
+#define SLIPWISE_DIFFERENCE 1e-3 /* of a standard deviation, for derivatives */
 #else
 typedef float slipwise_real;
 #define SLIPWISE_MATH(function) function##f
 #define SLIPWISE_SMALL_TURN 0.35f
+#define SLIPWISE_DIFFERENCE 0.25f
 #endif
 #define SLIPWISE_R(number) ((slipwise_real)(number))
+#define SLIPWISE_SLOTS(count) ((count) > 0 ? (count) : 1) /* an array has one at least */
 
 /* What was learned. Inputs are commanded speeds. */
 #define SLIPWISE_DELAY_V SLIPWISE_R(0.17979255394262977)  /* [s] transport delay of the speed */
@@ -64,6 +69,8 @@ typedef float slipwise_real;
 #define SLIPWISE_TERMS_LAT "V", "w"
 #define SLIPWISE_TERMS_ANG "V", "w"
 #define SLIPWISE_PARAMETERS -0.013530321551158315, -0.003941739370395638, 0.0002318653830289367, -0.01587659421056705, -0.00010030030672093808, -0.3829469452501794, -0.18885423969413528, -0.1594209314256324, -1.7159515708019935, -1.8586150608442
+#define SLIPWISE_SLIP_PARAMETERS 6
+#define SLIPWISE_PARAMETER_COUNT 10
 #define SLIPWISE_HAS_DYNAMICS 1
 #define SLIPWISE_HAS_RESPONSE 0
 #define SLIPWISE_HAS_CLOCK_OFFSET 0
@@ -138,16 +145,66 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
   return 0;
 }
 
+/* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
+typedef struct {
+  slipwise_real lag, gain, slow_share, slow_lag;
+} slipwise_response;
+
+/* What was learned, as numbers that can be shifted. */
+typedef struct {
+  slipwise_real p[SLIPWISE_SLOTS(SLIPWISE_SLIP_PARAMETERS)]; /* of the slip */
+  slipwise_response speed, yaw;
+  slipwise_real delay_v, delay_omega, clock_offset;
+} slipwise_model;
+
+/* The learned model; `by` [SLIPWISE_PARAMETER_COUNT] is added to its parameters, lags and delays by their logarithms.
+ * NULL: as learned. */
+static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
+  slipwise_model model;
+  model.speed.lag = SLIPWISE_LAG_V;
+  model.speed.gain = SLIPWISE_GAIN_V;
+  model.speed.slow_share = SLIPWISE_SLOW_SHARE_V;
+  model.speed.slow_lag = SLIPWISE_SLOW_LAG_V;
+  model.yaw.lag = SLIPWISE_LAG_OMEGA;
+  model.yaw.gain = SLIPWISE_GAIN_OMEGA;
+  model.yaw.slow_share = SLIPWISE_SLOW_SHARE_OMEGA;
+  model.yaw.slow_lag = SLIPWISE_SLOW_LAG_OMEGA;
+  model.delay_v = SLIPWISE_DELAY_V;
+  model.delay_omega = SLIPWISE_DELAY_OMEGA;
+  model.clock_offset = SLIPWISE_CLOCK_OFFSET;
+  model.p[0] = SLIPWISE_P0;
+  model.p[1] = SLIPWISE_P1;
+  model.p[2] = SLIPWISE_P2;
+  model.p[3] = SLIPWISE_P3;
+  model.p[4] = SLIPWISE_P4;
+  model.p[5] = SLIPWISE_P5;
+  if (by) {
+    model.p[0] += by[0];
+    model.p[1] += by[1];
+    model.p[2] += by[2];
+    model.p[3] += by[3];
+    model.p[4] += by[4];
+    model.p[5] += by[5];
+    model.speed.lag *= SLIPWISE_MATH(exp)(by[6]);
+    model.yaw.lag *= SLIPWISE_MATH(exp)(by[7]);
+    model.delay_v *= SLIPWISE_MATH(exp)(by[8]);
+    model.delay_omega *= SLIPWISE_MATH(exp)(by[9]);
+  }
+  return model;
+}
+
 /* Slip rates (forward, left, turn) of a drive; they add to it. */
-static inline void slipwise_slip(slipwise_real v, slipwise_real w, slipwise_real gx, slipwise_real gy,
-                                 slipwise_real rate[3]) {
+static inline void slipwise_slip(const slipwise_model *model, slipwise_drive drive, slipwise_real gx,
+                                 slipwise_real gy, slipwise_real rate[3]) {
+  const slipwise_real *const p = model->p;
+  const slipwise_real v = drive.v, w = drive.omega;
   (void)v;
   (void)w;
   (void)gx;
   (void)gy;
-  rate[0] = SLIPWISE_P0 * v + SLIPWISE_P1 * w;
-  rate[1] = SLIPWISE_P2 * v + SLIPWISE_P3 * w;
-  rate[2] = SLIPWISE_P4 * v + SLIPWISE_P5 * w;
+  rate[0] = p[0] * v + p[1] * w;
+  rate[1] = p[2] * v + p[3] * w;
+  rate[2] = p[4] * v + p[5] * w;
 }
 
 /* The commands of one channel as the drive sees them: delayed. */
@@ -206,11 +263,6 @@ static inline slipwise_real slipwise_lag_step(slipwise_real *output, slipwise_re
   *output = input + gap * (1 - gone);
   return input * duration + gap * lag * gone;
 }
-
-/* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
-typedef struct {
-  slipwise_real lag, gain, slow_share, slow_lag;
-} slipwise_response;
 
 /* What the two lags of a channel put out; their sum is the drive. */
 typedef struct {
@@ -281,28 +333,127 @@ static inline void slipwise_move(slipwise_path *path, slipwise_real forward, sli
   path->cosine = x;
 }
 
+/* Slip noise: power spectral densities [unit^2/s of the rate] and [unit^2 per motion], and the share of the motion that
+ * stays the same all along, of (forward, left, turn). */
+static const slipwise_real slipwise_noise_time[3] = {SLIPWISE_R(0.0), SLIPWISE_R(0.0), SLIPWISE_R(0.0)};
+static const slipwise_real slipwise_noise_motion[3] = {SLIPWISE_R(0.001), SLIPWISE_R(0.001), SLIPWISE_R(0.001)};
+static const slipwise_real slipwise_noise_share[3] = {SLIPWISE_R(0.05), SLIPWISE_R(0.05), SLIPWISE_R(0.05)};
+#define SLIPWISE_TURN_RADIUS SLIPWISE_R(0.3)  /* [m] a turn of 1 rad slips like driving so far */
+#define SLIPWISE_STRAIGHT_RADIUS SLIPWISE_R(5.0)  /* [m] driving turns it as an arc of this radius */
+#define SLIPWISE_POSE_STD_XY SLIPWISE_R(0.02)  /* [m] of a measured pose */
+#define SLIPWISE_POSE_STD_YAW SLIPWISE_R(0.01)  /* [rad] */
+/* Learned factors of the noise's standard deviations in x, y and yaw. */
+static const slipwise_real slipwise_noise_root[3] = {SLIPWISE_R(0.3233009543858512), SLIPWISE_R(0.35127161938915596), SLIPWISE_R(0.2712167641719302)};
+
+/* How slip noise moves the pose, as it grows along the path. */
+typedef struct {
+  slipwise_real white[3][3];
+  slipwise_real constant[3][3]; /* column c: of a slip in direction c that stays the same */
+} slipwise_noise;
+
+/* Carries a column of the pose's derivative on to a place farther by (x, y): a heading error moves the end sideways. */
+static inline void slipwise_carry(slipwise_real column[3], slipwise_real x, slipwise_real y) {
+  column[0] -= y * column[2];
+  column[1] += x * column[2];
+}
+
+/* Derivative of a step's end by its tangent (forward, left, turn), [3][3] by columns. */
+static inline void slipwise_by_tangent(const slipwise_path *before, const slipwise_real tangent[3],
+                                       slipwise_real by[3][3]) {
+  const slipwise_real f = tangent[2], q = f * f;
+  slipwise_real a, b, a_slope, b_slope, x, y;
+  int c;
+  if (SLIPWISE_MATH(fabs)(f) < SLIPWISE_SMALL_TURN) {
+    a = 1 - q / 6 * (1 - q / 20 * (1 - q / 42));
+    b = f / 2 * (1 - q / 12 * (1 - q / 30 * (1 - q / 56)));
+    a_slope = -f / 3 * (1 - q / 10 * (1 - q / 28));
+    b_slope = (1 - q / 4 * (1 - q / 18 * (1 - q / 40))) / 2;
+  } else {
+    const slipwise_real sine = SLIPWISE_MATH(sin)(f), half = SLIPWISE_MATH(sin)(f / 2);
+    a = sine / f;
+    b = 2 * half * half / f;
+    a_slope = (1 - 2 * half * half - a) / f;
+    b_slope = (sine - b) / f;
+  }
+  by[0][0] = a;
+  by[0][1] = b;
+  by[1][0] = -b;
+  by[1][1] = a;
+  by[2][0] = a_slope * tangent[0] - b_slope * tangent[1];
+  by[2][1] = b_slope * tangent[0] + a_slope * tangent[1];
+  for (c = 0; c < 3; ++c) {
+    x = by[c][0];
+    y = by[c][1];
+    by[c][0] = before->cosine * x - before->sine * y;
+    by[c][1] = before->sine * x + before->cosine * y;
+    by[c][2] = c == 2 ? SLIPWISE_R(1) : SLIPWISE_R(0);
+  }
+}
+
+/* One step from `before` to `after`. */
+static inline void slipwise_noise_add(slipwise_noise *noise, const slipwise_path *before, const slipwise_path *after,
+                                      const slipwise_real tangent[3], slipwise_drive mean, slipwise_real duration) {
+  const slipwise_real x = after->pose.x - before->pose.x, y = after->pose.y - before->pose.y;
+  const slipwise_real distance = SLIPWISE_MATH(fabs)(mean.v) * duration;
+  const slipwise_real turn = SLIPWISE_MATH(fabs)(mean.omega) * duration;
+  const slipwise_real wheels = distance + SLIPWISE_TURN_RADIUS * turn;
+  slipwise_real motion[3], by[3][3];
+  int c, i, j;
+  motion[0] = motion[1] = wheels;
+  motion[2] = turn + distance / SLIPWISE_STRAIGHT_RADIUS;
+  for (c = 0; c < 3; ++c) { /* P = F P F' by columns, then by rows */
+    slipwise_carry(noise->white[c], x, y);
+    slipwise_carry(noise->constant[c], x, y);
+  }
+  for (c = 0; c < 3; ++c) {
+    noise->white[0][c] -= y * noise->white[2][c];
+    noise->white[1][c] += x * noise->white[2][c];
+  }
+  slipwise_by_tangent(before, tangent, by);
+  for (c = 0; c < 3; ++c) {
+    const slipwise_real variance =
+        slipwise_noise_time[c] * (wheels > 0 ? duration : SLIPWISE_R(0)) + slipwise_noise_motion[c] * motion[c];
+    for (i = 0; i < 3; ++i) {
+      noise->constant[c][i] += slipwise_noise_share[c] * motion[c] * by[c][i];
+      for (j = 0; j < 3; ++j) {
+        noise->white[i][j] += variance * by[c][i] * by[c][j];
+      }
+    }
+  }
+}
 /* What a prediction carries along. */
 typedef struct {
+  const slipwise_model *model;
   const slipwise_window *window;
   slipwise_cursor speed_input, yaw_input;
-  slipwise_response speed_response, yaw_response;
   slipwise_channel speed, yaw_rate;
   slipwise_path path;
+  slipwise_noise *noise; /* NULL where it is not asked for */
 } slipwise_walk;
 
 /* Moves the robot by a mean drive and its slip. */
 static inline void slipwise_advance(slipwise_walk *walk, slipwise_drive mean, slipwise_real duration) {
-  slipwise_real rate[3];
-  slipwise_slip(mean.v, mean.omega, walk->window->gx, walk->window->gy, rate);
-  slipwise_move(&walk->path, (mean.v + rate[0]) * duration, rate[1] * duration, (mean.omega + rate[2]) * duration);
+  const slipwise_path before = walk->path;
+  slipwise_real tangent[3];
+  int i;
+  slipwise_slip(walk->model, mean, walk->window->gx, walk->window->gy, tangent);
+  tangent[0] += mean.v;
+  tangent[2] += mean.omega;
+  for (i = 0; i < 3; ++i) {
+    tangent[i] *= duration;
+  }
+  slipwise_move(&walk->path, tangent[0], tangent[1], tangent[2]);
+  if (walk->noise) {
+    slipwise_noise_add(walk->noise, &before, &walk->path, tangent, mean, duration);
+  }
 }
 
 /* One step of held inputs. Slip depends on the step's mean drive. */
 static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, int moves) {
   const slipwise_real speed = slipwise_held(&walk->speed_input).v, yaw = slipwise_held(&walk->yaw_input).omega;
   slipwise_drive mean;
-  mean.v = slipwise_channel_step(&walk->speed, &walk->speed_response, speed, duration) / duration;
-  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->yaw_response, yaw, duration) / duration;
+  mean.v = slipwise_channel_step(&walk->speed, &walk->model->speed, speed, duration) / duration;
+  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
   if (moves) {
     slipwise_advance(walk, mean, duration);
   }
@@ -310,8 +461,8 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
 
 /* Steps from `now` to `until`, ending wherever a delayed command changes. */
 static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until, int moves) {
-  const int lagging = SLIPWISE_LAG_V > 0 || SLIPWISE_LAG_OMEGA > 0 || SLIPWISE_SLOW_LAG_V > 0 ||
-                      SLIPWISE_SLOW_LAG_OMEGA > 0;
+  const slipwise_response *const speed = &walk->model->speed, *const yaw = &walk->model->yaw;
+  const int lagging = speed->lag > 0 || yaw->lag > 0 || speed->slow_lag > 0 || yaw->slow_lag > 0;
   while (now < until) {
     slipwise_real next = slipwise_change(&walk->speed_input, until);
     const slipwise_real other = slipwise_change(&walk->yaw_input, until);
@@ -350,19 +501,14 @@ static inline int slipwise_is_bad(const slipwise_window *window) {
          (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega)));
 }
 
-/* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the
- * end, to start the next window with; it may be NULL. Nothing is written unless SLIPWISE_OK is returned. */
-static inline int slipwise_predict(const slipwise_commands *commands, const slipwise_window *window,
-                                   slipwise_pose *pose, slipwise_drive *drive) {
-  const slipwise_response speed = {SLIPWISE_LAG_V, SLIPWISE_GAIN_V, SLIPWISE_SLOW_SHARE_V, SLIPWISE_SLOW_LAG_V};
-  const slipwise_response yaw = {SLIPWISE_LAG_OMEGA, SLIPWISE_GAIN_OMEGA, SLIPWISE_SLOW_SHARE_OMEGA,
-                                 SLIPWISE_SLOW_LAG_OMEGA};
+/* One pass with one model; `walk` is what it carried along. */
+static inline int slipwise_run(const slipwise_model *model, const slipwise_commands *commands,
+                               const slipwise_window *window, slipwise_noise *noise, slipwise_walk *walk) {
   const slipwise_path nowhere = {{0, 0, 0}, 1, 0};
-  const slipwise_real speed_lag = slipwise_start_lag(&speed, window->drive != 0);
-  const slipwise_real yaw_lag = slipwise_start_lag(&yaw, window->drive != 0);
-  slipwise_real start = window->start - SLIPWISE_CLOCK_OFFSET, known = start, early;
-  const slipwise_real end = window->end - SLIPWISE_CLOCK_OFFSET;
-  slipwise_walk walk;
+  const slipwise_real speed_lag = slipwise_start_lag(&model->speed, window->drive != 0);
+  const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, window->drive != 0);
+  slipwise_real start = window->start - model->clock_offset, known = start, early;
+  const slipwise_real end = window->end - model->clock_offset;
   if (slipwise_is_bad(window)) {
     return SLIPWISE_BAD_WINDOW;
   }
@@ -373,32 +519,162 @@ static inline int slipwise_predict(const slipwise_commands *commands, const slip
     known = window->start; /* by the clock of the commands, and so by that of the wheels */
   }
   early = known - SLIPWISE_SETTLED_LAGS * (speed_lag > yaw_lag ? speed_lag : yaw_lag);
-  walk.window = window;
-  walk.path = nowhere;
-  walk.speed_response = speed;
-  walk.yaw_response = yaw;
-  walk.speed_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_V, early, window->end);
-  walk.yaw_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_OMEGA, early, window->end);
-  walk.speed = slipwise_settled(&speed, slipwise_held(&walk.speed_input).v);
-  walk.yaw_rate = slipwise_settled(&yaw, slipwise_held(&walk.yaw_input).omega);
-  slipwise_cover(&walk, early, known, 0);
+  walk->window = window;
+  walk->path = nowhere;
+  walk->model = model;
+  walk->noise = noise;
+  walk->speed_input = slipwise_cursor_at(commands, model->delay_v, early, window->end);
+  walk->yaw_input = slipwise_cursor_at(commands, model->delay_omega, early, window->end);
+  walk->speed = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).v);
+  walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
+  slipwise_cover(walk, early, known, 0);
   if (window->drive) {
-    slipwise_measured(&walk.speed, &speed, window->drive->v);
-    slipwise_measured(&walk.yaw_rate, &yaw, window->drive->omega);
+    slipwise_measured(&walk->speed, &model->speed, window->drive->v);
+    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega);
   }
   if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
     const slipwise_real until = known < end ? known : end;
-    slipwise_advance(&walk, *window->drive, until - start);
+    slipwise_advance(walk, *window->drive, until - start);
     start = known;
   }
-  slipwise_cover(&walk, known, start, 0);
-  slipwise_cover(&walk, start, end, 1);
-  *pose = walk.path.pose;
-  if (drive) {
-    drive->v = walk.speed.fast + walk.speed.slow;
-    drive->omega = walk.yaw_rate.fast + walk.yaw_rate.slow;
-  }
+  slipwise_cover(walk, known, start, 0);
+  slipwise_cover(walk, start, end, 1);
   return SLIPWISE_OK;
 }
 
+/* What a pass says. */
+static inline void slipwise_results(const slipwise_walk *walk, slipwise_pose *pose, slipwise_drive *drive) {
+  *pose = walk->path.pose;
+  if (drive) {
+    drive->v = walk->speed.fast + walk->speed.slow;
+    drive->omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
+  }
+}
+
+/* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the
+ * end, to start the next window with; it may be NULL. Nothing is written unless SLIPWISE_OK is returned. */
+static inline int slipwise_predict(const slipwise_commands *commands, const slipwise_window *window,
+                                   slipwise_pose *pose, slipwise_drive *drive) {
+  const slipwise_model model = slipwise_model_shifted(0);
+  slipwise_walk walk;
+  const int status = slipwise_run(&model, commands, window, 0, &walk);
+  if (status == SLIPWISE_OK) {
+    slipwise_results(&walk, pose, drive);
+  }
+  return status;
+}
+
+/* The parameters' covariance is the product of these rows' transpose and themselves. */
+#define SLIPWISE_ROOTS 10
+static const slipwise_real slipwise_roots[SLIPWISE_SLOTS(SLIPWISE_ROOTS)]
+                                         [SLIPWISE_SLOTS(SLIPWISE_PARAMETER_COUNT)] = {
+    {SLIPWISE_R(1.0014396757653595e-07), SLIPWISE_R(3.6837386980745667e-07), SLIPWISE_R(-6.376040886732912e-06), SLIPWISE_R(-2.186182425008327e-06), SLIPWISE_R(0.0010749525448088648), SLIPWISE_R(8.125829682956347e-06), SLIPWISE_R(-1.511315147008882e-07), SLIPWISE_R(2.02927201755154e-06), SLIPWISE_R(-4.773896668629912e-09), SLIPWISE_R(2.3181308063075667e-07)},
+    {SLIPWISE_R(-0.002602434429012889), SLIPWISE_R(4.546154756336718e-05), SLIPWISE_R(5.498799471648616e-05), SLIPWISE_R(2.7856008211342887e-05), SLIPWISE_R(5.162242411705105e-07), SLIPWISE_R(1.2856307125890953e-05), SLIPWISE_R(1.72453096725219e-05), SLIPWISE_R(-7.108132995733309e-07), SLIPWISE_R(-9.950573889763135e-07), SLIPWISE_R(1.4904363726889596e-07)},
+    {SLIPWISE_R(-5.7153781984963335e-05), SLIPWISE_R(-1.2327420385374966e-05), SLIPWISE_R(-0.002726558385971594), SLIPWISE_R(4.218701336506079e-05), SLIPWISE_R(-1.633114234691445e-05), SLIPWISE_R(3.3121491377548057e-05), SLIPWISE_R(9.311354653541285e-06), SLIPWISE_R(2.5689019298871287e-06), SLIPWISE_R(1.952717795308135e-06), SLIPWISE_R(4.850989416182413e-07)},
+    {SLIPWISE_R(-2.1536591965047075e-05), SLIPWISE_R(-0.0001207638775651018), SLIPWISE_R(-4.5875066248256234e-05), SLIPWISE_R(0.0001227255208823897), SLIPWISE_R(3.019756410885157e-05), SLIPWISE_R(-0.0040047673242007845), SLIPWISE_R(3.2527720352188126e-06), SLIPWISE_R(5.2591267490666144e-05), SLIPWISE_R(-4.227733381477839e-07), SLIPWISE_R(-1.1567524373066364e-05)},
+    {SLIPWISE_R(-9.342695532046502e-05), SLIPWISE_R(-0.004374062621284824), SLIPWISE_R(-3.3106305315411253e-06), SLIPWISE_R(-0.0017193135649149693), SLIPWISE_R(-2.624235827182496e-06), SLIPWISE_R(8.006874040014974e-05), SLIPWISE_R(0.0001609494981415454), SLIPWISE_R(1.6856954255554237e-05), SLIPWISE_R(3.0999671290894272e-06), SLIPWISE_R(5.352304630453315e-06)},
+    {SLIPWISE_R(-2.082316330292705e-05), SLIPWISE_R(0.001811131169962769), SLIPWISE_R(-8.165719600440522e-05), SLIPWISE_R(-0.004619424877698556), SLIPWISE_R(-9.113765410917717e-06), SLIPWISE_R(-0.000194724342876137), SLIPWISE_R(-4.759525675160188e-05), SLIPWISE_R(4.1659218639715886e-05), SLIPWISE_R(2.1019149492584506e-06), SLIPWISE_R(1.2070007867678983e-05)},
+    {SLIPWISE_R(-9.232863757222433e-05), SLIPWISE_R(-0.000448371148184872), SLIPWISE_R(-4.160823748915264e-05), SLIPWISE_R(-4.497344629737685e-05), SLIPWISE_R(-2.0366267104380073e-06), SLIPWISE_R(3.3336700014230124e-06), SLIPWISE_R(-0.012679881693789292), SLIPWISE_R(2.2356568355553617e-05), SLIPWISE_R(-0.002298885916051138), SLIPWISE_R(1.3575216365439212e-06)},
+    {SLIPWISE_R(-8.938382636137458e-07), SLIPWISE_R(1.486731310871785e-05), SLIPWISE_R(2.5433005577360258e-05), SLIPWISE_R(0.00018321431172396423), SLIPWISE_R(-3.93334732769104e-05), SLIPWISE_R(0.0002488927518678083), SLIPWISE_R(3.3327922673568375e-05), SLIPWISE_R(0.01959864924376218), SLIPWISE_R(2.9339148472110283e-06), SLIPWISE_R(0.004531806701227233)},
+    {SLIPWISE_R(-0.00016157852184458767), SLIPWISE_R(-0.000568652099740048), SLIPWISE_R(1.531477146861966e-05), SLIPWISE_R(7.07105277294329e-07), SLIPWISE_R(-1.7146371255337914e-06), SLIPWISE_R(-5.846565389359502e-06), SLIPWISE_R(-0.01738759978533054), SLIPWISE_R(2.9602050703657458e-05), SLIPWISE_R(0.0960215063892384), SLIPWISE_R(-6.0286766929824327e-05)},
+    {SLIPWISE_R(-1.9702519652706535e-05), SLIPWISE_R(1.8333499469626986e-05), SLIPWISE_R(2.2124929458652608e-05), SLIPWISE_R(-0.0001591506296562662), SLIPWISE_R(-5.6602363006619594e-05), SLIPWISE_R(0.0012538524399875299), SLIPWISE_R(8.825950485641242e-05), SLIPWISE_R(0.049156997574084094), SLIPWISE_R(-0.00013253697317135445), SLIPWISE_R(-0.21265234042012646)}
+};
+/* What held-out predictions of these horizons [s] needed: ln of the growth of the covariance, and of the degrees of
+ * freedom of the Student t that has it. */
+#define SLIPWISE_TAILS 3
+static const slipwise_real slipwise_tails[SLIPWISE_TAILS][3] = {{SLIPWISE_R(1.0), SLIPWISE_R(-0.7512636919302976), SLIPWISE_R(2.0794415416798357)}, {SLIPWISE_R(2.0), SLIPWISE_R(-0.8771258787375703), SLIPWISE_R(2.0794415416798357)}, {SLIPWISE_R(5.0), SLIPWISE_R(-0.9880205973800916), SLIPWISE_R(2.0794415416798357)}};
+
+/* Growth of the covariance, and degrees of freedom, at a horizon [s]: between those judged by their logarithms. */
+static inline void slipwise_tail(slipwise_real horizon, slipwise_real *growth, slipwise_real *dof) {
+  const slipwise_real(*at)[3] = slipwise_tails;
+  slipwise_real share = 0;
+  int i = 0;
+  while (i + 2 < SLIPWISE_TAILS && horizon > at[i + 1][0]) {
+    ++i;
+  }
+  if (SLIPWISE_TAILS > 1) {
+    share = (horizon - at[i][0]) / (at[i + 1][0] - at[i][0]);
+    share = share < 0 ? SLIPWISE_R(0) : share > 1 ? SLIPWISE_R(1) : share;
+    *growth = SLIPWISE_MATH(exp)(at[i][1] + share * (at[i + 1][1] - at[i][1]));
+    *dof = SLIPWISE_MATH(exp)(at[i][2] + share * (at[i + 1][2] - at[i][2]));
+  } else {
+    *growth = SLIPWISE_MATH(exp)(at[0][1]);
+    *dof = SLIPWISE_MATH(exp)(at[0][2]);
+  }
+}
+
+/* Adds a a'. */
+static inline void slipwise_add_square(slipwise_real sum[3][3], const slipwise_real a[3]) {
+  int i, j;
+  for (i = 0; i < 3; ++i) {
+    for (j = 0; j < 3; ++j) {
+      sum[i][j] += a[i] * a[j];
+    }
+  }
+}
+
+/* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, slip noise,
+ * the noise of two measured poses, and growth. It costs 2 * SLIPWISE_ROOTS + 1 predictions. */
+static inline int slipwise_predict_covariance(const slipwise_commands *commands, const slipwise_window *window,
+                                              slipwise_pose *pose, slipwise_drive *drive,
+                                              slipwise_real covariance[3][3]) {
+  const slipwise_model model = slipwise_model_shifted(0);
+  slipwise_real parameters[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, noise_sum[3][3];
+  slipwise_real by[SLIPWISE_SLOTS(SLIPWISE_PARAMETER_COUNT)], growth, dof;
+  slipwise_noise noise = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+  slipwise_walk walk;
+  int root, i, j, side;
+  const int status = slipwise_run(&model, commands, window, &noise, &walk);
+  if (status != SLIPWISE_OK) {
+    return status;
+  }
+  for (root = 0; root < SLIPWISE_ROOTS; ++root) { /* derivatives along the roots: central differences */
+    slipwise_real change[3] = {0, 0, 0};
+    for (side = -1; side <= 1; side += 2) {
+      slipwise_walk shifted;
+      slipwise_model other;
+      for (i = 0; i < SLIPWISE_PARAMETER_COUNT; ++i) {
+        by[i] = (slipwise_real)side * SLIPWISE_DIFFERENCE * slipwise_roots[root][i];
+      }
+      other = slipwise_model_shifted(by);
+      slipwise_run(&other, commands, window, 0, &shifted);
+      change[0] += (slipwise_real)side * (shifted.path.pose.x - walk.path.pose.x);
+      change[1] += (slipwise_real)side * (shifted.path.pose.y - walk.path.pose.y);
+      change[2] += (slipwise_real)side * (shifted.path.pose.yaw - walk.path.pose.yaw);
+    }
+    for (i = 0; i < 3; ++i) {
+      change[i] /= 2 * SLIPWISE_DIFFERENCE;
+    }
+    slipwise_add_square(parameters, change);
+  }
+  for (i = 0; i < 3; ++i) {
+    for (j = 0; j < 3; ++j) {
+      noise_sum[i][j] = noise.white[i][j];
+    }
+  }
+  for (i = 0; i < 3; ++i) {
+    slipwise_add_square(noise_sum, noise.constant[i]);
+  }
+  { /* both poses are measured; a start turned too far left moves the end right and back */
+    const slipwise_real xy[2][3] = {{SLIPWISE_POSE_STD_XY, 0, 0}, {0, SLIPWISE_POSE_STD_XY, 0}};
+    const slipwise_real yaw = SLIPWISE_POSE_STD_YAW;
+    const slipwise_real turned[3] = {yaw * walk.path.pose.y, -yaw * walk.path.pose.x, -yaw};
+    const slipwise_real own[3] = {0, 0, SLIPWISE_POSE_STD_YAW};
+    for (i = 0; i < 2; ++i) {
+      slipwise_add_square(noise_sum, xy[i]);
+      slipwise_add_square(noise_sum, xy[i]);
+    }
+    slipwise_add_square(noise_sum, turned);
+    slipwise_add_square(noise_sum, own);
+  }
+  slipwise_tail(window->end - window->start, &growth, &dof);
+  for (i = 0; i < 3; ++i) {
+    for (j = 0; j < 3; ++j) {
+      covariance[i][j] =
+          growth * (parameters[i][j] + slipwise_noise_root[i] * slipwise_noise_root[j] * noise_sum[i][j]);
+    }
+  }
+  slipwise_results(&walk, pose, drive);
+  return SLIPWISE_OK;
+}
 #endif /* SLIPWISE_MODEL_H */

@@ -2,6 +2,7 @@
 // Bindings of cpp/include/slipwise/planning.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
@@ -34,7 +35,7 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<double, double, double, double>(), "speed"_a, "yaw_rate"_a, "curvature"_a, "acceleration"_a)
       .def("check", &DriveLimits::check);
   nb::class_<DriveStart>(m, "DriveStart", "What the drive does and was told last when a plan begins.")
-      .def(nb::init<BodyTwist, BodyTwist>(), "drive"_a, "told"_a);
+      .def(nb::init<BodyTwist, BodyTwist, std::optional<BodyTwist>>(), "drive"_a, "told"_a, "fast"_a.none());
   nb::class_<TrajectorySettings>(m, "TrajectorySettings", "How trajectories are shaped.")
       .def(nb::init<>())
       .def_rw("cruise", &TrajectorySettings::cruise)
@@ -69,7 +70,8 @@ void bind_trajectory(nb::module_& m) {
       .def_prop_ro("omega", [](const Trajectory& plan) { return vector_of(plan.omega); })
       .def_prop_ro("path_t", [](const Trajectory& plan) { return vector_of(plan.path.t); })
       .def_prop_ro("path", [](const Trajectory& plan) { return pose_matrix(plan.path.poses); })
-      .def_prop_ro("drive", [](const Trajectory& plan) { return plan.path.drive; });
+      .def_prop_ro("drive", [](const Trajectory& plan) { return plan.path.drive; })
+      .def_prop_ro("fast", [](const Trajectory& plan) { return plan.path.fast; });
   nb::class_<TrajectoryPlanner>(m, "TrajectoryPlanner", "Plans to goal poses from states near its start.")
       .def(
           "__init__",

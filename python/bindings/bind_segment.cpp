@@ -128,6 +128,8 @@ void bind_segment(nb::module_& m) {
       .def_ro("path", &SegmentLinearization::path)
       .def_ro("predicted", &SegmentLinearization::predicted)
       .def_ro("by_parameter", &SegmentLinearization::by_parameter);
+  m.attr("TURN_RADIUS") = kTurnRadius;
+  m.attr("STRAIGHT_RADIUS") = kStraightRadius;
   nb::class_<MotionNoise>(m, "MotionNoise", "Noise of slip rates and poses.")
       .def(
           "__init__",

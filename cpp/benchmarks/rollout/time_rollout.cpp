@@ -88,9 +88,15 @@ std::vector<Case> cases() {
   const double lag = std::log(0.2);
   const double delay = std::log(0.13);
   const double other = std::log(0.07);
+  const double slow = std::log(1.5);
   return {{"thesis-15, no chain", "thesis-15", {}, {}, 34.0},
-          {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 38.0},
-          {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 76.0},
+          {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
+          {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
+          {"thesis-15, gains and slow parts",
+           "thesis-15",
+           {.dynamics = true, .response = true},
+           {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
+           48.0},
           {"odd-even-10, no chain", "odd-even-10", {}, {}, 0.0},
           {"odd-even-10, lag and two delays", "odd-even-10", {.dynamics = true}, {lag, lag, delay, other}, 0.0},
           {"edd-2, no chain", "edd-2", {}, {}, 0.0}};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 
 namespace slipwise {
@@ -15,7 +16,6 @@ using Row = Eigen::Matrix<double, 1, kChainParameters>;
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kSettledLags = 8.0;  // after this many time constants the start of a lag is forgotten (e^-8)
 
 /// Where a channel's parameters stand among the chain's.
 struct ChannelPlaces {
@@ -23,24 +23,6 @@ struct ChannelPlaces {
 };
 constexpr ChannelPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
 constexpr ChannelPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
-
-/// How one channel responds.
-struct ChannelResponse {
-  double lag, gain, slow_share, slow_lag;
-  ChannelPlaces places;
-
-  bool has_slow_part() const { return slow_lag > 0.0; }
-  double share() const { return has_slow_part() ? slow_share : 0.0; }
-  double longest_lag() const { return std::max(lag, slow_lag); }
-};
-
-ChannelResponse speed_response(const CommandChain& c) {
-  return {c.lag_v, c.gain_v, c.slow_share_v, c.slow_lag_v, kSpeedPlaces};
-}
-
-ChannelResponse turn_response(const CommandChain& c) {
-  return {c.lag_omega, c.gain_omega, c.slow_share_omega, c.slow_lag_omega, kTurnPlaces};
-}
 
 /// A moment that moves with one of the chain's parameters: later with a delay, earlier with the clock offset.
 struct Moment {
@@ -94,12 +76,12 @@ struct Sensitive {
 };
 
 /// The part of an input that one of a channel's two lags follows: share * gain * input.
-Sensitive part_of(double input, const ChannelResponse& response, bool slow) {
+Sensitive part_of(double input, const ChannelResponse& response, const ChannelPlaces& places, bool slow) {
   const double share = slow ? response.share() : 1.0 - response.share();
   Sensitive part{.value = share * response.gain * input};
-  part.slope[response.places.gain] = share * input;
+  part.slope[places.gain] = share * input;
   if (response.has_slow_part()) {
-    part.slope[response.places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
+    part.slope[places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
   }
   return part;
 }
@@ -137,12 +119,12 @@ struct ChannelDecay {
 /// One channel of the drive: two lags side by side.
 class DriveChannel {
  public:
-  explicit DriveChannel(const ChannelResponse& response) : response_(response) {}
+  DriveChannel(const ChannelResponse& response, const ChannelPlaces& places) : response_(response), places_(places) {}
 
   /// Settled on an input that was held for long.
   void settle(double input) {
-    fast_ = part_of(input, response_, false);
-    slow_ = response_.has_slow_part() ? part_of(input, response_, true) : Sensitive{};
+    fast_ = part_of(input, response_, places_, false);
+    slow_ = response_.has_slow_part() ? part_of(input, response_, places_, true) : Sensitive{};
   }
 
   /// The whole was measured: what the fast part does not explain is the slow part's.
@@ -156,20 +138,19 @@ class DriveChannel {
 
   /// Advances over a step; returns the integral.
   double step(double input, const ChannelDecay& decay) {
-    const double share = response_.share();
-    double integral = advance(fast_, (1.0 - share) * response_.gain * input, decay.fast);
+    double integral = advance(fast_, response_.fast_share() * input, decay.fast);
     if (response_.has_slow_part()) {
-      integral += advance(slow_, share * response_.gain * input, decay.slow);
+      integral += advance(slow_, response_.share() * response_.gain * input, decay.slow);
     }
     return integral;
   }
 
   Sensitive linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
-    const ChannelPlaces& places = response_.places;
-    Sensitive integral = advance(fast_, part_of(input, response_, false), decay.fast, places.lag, duration_slope);
+    Sensitive integral =
+        advance(fast_, part_of(input, response_, places_, false), decay.fast, places_.lag, duration_slope);
     if (response_.has_slow_part()) {
       const Sensitive slow =
-          advance(slow_, part_of(input, response_, true), decay.slow, places.slow_lag, duration_slope);
+          advance(slow_, part_of(input, response_, places_, true), decay.slow, places_.slow_lag, duration_slope);
       integral.value += slow.value;
       integral.slope += slow.slope;
     }
@@ -178,6 +159,7 @@ class DriveChannel {
 
  private:
   ChannelResponse response_;
+  ChannelPlaces places_;
   Sensitive fast_, slow_;
 };
 
@@ -193,12 +175,12 @@ class ChainWalk {
         start_(moment_of(window.start)),
         end_(moment_of(window.end)),
         chain_start_(window.initial && window.known ? Moment{window.known->until, kFixed} : start_),
-        warm_up_(kSettledLags * warm_up_lag()),
+        warm_up_(warm_up()),
         cursor_v_(inputs, chain.delay_v, kSpeedPlaces.delay, chain_start_.t - warm_up_, window.end),
         cursor_omega_(inputs, chain.delay_omega, kTurnPlaces.delay, chain_start_.t - warm_up_, window.end),
-        v_(speed_),
-        vy_(speed_),
-        omega_(turn_) {
+        v_(speed_, kSpeedPlaces),
+        vy_(speed_, kSpeedPlaces),
+        omega_(turn_, kTurnPlaces) {
     v_.settle(cursor_v_.held().v);
     vy_.settle(cursor_v_.held().vy);
     omega_.settle(cursor_omega_.held().omega);
@@ -229,12 +211,10 @@ class ChainWalk {
  private:
   Moment moment_of(double stamp) const { return {stamp - chain_.clock_offset, kOffset}; }
 
-  /// The time constant that the drive's state at the start hangs on: none where it was measured whole.
-  double warm_up_lag() const {
-    if (!window_.initial) {
-      return std::max(speed_.longest_lag(), turn_.longest_lag());
-    }
-    return std::max(speed_.has_slow_part() ? speed_.lag : 0.0, turn_.has_slow_part() ? turn_.lag : 0.0);
+  /// How long the state at the start hangs on earlier inputs: where the drive was measured, its parts alone do.
+  double warm_up() const {
+    return window_.initial ? fast_warm_up(speed_, turn_)
+                           : kSettledLags * std::max(speed_.longest_lag(), turn_.longest_lag());
   }
 
   /// Records the drive as it was measured, from the start until the chain takes over.

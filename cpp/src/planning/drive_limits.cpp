@@ -26,7 +26,7 @@ void DriveLimits::check() const {
 }
 
 void DriveStart::check() const {
-  for (const BodyTwist& twist : {drive, told}) {
+  for (const BodyTwist& twist : {drive, told, fast.value_or(BodyTwist{})}) {
     if (!std::isfinite(twist.v) || !std::isfinite(twist.vy) || !std::isfinite(twist.omega)) {
       throw std::invalid_argument("the twist at the start is not finite; give what the robot does and was told");
     }

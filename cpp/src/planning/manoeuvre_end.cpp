@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/segment/path_step.hpp"
 
@@ -53,61 +55,47 @@ double advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDeca
   return step.integral;
 }
 
-/// How one channel answers its input: two lags side by side, of a gain (derivations.md, section 4).
-struct Answer {
-  double gain, lag, slow_share, slow_lag;
-
-  bool has_slow_part() const { return slow_lag > 0.0; }
-  double share() const { return has_slow_part() ? slow_share : 0.0; }
-  double longest_lag() const { return std::max(lag, slow_lag); }
-};
-
-Answer speed_answer(const CommandChain& chain) {
-  return {chain.gain_v, chain.lag_v, chain.slow_share_v, chain.slow_lag_v};
-}
-Answer turn_answer(const CommandChain& chain) {
-  return {chain.gain_omega, chain.lag_omega, chain.slow_share_omega, chain.slow_lag_omega};
-}
-
 /// One channel of the drive.
 template <typename Slopes>
 class Channel {
  public:
-  /// What the fast part of a settled drive does not explain is the slow part's.
-  Channel(const Answer& answer, double drive, const Moving<Slopes>& told) : answer_(answer), told_(told) {
-    const double fast = answer.has_slow_part() ? (1.0 - answer.share()) * answer.gain * told.value : drive;
+  /// What the fast part does not explain is the slow part's; where it is not known, it is settled.
+  Channel(const ChannelResponse& response, double drive, const Moving<Slopes>& told, std::optional<double> known_fast)
+      : response_(response), told_(told) {
+    const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told.value) : drive;
     fast_ = {fast, told.by};
     slow_ = {drive - fast, told.by};
   }
 
   void tell(const Moving<Slopes>& told) { told_ = told; }
   double value() const { return fast_.value + slow_.value; }
+  double fast() const { return fast_.value; }
 
   Moving<Slopes> linearize_step(double duration, double duration_by_length) {
     Moving<Slopes> integral =
-        advance(fast_, part(1.0 - answer_.share()), LagDecay(answer_.lag, duration), duration_by_length);
-    if (answer_.has_slow_part()) {
+        advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration), duration_by_length);
+    if (response_.has_slow_part()) {
       const Moving<Slopes> slow =
-          advance(slow_, part(answer_.share()), LagDecay(answer_.slow_lag, duration), duration_by_length);
+          advance(slow_, part(response_.share()), LagDecay(response_.slow_lag, duration), duration_by_length);
       integral = {integral.value + slow.value, integral.by + slow.by};
     }
     return integral;
   }
 
   double step(double duration) {
-    double integral = advance(fast_, part(1.0 - answer_.share()), LagDecay(answer_.lag, duration));
-    if (answer_.has_slow_part()) {
-      integral += advance(slow_, part(answer_.share()), LagDecay(answer_.slow_lag, duration));
+    double integral = advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration));
+    if (response_.has_slow_part()) {
+      integral += advance(slow_, part(response_.share()), LagDecay(response_.slow_lag, duration));
     }
     return integral;
   }
 
  private:
   Moving<Slopes> part(double share) const {
-    return {share * answer_.gain * told_.value, share * answer_.gain * told_.by};
+    return {share * response_.gain * told_.value, share * response_.gain * told_.by};
   }
 
-  Answer answer_;
+  ChannelResponse response_;
   Moving<Slopes> told_;
   Moving<Slopes> fast_{}, slow_{};
 };
@@ -154,9 +142,10 @@ class ManoeuvreWalk {
       : chain_(model.chain()),
         held_(std::move(held)),
         settling_(settling),
-        v_(speed_answer(model.chain()), start.drive.v, {start.told.v, 0.0}),
-        vy_(speed_answer(model.chain()), start.drive.vy, {start.told.vy, 0.0}),
-        omega_(turn_answer(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()}),
+        v_(speed_response(model.chain()), start.drive.v, {start.told.v, 0.0}, fast_of(start, &BodyTwist::v)),
+        vy_(speed_response(model.chain()), start.drive.vy, {start.told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
+        omega_(turn_response(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()},
+               fast_of(start, &BodyTwist::omega)),
         end_(model) {}
 
   template <bool kSlopes>
@@ -187,10 +176,15 @@ class ManoeuvreWalk {
   }
 
   BodyTwist drive() const { return {.v = v_.value(), .vy = vy_.value(), .omega = omega_.value()}; }
+  BodyTwist fast() const { return {.v = v_.fast(), .vy = vy_.fast(), .omega = omega_.fast()}; }
   Pose2 pose() const { return end_.pose(); }
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
+  static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
+    return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
+  }
+
   /// A time and its derivative by the manoeuvre's length.
   struct Moment {
     double t;
@@ -218,7 +212,7 @@ class ManoeuvreWalk {
 
   template <bool kSlopes>
   void subdivide(const Moment& from, const Moment& to) {
-    const bool lagging = speed_answer(chain_).longest_lag() > 0.0 || turn_answer(chain_).longest_lag() > 0.0;
+    const bool lagging = speed_response(chain_).longest_lag() > 0.0 || turn_response(chain_).longest_lag() > 0.0;
     const int parts = lagging ? lag_parts(to.t - from.t, kLongestStep) : 1;
     const double duration = (to.t - from.t) / parts;
     for (int i = 0; i < parts; ++i) {
@@ -276,6 +270,7 @@ ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& f
   walk.record(path);
   walk.run<false>();
   path.drive = walk.drive();
+  path.fast = walk.fast();
   return path;
 }
 

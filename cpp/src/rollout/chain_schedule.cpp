@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "slipwise/actuator/command_chain.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 
 namespace slipwise {
@@ -16,13 +15,7 @@ namespace {
 constexpr double kMostPeriods = 1e6;  // that a command may take to act
 constexpr double kSamePart = 1e-9;    // of a period: delays that differ by less act together
 
-/// A channel's delay: whole periods, and the time within a period at which a command begins to act.
-struct Delay {
-  std::ptrdiff_t periods;
-  double rest;
-};
-
-Delay split_delay(double delay, double period) {
+ChannelTiming time_channel(const ChannelResponse& response, double delay, double period) {
   double whole = std::floor(delay / period);
   if (!(std::abs(whole) <= kMostPeriods)) {
     throw std::invalid_argument("a command that acts after " + std::to_string(delay) + " s is more than " +
@@ -34,7 +27,7 @@ Delay split_delay(double delay, double period) {
     whole += 1.0;
     rest = 0.0;
   }
-  return {static_cast<std::ptrdiff_t>(whole), rest < kSamePart * period ? 0.0 : rest};
+  return {static_cast<std::ptrdiff_t>(whole), rest < kSamePart * period ? 0.0 : rest, response};
 }
 
 LagShare share_of(double time_constant, double duration) {
@@ -42,16 +35,22 @@ LagShare share_of(double time_constant, double duration) {
   return {time_constant > 0.0 ? time_constant * decay.gone / duration : 0.0, decay.left};
 }
 
+ChannelShare share_of(const ChannelResponse& response, double duration) {
+  return {share_of(response.lag, duration), share_of(response.slow_lag, duration)};
+}
+
+bool lags(const ChannelTiming& channel) { return channel.response.longest_lag() > 0.0; }
+bool responds(const ChannelTiming& channel) { return channel.response.has_slow_part() || channel.response.gain != 1.0; }
+
 /// A stretch of constant delayed commands, cut so that no part with lag is longer than the chain's own steps are.
-std::vector<PeriodPart> cut(const CommandChain& chain, double duration, bool next_v, bool next_omega) {
+std::vector<PeriodPart> cut(const ChainSchedule& chain, double duration, bool next_v, bool next_omega) {
   if (!(duration > 0.0)) {
     return {};
   }
-  const bool lags = chain.lag_v > 0.0 || chain.lag_omega > 0.0;
-  const int count = lags ? lag_parts(duration, DriveWindow{}.longest_step) : 1;
+  const int count = chain.lags ? lag_parts(duration, DriveWindow{}.longest_step) : 1;
   const double part = duration / count;
-  std::vector<PeriodPart> parts(static_cast<std::size_t>(count),
-                                {part, false, false, share_of(chain.lag_v, part), share_of(chain.lag_omega, part)});
+  std::vector<PeriodPart> parts(static_cast<std::size_t>(count), {part, false, false, share_of(chain.v.response, part),
+                                                                  share_of(chain.omega.response, part)});
   parts.front().next_v = next_v;
   parts.front().next_omega = next_omega;
   return parts;
@@ -64,26 +63,21 @@ ChainSchedule schedule_chain(const CommandChain& chain, double period) {
     throw std::invalid_argument("the time between two commands must be a positive number of seconds, got " +
                                 std::to_string(period));
   }
-  if (chain.slow_lag_v > 0.0 || chain.slow_lag_omega > 0.0 || chain.gain_v != 1.0 || chain.gain_omega != 1.0) {
-    throw std::invalid_argument(
-        "rollouts have no gain and no slow part in their chain, as this model has; learn one without: [auto] cascade = "
-        "false");
-  }
-  const Delay v = split_delay(chain.delay_v + chain.clock_offset, period);
-  const Delay omega = split_delay(chain.delay_omega + chain.clock_offset, period);
+  const ChannelTiming v = time_channel(speed_response(chain), chain.delay_v + chain.clock_offset, period);
+  const ChannelTiming omega = time_channel(turn_response(chain), chain.delay_omega + chain.clock_offset, period);
   const double first = std::min(v.rest, omega.rest);
   const double second = std::max(v.rest, omega.rest);
   const bool together = first == second;
-  ChainSchedule schedule{period, v.periods, omega.periods, chain.lag_v > 0.0 || chain.lag_omega > 0.0, {}, {}, 0, {}};
-  schedule.lead_in = cut(chain, first, false, false);
+  ChainSchedule schedule{period, v, omega, lags(v) || lags(omega), responds(v) || responds(omega), {}, {}, 0, {}};
+  schedule.lead_in = cut(schedule, first, false, false);
   if (!together) {
-    schedule.cycle = cut(chain, second - first, v.rest == first, omega.rest == first);
+    schedule.cycle = cut(schedule, second - first, v.rest == first, omega.rest == first);
   }
   schedule.branch = schedule.cycle.size();
-  const std::vector<PeriodPart> last = cut(chain, first + period - second, v.rest == second, omega.rest == second);
+  const std::vector<PeriodPart> last = cut(schedule, first + period - second, v.rest == second, omega.rest == second);
   schedule.cycle.insert(schedule.cycle.end(), last.begin(), last.end());
   if (first > 0.0) {
-    schedule.tail = cut(chain, period - second, v.rest == second, omega.rest == second);
+    schedule.tail = cut(schedule, period - second, v.rest == second, omega.rest == second);
   } else {
     schedule.branch = schedule.cycle.size();
   }

@@ -2,6 +2,7 @@
 // Checks a batch, shares its blocks out to threads, and calls the kernel of the processor.
 #include "slipwise/rollout/rollout_batch.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
+#include "slipwise/rollout/start_drive.hpp"
 #include "slipwise/slip/term.hpp"
 
 namespace slipwise {
@@ -109,9 +111,10 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .quadratic = program.quadratic().value_or(LaneQuadratic{}),
           .factors = program.slip().factors,
           .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
-          .shift_v = program.chain().shift_v,
-          .shift_omega = program.chain().shift_omega,
-          .lags = program.chain().lags,
+          .shift_v = chain.v.shift,
+          .shift_omega = chain.omega.shift,
+          .lags = chain.lags,
+          .responds = chain.responds,
           .rollouts = batch.rollouts,
           .periods = batch.periods,
           .v = batch.commands.v,
@@ -126,34 +129,43 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .cost_lowest = outputs.cost_lowest};
 }
 
-/// Writes one start into a lane.
+/// The commands of one channel of one rollout, those sent before the start with negative numbers.
 template <typename Scalar>
-void set_lane(LaneBlock<Scalar>& block, std::size_t lane, const RolloutStart& start, const Costmap* map) {
-  const auto number = [](double value) { return static_cast<Scalar>(value); };
-  block.x[lane] = number(start.pose.x);
-  block.y[lane] = number(start.pose.y);
-  block.theta[lane] = number(start.pose.theta);
-  block.cosine[lane] = number(std::cos(start.pose.theta));
-  block.sine[lane] = number(std::sin(start.pose.theta));
-  block.v[lane] = number(start.drive.v);
-  block.omega[lane] = number(start.drive.omega);
-  if (map != nullptr) {
-    block.cell_x[lane] = number((start.pose.x - map->origin_x) / map->resolution);
-    block.cell_y[lane] = number((start.pose.y - map->origin_y) / map->resolution);
-  }
-}
+struct SentCommands {
+  const RolloutBatch<Scalar>& batch;
+  std::size_t rollout;
+  std::span<const DriveCommand> past;
+  const Scalar* commands;
+  double DriveCommand::* channel;
 
-/// Moves the block to its place in the batch. One start is set in every lane once.
+  double operator()(std::ptrdiff_t i) const {
+    if (i < 0) {
+      return past[static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(past.size()) + i, std::ptrdiff_t{0}))].*
+             channel;
+    }
+    const std::ptrdiff_t period = std::min(i, static_cast<std::ptrdiff_t>(batch.periods) - 1);
+    return static_cast<double>(commands[static_cast<std::ptrdiff_t>(rollout) * batch.commands.rollout_stride +
+                                        period * batch.commands.period_stride]);
+  }
+};
+
+/// Moves the block to its place in the batch. What all lanes share is set once.
 template <typename Scalar>
 class BlockOfBatch {
  public:
-  BlockOfBatch(const RolloutBatch<Scalar>& batch, const Costmap* map, std::size_t lanes)
-      : batch_(batch), map_(map), lanes_(lanes), many_(batch.starts.size() > 1) {
-    for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
-      set_lane(block_, lane, batch.starts.front(), map);
-    }
+  BlockOfBatch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map, std::size_t lanes)
+      : chain_(program.chain()),
+        batch_(batch),
+        map_(map),
+        lanes_(lanes),
+        many_(batch.starts.size() > 1),
+        each_(many_ || (chain_.responds && std::min(chain_.v.shift, chain_.omega.shift) < 0)) {
     block_.past_count = batch.past.size() / batch.starts.size();
     block_.past_stride = many_ ? block_.past_count : 0;
+    const Drives drives = drives_of(0);
+    for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
+      set_lane(lane, batch.starts.front().pose, drives);
+    }
   }
 
   const LaneBlock<Scalar>& at(std::size_t block) {
@@ -161,17 +173,56 @@ class BlockOfBatch {
     block_.count = std::min(lanes_, batch_.rollouts - block_.first);
     block_.side_by_side = batch_.commands.rollout_stride == 1 && block_.count == lanes_;
     block_.past = batch_.past.data() + (many_ ? block_.first * block_.past_count : 0);
-    for (std::size_t lane = 0; many_ && lane < block_.count; ++lane) {
-      set_lane(block_, lane, batch_.starts[block_.first + lane], map_);
+    for (std::size_t lane = 0; each_ && lane < block_.count; ++lane) {
+      const std::size_t rollout = block_.first + lane;
+      set_lane(lane, batch_.starts[many_ ? rollout : 0].pose, drives_of(rollout));
     }
     return block_;
   }
 
  private:
+  struct Drives {
+    StartDrive v, omega;
+  };
+
+  Drives drives_of(std::size_t rollout) const {
+    const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
+    const auto past = batch_.past.subspan(many_ ? rollout * block_.past_count : 0, block_.past_count);
+    const auto oldest = -static_cast<std::ptrdiff_t>(past.size());
+    const auto channel = [&](const ChannelTiming& timing, const Scalar* commands, double DriveCommand::* member) {
+      const SentCommands<Scalar> sent{batch_, rollout, past, commands, member};
+      return start_drive(chain_, timing, now.*member, oldest, sent);
+    };
+    return {channel(chain_.v, batch_.commands.v, &DriveCommand::v),
+            channel(chain_.omega, batch_.commands.omega, &DriveCommand::omega)};
+  }
+
+  void set_lane(std::size_t lane, const Pose2& pose, const Drives& drives) {
+    const auto number = [](double value) { return static_cast<Scalar>(value); };
+    block_.x[lane] = number(pose.x);
+    block_.y[lane] = number(pose.y);
+    block_.theta[lane] = number(pose.theta);
+    block_.cosine[lane] = number(std::cos(pose.theta));
+    block_.sine[lane] = number(std::sin(pose.theta));
+    if (map_ != nullptr) {
+      block_.cell_x[lane] = number((pose.x - map_->origin_x) / map_->resolution);
+      block_.cell_y[lane] = number((pose.y - map_->origin_y) / map_->resolution);
+    }
+    const auto set_channel = [&](LaneStart<Scalar>& channel, const StartDrive& drive) {
+      channel.told[lane] = number(drive.told);
+      channel.fast[lane] = number(drive.fast);
+      channel.slow[lane] = number(drive.slow);
+    };
+    set_channel(block_.v, drives.v);
+    set_channel(block_.omega, drives.omega);
+  }
+
+  const ChainSchedule& chain_;
   const RolloutBatch<Scalar>& batch_;
   const Costmap* map_;
   std::size_t lanes_;
-  bool many_;
+  bool many_;  ///< starts
+  bool each_;  ///< lane differs
   LaneBlock<Scalar> block_{};
 };
 
@@ -195,7 +246,7 @@ void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& ba
   std::atomic<unsigned> faults = kNoFault;
   const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
   share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
-    BlockOfBatch<Scalar> place(batch, outputs.map, kernel.lanes);
+    BlockOfBatch<Scalar> place(program, batch, outputs.map, kernel.lanes);
     unsigned found = kNoFault;
     for (std::size_t block = first; block < last; ++block) {
       found |= kernel.roll(job, place.at(block));

@@ -32,25 +32,39 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program) {
   return products;
 }
 
+/// With the shares and gains of the two lags. What is left of a lag is rounded first, so that it settles on its input.
+template <typename Scalar>
+LaneLag<Scalar> lane_lag(const ChannelShare& part, const ChannelResponse& response) {
+  const auto number = [](double value) { return static_cast<Scalar>(value); };
+  const auto rounded = [](double value) { return static_cast<double>(static_cast<Scalar>(value)); };
+  const double fast = response.fast_share();
+  const double slow = response.gain - fast;
+  return {
+      .mean_by_input = number(fast * (1.0 - rounded(part.fast.mean_gap)) + slow * (1.0 - rounded(part.slow.mean_gap))),
+      .mean_by_fast = number(part.fast.mean_gap),
+      .mean_by_slow = number(part.slow.mean_gap),
+      .fast_by_input = number(fast * (1.0 - rounded(part.fast.end_gap))),
+      .fast_by_fast = number(part.fast.end_gap),
+      .slow_by_input = number(slow * (1.0 - rounded(part.slow.end_gap))),
+      .slow_by_slow = number(part.slow.end_gap)};
+}
+
 template <typename Scalar>
 LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain) {
   LaneConstants<Scalar> constants;
-  const auto number = [](double value) { return static_cast<Scalar>(value); };
   std::vector<PeriodPart> parts = chain.lead_in;
   parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
   parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
   for (const PeriodPart& part : parts) {
     constants.parts.push_back({.first_share = constants.shares.size(),
-                               .duration = number(part.duration),
-                               .mean_gap_v = number(part.lag_v.mean_gap),
-                               .end_gap_v = number(part.lag_v.end_gap),
-                               .mean_gap_omega = number(part.lag_omega.mean_gap),
-                               .end_gap_omega = number(part.lag_omega.end_gap),
+                               .duration = static_cast<Scalar>(part.duration),
+                               .v = lane_lag<Scalar>(part.v, chain.v.response),
+                               .omega = lane_lag<Scalar>(part.omega, chain.omega.response),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
     for (const SlipProduct& product : slip.products) {
       for (const double share : product.share) {
-        constants.shares.push_back(number(share * part.duration));
+        constants.shares.push_back(static_cast<Scalar>(share * part.duration));
       }
     }
   }

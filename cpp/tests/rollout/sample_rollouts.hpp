@@ -2,6 +2,7 @@
 // Batches of made-up commands, and the same drives as the plain integrator sees them.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
@@ -48,15 +49,21 @@ struct SampleCommands {
   /// The commands of one rollout, after those sent before the start.
   InputTrack track(std::size_t rollout, std::span<const DriveCommand> past) const {
     std::vector<double> t, forward, left, turn;
+    if (!past.empty()) {  // what is older equals the oldest
+      t.push_back(-1e3);
+      forward.push_back(past.front().v);
+      turn.push_back(past.front().omega);
+    }
     for (std::size_t i = 0; i < past.size(); ++i) {
       t.push_back(-period * static_cast<double>(past.size() - i));
       forward.push_back(past[i].v);
       turn.push_back(past[i].omega);
     }
-    for (std::size_t j = 0; j < periods; ++j) {
+    for (std::size_t j = 0; j <= periods; ++j) {  // the last one goes on, in steps as before
+      const std::size_t at = std::min(j, periods - 1) * rollouts + rollout;
       t.push_back(period * static_cast<double>(j));
-      forward.push_back(static_cast<double>(v[j * rollouts + rollout]));
-      turn.push_back(static_cast<double>(omega[j * rollouts + rollout]));
+      forward.push_back(static_cast<double>(v[at]));
+      turn.push_back(static_cast<double>(omega[at]));
     }
     left.assign(t.size(), 0.0);
     return {t, forward, left, turn};
@@ -100,7 +107,13 @@ inline std::vector<SampleChain> sample_chains() {
           {"delay of whole periods", {.dynamics = true}, {ln(1e-20), ln(1e-20), ln(0.15), ln(0.1)}},
           {"lag and delay", {.dynamics = true}, {ln(0.2), ln(0.15), ln(0.13), ln(0.07)}},
           {"clock offset", {.dynamics = true, .clock_offset = true}, {ln(0.3), ln(0.1), ln(0.131), ln(0.131), 0.02}},
-          {"early poses", {.clock_offset = true}, {-0.07}}};
+          {"early poses", {.clock_offset = true}, {-0.07}},
+          {"response",
+           {.dynamics = true, .response = true},
+           {ln(0.2), ln(0.15), ln(0.13), ln(0.07), 0.9, 1.1, 0.3, 0.2, ln(1.7), ln(1.3)}},
+          {"response without delay, early poses",
+           {.dynamics = true, .clock_offset = true, .response = true},
+           {ln(0.2), ln(0.15), ln(1e-20), ln(1e-20), 1.1, 0.8, 0.4, 0.2, ln(1.7), ln(0.9), -0.03}}};
 }
 
 inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& chain) {

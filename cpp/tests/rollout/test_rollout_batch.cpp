@@ -26,7 +26,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
   const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
   const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
   // Where commands act early, the integrator of a shorter segment leaves out those that a rollout already knows.
-  const std::size_t fewest = program.chain().shift_v < 0 ? commands.periods : 1;
+  const std::size_t fewest = program.chain().v.shift < 0 ? commands.periods : 1;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
     const InputTrack track = commands.track(n, kPast);
@@ -62,7 +62,10 @@ TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and 
         if (has_instruction_level(level)) {
           CAPTURE(name_of(level));
           CHECK(error(model, parameters, commands, level) < 1e-9);
-          CHECK(error(model, parameters, in_float, level) < 2e-5);
+          // Where a lagging speed passes zero, the sample of thesis-15 jumps by metres within one period, and by 1e-5 m
+          // for a rounding of the speed. Two lags without fused multiply-adds round it more often.
+          const bool coarse = level == InstructionLevel::Portable && chain.learned.response;
+          CHECK(error(model, parameters, in_float, level) < (coarse ? 2.5e-5 : 1e-5));
         }
       }
     }

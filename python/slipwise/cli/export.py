@@ -77,6 +77,7 @@ def export(
       slipwise export commands.yaml --to mppi --nav2 kilted
       slipwise export model.yaml --to c-header -o model.h --json -
     """  # noqa: D301
+    from slipwise.cli.bad_verdict import say_refused
     from slipwise.cli.output import Output
     from slipwise.export import ExportOptions
     from slipwise.models import load_model
@@ -92,7 +93,7 @@ def export(
     )
     learned = load_model(model)
     if not learned.content.verdict.good and not force:
-        _refuse(out, learned)
+        say_refused(out, learned, "export")
         return 1
     made = _make(learned, model.name, to, options)
     paths = _write(out, made, output, to)
@@ -138,15 +139,6 @@ def _write(out: Output, made: _Made, output: Path, to: TargetName) -> dict[str, 
     for target, exported in made.files:
         write_text_whole(paths[target.name], exported.text)
     return paths
-
-
-def _refuse(out: Output, model: Model) -> None:
-    from slipwise.cli.document import head
-
-    verdict = model.content.verdict
-    out.document(head("export") | {"exit_code": 1, "verdict": verdict.model_dump(), "files": {}})
-    out.line(f"NOT GOOD ENOUGH. {verdict.sentence}")
-    out.line("  Nothing was written. Learn from a better log, or use --force to export it all the same.")
 
 
 def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:

@@ -16,6 +16,7 @@ from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
+from slipwise.cli.lattice import lattice
 from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.simulate import simulate
@@ -36,6 +37,7 @@ _COMMANDS = (
     (evaluate, "Compare methods on logs, honestly."),
     (export, "Write a model into files for other tools."),
     (plan, "Plan a route through a map with a learned model."),
+    (lattice, "Write primitives that the robot can drive, for Nav2."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
     (reproduce, "Make the thesis's figures and tables again."),

@@ -6,6 +6,7 @@ from __future__ import annotations
 from importlib.resources import files
 
 from slipwise import _core
+from slipwise.export.c_covariance import covariance, noise, shifts
 from slipwise.export.chain import chain_of
 from slipwise.models.model import Model
 
@@ -39,6 +40,7 @@ def c_header(model: Model, origin: list[str]) -> str:
     Raises:
         ModelError: the command chain has a part that is not known.
     """
+    model = model.body
     template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
     inputs = "commanded speeds" if model.content.input == "command" else "wheel speeds"
     parts = {
@@ -48,6 +50,10 @@ def c_header(model: Model, origin: list[str]) -> str:
         "RANGE": _range(model),
         "LIBRARY": _library(model),
         "SLIP": "\n".join(f"  {line}" for line in _slip(model)),
+        "LEARNED": _learned(model),
+        "SHIFTS": shifts(model),
+        "NOISE": noise(model),
+        "COVARIANCE": covariance(model),
     }
     for name, text in parts.items():
         template = template.replace(f"@{name}@", text)
@@ -92,14 +98,21 @@ def _library(model: Model) -> str:
     basis, motion = model.motion.basis, model.motion
     channels = (("LON", basis.lon), ("LAT", basis.lat), ("ANG", basis.ang))
     lists = [(f"TERMS_{name}", ", ".join(f'"{term}"' for term in terms)) for name, terms in channels]
-    lists.append(("PARAMETERS", ", ".join(map(repr, model.body.mean.tolist()))))
-    flags = [
+    lists.append(("PARAMETERS", ", ".join(map(repr, model.mean.tolist()))))
+    counts = [
+        ("SLIP_PARAMETERS", motion.slip_size),
+        ("PARAMETER_COUNT", motion.size),
         ("HAS_DYNAMICS", motion.dynamics),
         ("HAS_RESPONSE", motion.response),
         ("HAS_CLOCK_OFFSET", motion.clock_offset),
     ]
     lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
-    return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(flag)}" for name, flag in flags)])
+    return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(count)}" for name, count in counts)])
+
+
+def _learned(model: Model) -> str:
+    names = [f"SLIPWISE_P{i}" for i in range(model.motion.slip_size)] or ["0"]
+    return "\n".join(f"  model.p[{i}] = {name};" for i, name in enumerate(names))
 
 
 def _slip(model: Model) -> list[str]:
@@ -115,7 +128,7 @@ def _slip(model: Model) -> list[str]:
             factors = _factors(term)
             used |= set(factors)
             scale = [] if coefficients[at] == 1.0 else [f"SLIPWISE_R({coefficients[at]!r})"]
-            products.append(" * ".join((f"SLIPWISE_P{at}", *scale, *factors)))
+            products.append(" * ".join((f"p[{at}]", *scale, *factors)))
             at += 1
         sums.append(f"rate[{channel}] = {' + '.join(products) or '0'};")
     regular = repr(_regular_curvature())
@@ -127,6 +140,7 @@ def _slip(model: Model) -> list[str]:
     given = [
         f"(void){name};" for name in ("v", "w", "gx", "gy") if not any(name in line.split() for line in made)
     ]
+    given += [] if at else ["(void)p;"]
     return [*made, *given, *_parked(used), *sums]
 
 

@@ -10,6 +10,8 @@
  *   slipwise_window window = {0.0f, 5.0f, 0, 0.0f, 0.0f};       // from 0 s to 5 s, drive follows from the commands
  *   slipwise_pose pose;
  *   if (slipwise_predict(&commands, &window, &pose, 0) == SLIPWISE_OK) { ... pose.x, pose.y, pose.yaw ... }
+ *   slipwise_real covariance[3][3];                             // of x, y, yaw: m^2, m rad, rad^2
+ *   slipwise_predict_covariance(&commands, &window, &pose, 0, covariance);
  *
  * x forward, y left, counter-clockwise; SI units. Numbers are float; define SLIPWISE_DOUBLE before including this for
  * double. In float keep times small: start them anew when the robot starts.
@@ -23,12 +25,15 @@
 typedef double slipwise_real;
 #define SLIPWISE_MATH(function) function
 #define SLIPWISE_SMALL_TURN 0.03
+#define SLIPWISE_DIFFERENCE 1e-3 /* of a standard deviation, for derivatives */
 #else
 typedef float slipwise_real;
 #define SLIPWISE_MATH(function) function##f
 #define SLIPWISE_SMALL_TURN 0.35f
+#define SLIPWISE_DIFFERENCE 0.25f
 #endif
 #define SLIPWISE_R(number) ((slipwise_real)(number))
+#define SLIPWISE_SLOTS(count) ((count) > 0 ? (count) : 1) /* an array has one at least */
 
 /* What was learned. Inputs are @INPUT@. */
 @CONSTANTS@
@@ -107,9 +112,45 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
   return 0;
 }
 
+/* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
+typedef struct {
+  slipwise_real lag, gain, slow_share, slow_lag;
+} slipwise_response;
+
+/* What was learned, as numbers that can be shifted. */
+typedef struct {
+  slipwise_real p[SLIPWISE_SLOTS(SLIPWISE_SLIP_PARAMETERS)]; /* of the slip */
+  slipwise_response speed, yaw;
+  slipwise_real delay_v, delay_omega, clock_offset;
+} slipwise_model;
+
+/* The learned model; `by` [SLIPWISE_PARAMETER_COUNT] is added to its parameters, lags and delays by their logarithms.
+ * NULL: as learned. */
+static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
+  slipwise_model model;
+  model.speed.lag = SLIPWISE_LAG_V;
+  model.speed.gain = SLIPWISE_GAIN_V;
+  model.speed.slow_share = SLIPWISE_SLOW_SHARE_V;
+  model.speed.slow_lag = SLIPWISE_SLOW_LAG_V;
+  model.yaw.lag = SLIPWISE_LAG_OMEGA;
+  model.yaw.gain = SLIPWISE_GAIN_OMEGA;
+  model.yaw.slow_share = SLIPWISE_SLOW_SHARE_OMEGA;
+  model.yaw.slow_lag = SLIPWISE_SLOW_LAG_OMEGA;
+  model.delay_v = SLIPWISE_DELAY_V;
+  model.delay_omega = SLIPWISE_DELAY_OMEGA;
+  model.clock_offset = SLIPWISE_CLOCK_OFFSET;
+@LEARNED@
+  if (by) {
+@SHIFTS@
+  }
+  return model;
+}
+
 /* Slip rates (forward, left, turn) of a drive; they add to it. */
-static inline void slipwise_slip(slipwise_real v, slipwise_real w, slipwise_real gx, slipwise_real gy,
-                                 slipwise_real rate[3]) {
+static inline void slipwise_slip(const slipwise_model *model, slipwise_drive drive, slipwise_real gx,
+                                 slipwise_real gy, slipwise_real rate[3]) {
+  const slipwise_real *const p = model->p;
+  const slipwise_real v = drive.v, w = drive.omega;
 @SLIP@
 }
 
@@ -169,11 +210,6 @@ static inline slipwise_real slipwise_lag_step(slipwise_real *output, slipwise_re
   *output = input + gap * (1 - gone);
   return input * duration + gap * lag * gone;
 }
-
-/* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
-typedef struct {
-  slipwise_real lag, gain, slow_share, slow_lag;
-} slipwise_response;
 
 /* What the two lags of a channel put out; their sum is the drive. */
 typedef struct {
@@ -244,28 +280,40 @@ static inline void slipwise_move(slipwise_path *path, slipwise_real forward, sli
   path->cosine = x;
 }
 
+@NOISE@
 /* What a prediction carries along. */
 typedef struct {
+  const slipwise_model *model;
   const slipwise_window *window;
   slipwise_cursor speed_input, yaw_input;
-  slipwise_response speed_response, yaw_response;
   slipwise_channel speed, yaw_rate;
   slipwise_path path;
+  slipwise_noise *noise; /* NULL where it is not asked for */
 } slipwise_walk;
 
 /* Moves the robot by a mean drive and its slip. */
 static inline void slipwise_advance(slipwise_walk *walk, slipwise_drive mean, slipwise_real duration) {
-  slipwise_real rate[3];
-  slipwise_slip(mean.v, mean.omega, walk->window->gx, walk->window->gy, rate);
-  slipwise_move(&walk->path, (mean.v + rate[0]) * duration, rate[1] * duration, (mean.omega + rate[2]) * duration);
+  const slipwise_path before = walk->path;
+  slipwise_real tangent[3];
+  int i;
+  slipwise_slip(walk->model, mean, walk->window->gx, walk->window->gy, tangent);
+  tangent[0] += mean.v;
+  tangent[2] += mean.omega;
+  for (i = 0; i < 3; ++i) {
+    tangent[i] *= duration;
+  }
+  slipwise_move(&walk->path, tangent[0], tangent[1], tangent[2]);
+  if (walk->noise) {
+    slipwise_noise_add(walk->noise, &before, &walk->path, tangent, mean, duration);
+  }
 }
 
 /* One step of held inputs. Slip depends on the step's mean drive. */
 static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, int moves) {
   const slipwise_real speed = slipwise_held(&walk->speed_input).v, yaw = slipwise_held(&walk->yaw_input).omega;
   slipwise_drive mean;
-  mean.v = slipwise_channel_step(&walk->speed, &walk->speed_response, speed, duration) / duration;
-  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->yaw_response, yaw, duration) / duration;
+  mean.v = slipwise_channel_step(&walk->speed, &walk->model->speed, speed, duration) / duration;
+  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
   if (moves) {
     slipwise_advance(walk, mean, duration);
   }
@@ -273,8 +321,8 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
 
 /* Steps from `now` to `until`, ending wherever a delayed command changes. */
 static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until, int moves) {
-  const int lagging = SLIPWISE_LAG_V > 0 || SLIPWISE_LAG_OMEGA > 0 || SLIPWISE_SLOW_LAG_V > 0 ||
-                      SLIPWISE_SLOW_LAG_OMEGA > 0;
+  const slipwise_response *const speed = &walk->model->speed, *const yaw = &walk->model->yaw;
+  const int lagging = speed->lag > 0 || yaw->lag > 0 || speed->slow_lag > 0 || yaw->slow_lag > 0;
   while (now < until) {
     slipwise_real next = slipwise_change(&walk->speed_input, until);
     const slipwise_real other = slipwise_change(&walk->yaw_input, until);
@@ -313,19 +361,14 @@ static inline int slipwise_is_bad(const slipwise_window *window) {
          (window->drive && (!isfinite(window->drive->v) || !isfinite(window->drive->omega)));
 }
 
-/* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the
- * end, to start the next window with; it may be NULL. Nothing is written unless SLIPWISE_OK is returned. */
-static inline int slipwise_predict(const slipwise_commands *commands, const slipwise_window *window,
-                                   slipwise_pose *pose, slipwise_drive *drive) {
-  const slipwise_response speed = {SLIPWISE_LAG_V, SLIPWISE_GAIN_V, SLIPWISE_SLOW_SHARE_V, SLIPWISE_SLOW_LAG_V};
-  const slipwise_response yaw = {SLIPWISE_LAG_OMEGA, SLIPWISE_GAIN_OMEGA, SLIPWISE_SLOW_SHARE_OMEGA,
-                                 SLIPWISE_SLOW_LAG_OMEGA};
+/* One pass with one model; `walk` is what it carried along. */
+static inline int slipwise_run(const slipwise_model *model, const slipwise_commands *commands,
+                               const slipwise_window *window, slipwise_noise *noise, slipwise_walk *walk) {
   const slipwise_path nowhere = {{0, 0, 0}, 1, 0};
-  const slipwise_real speed_lag = slipwise_start_lag(&speed, window->drive != 0);
-  const slipwise_real yaw_lag = slipwise_start_lag(&yaw, window->drive != 0);
-  slipwise_real start = window->start - SLIPWISE_CLOCK_OFFSET, known = start, early;
-  const slipwise_real end = window->end - SLIPWISE_CLOCK_OFFSET;
-  slipwise_walk walk;
+  const slipwise_real speed_lag = slipwise_start_lag(&model->speed, window->drive != 0);
+  const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, window->drive != 0);
+  slipwise_real start = window->start - model->clock_offset, known = start, early;
+  const slipwise_real end = window->end - model->clock_offset;
   if (slipwise_is_bad(window)) {
     return SLIPWISE_BAD_WINDOW;
   }
@@ -336,32 +379,50 @@ static inline int slipwise_predict(const slipwise_commands *commands, const slip
     known = window->start; /* by the clock of the commands, and so by that of the wheels */
   }
   early = known - SLIPWISE_SETTLED_LAGS * (speed_lag > yaw_lag ? speed_lag : yaw_lag);
-  walk.window = window;
-  walk.path = nowhere;
-  walk.speed_response = speed;
-  walk.yaw_response = yaw;
-  walk.speed_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_V, early, window->end);
-  walk.yaw_input = slipwise_cursor_at(commands, SLIPWISE_DELAY_OMEGA, early, window->end);
-  walk.speed = slipwise_settled(&speed, slipwise_held(&walk.speed_input).v);
-  walk.yaw_rate = slipwise_settled(&yaw, slipwise_held(&walk.yaw_input).omega);
-  slipwise_cover(&walk, early, known, 0);
+  walk->window = window;
+  walk->path = nowhere;
+  walk->model = model;
+  walk->noise = noise;
+  walk->speed_input = slipwise_cursor_at(commands, model->delay_v, early, window->end);
+  walk->yaw_input = slipwise_cursor_at(commands, model->delay_omega, early, window->end);
+  walk->speed = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).v);
+  walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
+  slipwise_cover(walk, early, known, 0);
   if (window->drive) {
-    slipwise_measured(&walk.speed, &speed, window->drive->v);
-    slipwise_measured(&walk.yaw_rate, &yaw, window->drive->omega);
+    slipwise_measured(&walk->speed, &model->speed, window->drive->v);
+    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega);
   }
   if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
     const slipwise_real until = known < end ? known : end;
-    slipwise_advance(&walk, *window->drive, until - start);
+    slipwise_advance(walk, *window->drive, until - start);
     start = known;
   }
-  slipwise_cover(&walk, known, start, 0);
-  slipwise_cover(&walk, start, end, 1);
-  *pose = walk.path.pose;
-  if (drive) {
-    drive->v = walk.speed.fast + walk.speed.slow;
-    drive->omega = walk.yaw_rate.fast + walk.yaw_rate.slow;
-  }
+  slipwise_cover(walk, known, start, 0);
+  slipwise_cover(walk, start, end, 1);
   return SLIPWISE_OK;
 }
 
+/* What a pass says. */
+static inline void slipwise_results(const slipwise_walk *walk, slipwise_pose *pose, slipwise_drive *drive) {
+  *pose = walk->path.pose;
+  if (drive) {
+    drive->v = walk->speed.fast + walk->speed.slow;
+    drive->omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
+  }
+}
+
+/* Predicts where the robot is at window->end, seen from where it is at window->start. `drive` becomes the drive at the
+ * end, to start the next window with; it may be NULL. Nothing is written unless SLIPWISE_OK is returned. */
+static inline int slipwise_predict(const slipwise_commands *commands, const slipwise_window *window,
+                                   slipwise_pose *pose, slipwise_drive *drive) {
+  const slipwise_model model = slipwise_model_shifted(0);
+  slipwise_walk walk;
+  const int status = slipwise_run(&model, commands, window, 0, &walk);
+  if (status == SLIPWISE_OK) {
+    slipwise_results(&walk, pose, drive);
+  }
+  return status;
+}
+
+@COVARIANCE@
 #endif /* SLIPWISE_MODEL_H */

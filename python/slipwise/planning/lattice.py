@@ -166,7 +166,7 @@ def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _c
 
 def _driving(speed: float) -> _core.DriveStart:
     straight = _core.BodyTwist(speed, 0.0, 0.0)
-    return _core.DriveStart(straight, straight)
+    return _core.DriveStart(straight, straight, None)
 
 
 def _shortest(

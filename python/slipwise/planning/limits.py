@@ -57,7 +57,10 @@ def limits_of(model: Model) -> Limits:
 
 @dataclass(frozen=True)
 class DriveState:
-    """What the drive does (behind its lag) and what it was told last; both forward [m/s] and turning [rad/s].
+    """What the drive does (behind its lag) and what it was told last; all forward [m/s] and turning [rad/s].
+
+    Where the model has a slow part, `fast` is what of the drive is not the slow part's; without it, the drive
+    is taken to have followed what it was told for long.
 
     Raises:
         SettingsError: a value is not finite.
@@ -65,14 +68,20 @@ class DriveState:
 
     drive: tuple[float, float] = (0.0, 0.0)
     told: tuple[float, float] = (0.0, 0.0)
+    fast: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        if not all(map(math.isfinite, (*self.drive, *self.told))):
+        if not all(map(math.isfinite, (*self.drive, *self.told, *(self.fast or ())))):
             raise SettingsError("the speeds at the start are not finite", advice="such as drive=(0.5, 0.0)")
 
     def to_core(self) -> _core.DriveStart:
         """Return the state as the core takes it."""
-        return _core.DriveStart(*(_core.BodyTwist(v, 0.0, omega) for v, omega in (self.drive, self.told)))
+        fast = None if self.fast is None else _twist(self.fast)
+        return _core.DriveStart(_twist(self.drive), _twist(self.told), fast)
+
+
+def _twist(values: tuple[float, float]) -> _core.BodyTwist:
+    return _core.BodyTwist(values[0], 0.0, values[1])
 
 
 AT_REST = DriveState()

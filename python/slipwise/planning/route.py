@@ -154,14 +154,13 @@ class RoutePlanner:
     def _checked(self, route: Route) -> Route:
         """Refuse a route whose legs, driven one after the other, are not what each was by itself.
 
-        A leg begins with the drive's twist alone; the slow part of a chain remembers more than that.
+        A leg begins with the last command alone; commands before it may still be in the delay.
         """
         if route.clearance < 0.0:
             raise PlanningError(
                 f"driven as a whole, the route of {route.legs} manoeuvres touches an obstacle",
                 where=f"clearance {route.clearance:.2g} m",
-                advice="use a larger radius; where the model has a slow part, learn one without: "
-                "[auto] cascade = false",
+                advice="use a larger radius, or another seed",
             )
         return route
 

@@ -178,5 +178,9 @@ def _trajectory(plan: _core.Trajectory, start: Pose) -> Trajectory:
         commands=np.column_stack((plan.t, plan.v, plan.omega)),
         t=np.asarray(plan.path_t),
         poses=placed(np.asarray(plan.path), start),
-        at_end=DriveState(drive=(drive.v, drive.omega), told=(float(plan.v[-1]), float(plan.omega[-1]))),
+        at_end=DriveState(
+            drive=(drive.v, drive.omega),
+            told=(float(plan.v[-1]), float(plan.omega[-1])),
+            fast=(plan.fast.v, plan.fast.omega),
+        ),
     )

@@ -16,7 +16,10 @@ from slipwise import load_model, load_settings, open_log
 
 Slipwise = Callable[..., Result]
 
-COMMANDS = ("demo", "inspect", "calibrate", "evaluate", "export", "plan", "simulate", "convert", "reproduce")
+COMMANDS = (
+    *("demo", "inspect", "calibrate", "evaluate", "export"),
+    *("plan", "lattice", "simulate", "convert", "reproduce"),
+)
 
 
 @pytest.fixture

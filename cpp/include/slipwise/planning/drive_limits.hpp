@@ -2,6 +2,8 @@
 // What a robot may be told to do, and the state in which a plan begins.
 #pragma once
 
+#include <optional>
+
 #include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
@@ -19,8 +21,9 @@ struct DriveLimits {
 
 /// The robot when a plan begins.
 struct DriveStart {
-  BodyTwist drive = {};  ///< what the drive does, behind its lag
-  BodyTwist told = {};   ///< the last command before the plan; it acts until the delay is over
+  BodyTwist drive = {};                ///< what the drive does, behind its lag
+  BodyTwist told = {};                 ///< the last command before the plan; it acts until the delay is over
+  std::optional<BodyTwist> fast = {};  ///< of the drive, what the lags hold beside the slow ones; settled if not known
 
   /// \throws std::invalid_argument unless all are finite.
   void check() const;

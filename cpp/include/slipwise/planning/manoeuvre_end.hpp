@@ -26,6 +26,7 @@ struct ManoeuvrePath {
   std::vector<double> t = {};     ///< [steps + 1], from 0 on [s]
   std::vector<Pose2> poses = {};  ///< [steps + 1]
   BodyTwist drive = {};
+  BodyTwist fast = {};  ///< of the drive, what the lags hold beside the slow ones
 };
 
 /// A motion model as a planner uses it, on flat ground. A clock offset is one of measured poses; plans have none.

@@ -5,15 +5,21 @@
 #include <cstddef>
 #include <vector>
 
+#include "slipwise/actuator/channel_response.hpp"
+
 namespace slipwise {
 
-struct CommandChain;
-
-/// How one channel's lag moves over a part: with gap = output - input, the mean output is input + gap * mean_gap, and
-/// the output at the end is input + gap * end_gap. Both are 0 without lag.
+/// How a lag moves over a part: with gap = output - input, the mean output is input + gap * mean_gap, and the output at
+/// the end is input + gap * end_gap. Both are 0 without lag.
 struct LagShare {
   double mean_gap;
   double end_gap;
+};
+
+/// The two lags of a channel over a part.
+struct ChannelShare {
+  LagShare fast;
+  LagShare slow;
 };
 
 /// A stretch of time over which the delayed commands are constant.
@@ -21,18 +27,27 @@ struct PeriodPart {
   double duration;  ///< [s]
   bool next_v;      ///< the next command's speed begins to act where this part begins
   bool next_omega;  ///< the same for the yaw rate
-  LagShare lag_v;
-  LagShare lag_omega;
+  ChannelShare v;
+  ChannelShare omega;
 };
 
-/// What every control period of a rollout looks like. Command i is sent at i * period and held. Delayed, it begins to
-/// act within period i + shift. Steps end where commands begin to act, as those of drive_steps do, so a cycle runs from
-/// such a moment to the same one a period later; the pose at the period's end lies within its last stretch.
+/// When a channel's commands begin to act, and how it answers them: command i is sent at i * period and acts at
+/// (i + shift) * period + rest.
+struct ChannelTiming {
+  std::ptrdiff_t shift;  ///< whole periods of delay; negative where the clock offset makes commands act early
+  double rest;           ///< [s], less than a period
+  ChannelResponse response;
+};
+
+/// What every control period of a rollout looks like. Command i is sent at i * period and held. Steps end where
+/// commands begin to act, as those of drive_steps do, so a cycle runs from such a moment to the same one a period
+/// later; the pose at the period's end lies within its last stretch.
 struct ChainSchedule {
-  double period;               ///< [s]
-  std::ptrdiff_t shift_v;      ///< whole periods of delay; negative where the clock offset makes commands act early
-  std::ptrdiff_t shift_omega;  ///< the same for the yaw rate
-  bool lags;                   ///< some channel lags
+  double period;  ///< [s]
+  ChannelTiming v;
+  ChannelTiming omega;
+  bool lags;                        ///< some channel lags
+  bool responds;                    ///< some channel has a gain or a slow part
   std::vector<PeriodPart> lead_in;  ///< from the start to the first cycle
   std::vector<PeriodPart> cycle;
   std::size_t branch;            ///< the part of the cycle in place of which the tail leads to the period's end

@@ -2,6 +2,8 @@
 // The command chain in lanes: which command acts now, and what the drive makes of it.
 #pragma once
 
+#include <cstdint>
+
 #include "slipwise/rollout/drive_command.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
@@ -16,7 +18,7 @@ inline constexpr std::size_t kLineBytes = 64;  ///< of the processor's cache
 template <typename Scalar>
 struct CommandSource {
   const Scalar* commands;          ///< the block's first one
-  const Scalar* drive;             ///< the drive's twist at the start, for when no command was sent yet
+  const LaneStart<Scalar>* start;  ///< of the drive; it says what was told before any command was sent
   double DriveCommand::* channel;  ///< of a command sent before the start
 };
 
@@ -29,7 +31,7 @@ template <class L, typename Scalar = L::Scalar>
     if (period >= 0) {
       gathered[i] = source.commands[static_cast<std::ptrdiff_t>(i) * job.rollout_stride + period * job.period_stride];
     } else if (block.past_count == 0) {
-      gathered[i] = source.drive[i];
+      gathered[i] = source.start->told[i];
     } else {
       const DriveCommand* past = block.past + i * block.past_stride + (place > 0 ? place : 0);
       gathered[i] = static_cast<Scalar>(past->*source.channel);
@@ -57,32 +59,63 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
   }
 }
 
-/// A drive channel's lag over a part: the mean over the part, and the output moved on to its end.
-template <bool kLags, typename Scalar, class Vector>
-SLIPWISE_LANES void advance_lag(const Vector& input, Scalar mean_gap, Scalar end_gap, Vector& output, Vector& mean) {
-  if constexpr (kLags) {
-    const Vector gap = output - input;
-    mean = input + gap * mean_gap;
-    output = input + gap * end_gap;
-  } else {
-    copy(input, mean);
+/// What a kernel is made for. None: every period is one part without lag. Response: gains and slow parts as well.
+enum class Chain : std::uint8_t { None, Delays, Lags, Response };
+
+/// One channel of the drive: the input that acts, and what its lags hold.
+template <class L, Chain kChain>
+struct ChannelLanes {
+  L::Vector input;
+  L::Vector fast;
+  std::ptrdiff_t next;  ///< the period whose command acts next
+};
+template <class L>
+struct ChannelLanes<L, Chain::Response> {
+  L::Vector input;
+  L::Vector fast;
+  L::Vector slow;
+  std::ptrdiff_t next;
+};
+
+/// The next command begins to act.
+template <class L, Chain kChain, typename Scalar = L::Scalar>
+SLIPWISE_LANES void tell(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                         const CommandSource<Scalar>& source, ChannelLanes<L, kChain>& channel) {
+  read_commands<L>(job, block, source, channel.next, channel.input);
+  ++channel.next;
+}
+
+template <class L, Chain kChain, typename Scalar = L::Scalar>
+SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                  const CommandSource<Scalar>& source, std::ptrdiff_t shift,
+                                  ChannelLanes<L, kChain>& channel) {
+  channel.next = -shift - 1;
+  tell(job, block, source, channel);
+  load(source.start->fast, channel.fast);
+  if constexpr (kChain == Chain::Response) {
+    load(source.start->slow, channel.slow);
   }
 }
 
-/// One channel of the drive: the command that acts, and the lag's output.
-template <class L>
-struct ChannelLanes {
-  L::Vector input;
-  L::Vector output;
-  std::ptrdiff_t next;  ///< the period whose command acts next
-};
-
-template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                                  const CommandSource<Scalar>& source, std::ptrdiff_t shift, ChannelLanes<L>& channel) {
-  channel.next = -shift;
-  load(source.drive, channel.output);
-  read_commands<L>(job, block, source, channel.next - 1, channel.input);
+/// The drive's mean over a part; its lags move on to the part's end. The speed goes by sums of input and output rather
+/// than by the gap between them: where it passes zero it keeps its digits, which the curvature of thesis 5.1 needs
+/// there.
+template <class L, Chain kChain, bool kBySums, typename Scalar = L::Scalar>
+SLIPWISE_LANES void advance(const LaneLag<Scalar>& lag, ChannelLanes<L, kChain>& channel, typename L::Vector& mean) {
+  if constexpr (kChain == Chain::Response) {
+    mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast + channel.slow * lag.mean_by_slow;
+    channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
+    channel.slow = channel.input * lag.slow_by_input + channel.slow * lag.slow_by_slow;
+  } else if constexpr (kChain == Chain::Lags && !kBySums) {
+    const typename L::Vector gap = channel.fast - channel.input;
+    mean = channel.input + gap * lag.mean_by_fast;
+    channel.fast = channel.input + gap * lag.fast_by_fast;
+  } else if constexpr (kChain == Chain::Lags) {
+    mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast;
+    channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
+  } else {
+    copy(channel.input, mean);
+  }
 }
 
 }  // namespace slipwise

@@ -25,13 +25,21 @@ struct LaneQuadratic {
   std::size_t curvature, curvature_squared, speed_by_curvature, speed_squared;
 };
 
+/// What a channel does over a part, as sums of what acts at its start: the mean of the drive, and what the two lags
+/// hold at its end.
+template <typename Scalar>
+struct LaneLag {
+  Scalar mean_by_input, mean_by_fast, mean_by_slow;
+  Scalar fast_by_input, fast_by_fast;
+  Scalar slow_by_input, slow_by_slow;
+};
+
 /// A part of the control period (chain_schedule.hpp) in the kernel's numbers.
 template <typename Scalar>
 struct LanePart {
   std::size_t first_share;  ///< its shares stand from here on in the job's
   Scalar duration;
-  Scalar mean_gap_v, end_gap_v;
-  Scalar mean_gap_omega, end_gap_omega;
+  LaneLag<Scalar> v, omega;
   bool next_v, next_omega;
 };
 
@@ -58,6 +66,7 @@ struct LaneJob {
   Scalar squared_curvature_speed;
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
+  bool responds;  ///< some channel has a gain or a slow part
 
   std::size_t rollouts, periods;
   const Scalar* v;
@@ -72,6 +81,14 @@ struct LaneJob {
   Scalar* cost_lowest;
 };
 
+/// One channel of the drives at the start (start_drive.hpp).
+template <typename Scalar>
+struct LaneStart {
+  alignas(64) Scalar told[kMostLanes];
+  alignas(64) Scalar fast[kMostLanes];
+  alignas(64) Scalar slow[kMostLanes];
+};
+
 /// Some neighbouring rollouts and where they start, one a lane.
 template <typename Scalar>
 struct LaneBlock {
@@ -80,8 +97,8 @@ struct LaneBlock {
   alignas(64) Scalar theta[kMostLanes];
   alignas(64) Scalar cosine[kMostLanes];
   alignas(64) Scalar sine[kMostLanes];
-  alignas(64) Scalar v[kMostLanes];  ///< the drive's twist
-  alignas(64) Scalar omega[kMostLanes];
+  LaneStart<Scalar> v;
+  LaneStart<Scalar> omega;
   alignas(64) Scalar cell_x[kMostLanes];  ///< the start in cells of the map
   alignas(64) Scalar cell_y[kMostLanes];
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first

@@ -2,8 +2,6 @@
 // The rollout of one block of lanes: command chain, slip, exact steps, outputs. Compiled once per instruction level.
 #pragma once
 
-#include <cstdint>
-
 #include "slipwise/rollout/lane_drive.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
@@ -15,14 +13,11 @@
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
-/// What a kernel is made for. None: every period is one part without lag.
-enum class Chain : std::uint8_t { None, Delays, Lags };
-
 /// A robot in every lane: its drive and where it is.
-template <class L>
+template <class L, Chain kChain>
 struct RobotLanes {
-  ChannelLanes<L> v;
-  ChannelLanes<L> omega;
+  ChannelLanes<L, kChain> v;
+  ChannelLanes<L, kChain> omega;
   PathLanes<L> path;
 };
 
@@ -41,13 +36,12 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
 
 /// The tangent of one part: the drive moves on, and slips.
 template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
-SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, RobotLanes<L>& robot,
+SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, RobotLanes<L, kChain>& robot,
                                TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
   typename L::Vector mean_omega;
-  advance_lag<kChain == Chain::Lags>(robot.v.input, part.mean_gap_v, part.end_gap_v, robot.v.output, mean_v);
-  advance_lag<kChain == Chain::Lags>(robot.omega.input, part.mean_gap_omega, part.end_gap_omega, robot.omega.output,
-                                     mean_omega);
+  advance<L, kChain, true>(part.v, robot.v, mean_v);
+  advance<L, kChain, false>(part.omega, robot.omega, mean_omega);
   if constexpr (kQuadratic) {
     quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
   } else {
@@ -61,25 +55,23 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
 template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
 [[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
-  const CommandSource<Scalar> source_v{job.v + first, block.v, &DriveCommand::v};
-  const CommandSource<Scalar> source_omega{job.omega + first, block.omega, &DriveCommand::omega};
-  RobotLanes<L> robot;
-  start_channel<L>(job, block, source_v, job.shift_v, robot.v);
-  start_channel<L>(job, block, source_omega, job.shift_omega, robot.omega);
+  const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
+  const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
+  RobotLanes<L, kChain> robot;
+  start_channel(job, block, source_v, job.shift_v, robot.v);
+  start_channel(job, block, source_omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
   OutputLanes<L> output(job, block);
-  RobotLanes<L> aside = robot;
+  RobotLanes<L, kChain> aside = robot;
   const bool has_tail = job.tail != job.part_end;
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
     if (kChain == Chain::None || part.next_v) {
-      read_commands<L>(job, block, source_v, robot.v.next, robot.v.input);
-      ++robot.v.next;
+      tell(job, block, source_v, robot.v);
     }
     if (kChain == Chain::None || part.next_omega) {
-      read_commands<L>(job, block, source_omega, robot.omega.next, robot.omega.input);
-      ++robot.omega.next;
+      tell(job, block, source_omega, robot.omega);
     }
     TangentLanes<L> tangent;
     drive_part<L, kChain, kQuadratic>(job, part, robot, tangent);
@@ -124,6 +116,9 @@ unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bl
 template <class Level, bool kQuadratic, typename Scalar>
 unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Level, Scalar>;
+  if (job.responds) {
+    return roll_block_with<L, Chain::Response, kQuadratic>(job, block);
+  }
   if (job.lags) {
     return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
   }

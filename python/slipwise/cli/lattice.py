@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise lattice`: primitives for Nav2's lattice planner, and what curvature the robot really holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from slipwise.cli.options import Json
+
+if TYPE_CHECKING:
+    from slipwise.planning import CurvatureMap
+
+
+def lattice(
+    model: Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FOLDER", help="The folder to put the files into.")
+    ] = Path("lattice"),
+    speed: Annotated[float, typer.Option(metavar="M/S", help="The same along all primitives.")] = 0.5,
+    grid: Annotated[float, typer.Option(metavar="METRES", help="Between grid points; the costmap's.")] = 0.05,
+    headings: Annotated[int, typer.Option(metavar="N", help="A multiple of 8.")] = 16,
+    turns: Annotated[int, typer.Option(metavar="N", help="Headings a primitive turns by at most.")] = 3,
+    longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
+    curvature: Annotated[
+        float | None,
+        typer.Option(metavar="1/M", show_default=False, help="Largest of commands; by the model's range."),
+    ] = None,
+    picture: Annotated[bool, typer.Option(help="Draw the curvature map, which needs Matplotlib.")] = True,
+    force: Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")] = False,
+    json: Json = None,
+) -> int:
+    """Write state-lattice primitives that the robot can really drive, for Nav2's Smac lattice planner.
+
+    lattice.json is what `lattice_filepath` names: every primitive has the slip that the model learned, at one
+    speed. curvature.csv and curvature.png say what curvature the robot holds at what speed and command.
+    A model with a bad verdict is refused with exit code 1 unless --force is given.
+
+    \b
+    Examples:
+      slipwise lattice model.yaml -o lattice/
+      slipwise lattice model.yaml -o lattice/ --speed 0.8 --grid 0.1 --longest 10
+      slipwise lattice model.yaml --headings 24 --curvature 0.8 --no-picture
+    """  # noqa: D301
+    from dataclasses import replace
+    from json import loads
+
+    from slipwise.cli.bad_verdict import say_refused
+    from slipwise.cli.document import head
+    from slipwise.cli.output import Output
+    from slipwise.cli.tables import show_files
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.models import load_model
+    from slipwise.planning import LatticeOptions, curvature_map, limits_of, write_lattice
+    from slipwise.reporting.curvature_picture import write_curvature_picture
+
+    out = Output(json)
+    learned = load_model(model)
+    if not learned.content.verdict.good and not force:
+        say_refused(out, learned, "lattice")
+        return 1
+    names = {"lattice": "lattice.json", "curvature": "curvature.csv", "picture": "curvature.png"}
+    files = {kind: output / name for kind, name in names.items() if picture or kind != "picture"}
+    refuse_unwritable(*files.values(), out.written_file)
+    options = LatticeOptions(speed=speed, grid=grid, headings=headings, turns=turns, longest=longest)
+    limits = limits_of(learned)
+    limits = limits if curvature is None else replace(limits, curvature=curvature)
+    held = curvature_map(learned, limits=limits)
+    if picture:
+        write_curvature_picture(files["picture"], held, model.name)
+    _write_table(files["curvature"], held)
+    text = write_lattice(files["lattice"], learned, options=options, limits=limits).read_text(
+        encoding="utf-8"
+    )
+    metadata = loads(text)["lattice_metadata"]
+    out.document(head("lattice") | {"exit_code": 0, "files": files, "lattice_metadata": metadata})
+    out.line(f"{metadata['number_of_trajectories']} primitives over {headings} headings at {speed:g} m/s.")
+    out.line(f"Slip leaves a turning radius of {metadata['turning_radius']:.2f} m at this speed.")
+    show_files(out, files)
+    return 0
+
+
+def _write_table(path: Path, held: CurvatureMap) -> None:
+    """Write the curvature map; commands beyond the limits are left out."""
+    import numpy as np
+
+    from slipwise.files import write_text_whole
+
+    rows = ["speed,told_curvature,held_curvature,achieved_speed,sideslip"]
+    for i, j in np.argwhere(np.isfinite(held.held)).tolist():
+        values = (
+            held.speed[i],
+            held.told[j],
+            held.held[i, j],
+            held.achieved_speed[i, j],
+            held.sideslip[i, j],
+        )
+        rows.append(",".join(f"{value:.6f}" for value in values))
+    write_text_whole(path, "\n".join(rows) + "\n")

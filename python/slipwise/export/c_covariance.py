@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of the C header that say how sure a prediction is: covariance, slip noise and tails."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from importlib.resources import files
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.errors import ModelError
+from slipwise.models.model import Model
+from slipwise.prediction import tail_at
+
+_SHIFTED = {
+    "log_lag_v": "model.speed.lag *= SLIPWISE_MATH(exp)({by})",
+    "log_lag_omega": "model.yaw.lag *= SLIPWISE_MATH(exp)({by})",
+    "log_delay_v": "model.delay_v *= SLIPWISE_MATH(exp)({by})",
+    "log_delay_omega": "model.delay_omega *= SLIPWISE_MATH(exp)({by})",
+    "gain_v": "model.speed.gain += {by}",
+    "gain_omega": "model.yaw.gain += {by}",
+    "slow_share_v": "model.speed.slow_share += {by}",
+    "slow_share_omega": "model.yaw.slow_share += {by}",
+    "log_slow_lag_v": "model.speed.slow_lag *= SLIPWISE_MATH(exp)({by})",
+    "log_slow_lag_omega": "model.yaw.slow_lag *= SLIPWISE_MATH(exp)({by})",
+    "clock_offset": "model.clock_offset += {by}",
+}
+
+
+def shifts(model: Model) -> str:
+    """Return the lines that add `by` to the parameters.
+
+    Raises:
+        ModelError: the command chain has a parameter that is not known.
+    """
+    lines = []
+    for i, parameter in enumerate(model.content.parameters):
+        if i < model.motion.slip_size:
+            lines.append(f"    model.p[{i}] += by[{i}];")
+        elif parameter.name in _SHIFTED:
+            lines.append(f"    {_SHIFTED[parameter.name].format(by=f'by[{i}]')};")
+        else:
+            raise ModelError(f"the command chain has {parameter.name}, which cannot be exported")
+    return "\n".join(lines)
+
+
+def noise(model: Model) -> str:
+    """Return the slip noise as constants, and how it grows along a path."""
+    learned = model.noise
+    scalars = {
+        "TURN_RADIUS": (_core.TURN_RADIUS, "[m] a turn of 1 rad slips like driving so far"),
+        "STRAIGHT_RADIUS": (
+            _core.STRAIGHT_RADIUS,
+            "[m] driving turns it as an arc of this radius",
+        ),
+        "POSE_STD_XY": (learned.pose_std_xy, "[m] of a measured pose"),
+        "POSE_STD_YAW": (learned.pose_std_yaw, "[rad]"),
+    }
+    root = np.sqrt(np.array(model.content.noise.scale)).tolist()
+    lines = [
+        f"#define SLIPWISE_{name} SLIPWISE_R({value!r})  /* {what} */"
+        for name, (value, what) in scalars.items()
+    ]
+    lines.append("/* Learned factors of the noise's standard deviations in x, y and yaw. */")
+    lines.append(f"static const slipwise_real slipwise_noise_root[3] = {{{_numbers(root)}}};")
+    return _filled(
+        "noise_template.h",
+        {
+            "NOISE_TIME": _numbers(learned.psd_time),
+            "NOISE_MOTION": _numbers(learned.psd_motion),
+            "NOISE_SHARE": _numbers(learned.fraction),
+            "NOISE_SCALARS": "\n".join(lines),
+        },
+    )
+
+
+def covariance(model: Model) -> str:
+    """Return the roots of the parameters' covariance and the tails, and the prediction that uses them."""
+    rows = _roots(model)
+    seconds = sorted(model.content.noise.tails) or [0.0]
+    at = [(s, tail_at(model, s)) for s in seconds]
+    tails = [(s, math.log(tail.growth), math.log(tail.dof)) for s, tail in at]
+    text = [f"    {{{_numbers(row)}}}" for row in rows] or ["    {SLIPWISE_R(0)}"]
+    return _filled(
+        "covariance_template.h",
+        {
+            "ROOT_COUNT": str(len(rows)),
+            "ROOTS": ",\n".join(text),
+            "TAIL_COUNT": str(len(tails)),
+            "TAILS": ", ".join(f"{{{_numbers(row)}}}" for row in tails),
+        },
+    )
+
+
+def _roots(model: Model) -> list[list[float]]:
+    """Return rows whose squares add up to the covariance; those of parameters without any are left out."""
+    if not model.mean.size:
+        return []
+    values, vectors = np.linalg.eigh(model.covariance)
+    rows = (vectors * np.sqrt(values.clip(0.0))).T
+    return [row for row in rows.tolist() if any(row)]
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return ", ".join(f"SLIPWISE_R({float(value)!r})" for value in values)
+
+
+def _filled(name: str, parts: dict[str, str]) -> str:
+    text = files("slipwise.export").joinpath(name).read_text(encoding="utf-8").rstrip("\n")
+    for place, value in parts.items():
+        text = text.replace(f"@{place}@", value)
+    return text
