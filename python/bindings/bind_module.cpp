@@ -19,4 +19,5 @@ NB_MODULE(_core, m) {
   bind_estimate(m);
   bind_regression(m);
   bind_estimators(m);
+  bind_limits(m);
 }

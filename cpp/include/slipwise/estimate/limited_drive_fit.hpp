@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fitting limits and chain to measured wheel speeds: a robust likelihood, its minimum near a start, and how sure that
+// is.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/command_limits.hpp"
+#include "slipwise/estimate/prior.hpp"
+
+namespace slipwise {
+
+/// A stretch of one run over which the commands were known without a gap: the commands, and the wheels' twist beside
+/// them. The first twist is where the drive starts; only the others are explained.
+struct DriveRecord {
+  InputTrack commands;
+  std::vector<double> t;          ///< [s], increasing, in the stamps of the commands
+  std::vector<BodyTwist> wheels;  ///< [t]
+};
+
+enum class LimitKind : std::uint8_t { DeadBand, Top, Acceleration, Braking };
+inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Top, LimitKind::Acceleration,
+                                        LimitKind::Braking};
+double& limit_of(LaneLimits& limits, LimitKind kind);
+double limit_of(const LaneLimits& limits, LimitKind kind);
+/// Whether it limits anything.
+bool limits_anything(const LaneLimits& limits, LimitKind kind);
+
+/// Limits and the chain behind them: gain, delay and lag per channel.
+struct LimitedDrive {
+  CommandLimits limits;
+  CommandChain chain;
+};
+
+/// The two sides of a drive are built alike and share their limits; channels have limits of their own.
+int separate_lanes(Lanes lanes);
+LaneLimits lane_limits(const CommandLimits& limits, int lane);
+void set_lane_limits(CommandLimits& limits, int lane, const LaneLimits& lane_limits);
+
+/// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
+struct DriveLoss {
+  double total;      ///< prior included; residuals are taken as independent
+  double inflation;  ///< by how much that overstates the evidence, since residuals next to each other are alike
+};
+
+class LimitedDriveFit {
+ public:
+  /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
+  LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track);
+
+  LimitedDrive start(Lanes lanes) const;
+  DriveLoss loss(const LimitedDrive& drive) const;
+  /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held.
+  LimitedDrive refine(const LimitedDrive& drive, int iterations) const;
+  /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
+  /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
+  struct Spread {
+    std::array<std::array<double, kLimitKinds.size()>, 2> std;
+    double track_std;
+  };
+  Spread spread(const LimitedDrive& drive) const;
+
+  std::size_t samples() const { return samples_; }
+
+ private:
+  struct Residuals;
+  Residuals residuals(const LimitedDrive& drive) const;
+  Eigen::MatrixXd jacobian(const LimitedDrive& drive, const std::vector<int>& free, const Residuals& at) const;
+  double prior_loss(const LimitedDrive& drive) const;
+
+  std::span<const DriveRecord> records_;
+  PriorSettings prior_;
+  double track_;
+  std::size_t samples_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// A Student t likelihood of wheel speeds over the parameters of a limited drive, on a logarithmic scale where positive.
+#include "slipwise/estimate/limited_drive_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/actuator/chain_output.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kDof = 4.0;            // of the residuals
+constexpr double kLeastScale = 1e-3;    // [m/s, rad/s]; encoders are no finer
+constexpr int kScaleSteps = 6;          // of finding the likeliest scale
+constexpr double kTrackLogStd = 0.3;    // of the track between the sides about the one given
+constexpr double kDifference = 1e-3;    // of parameters, for derivatives
+constexpr double kMostInflation = 100.0;
+constexpr double kSecondsAlike = 1.0;   // residuals further apart are taken as independent
+constexpr int kOutputs = 2;
+
+// Parameters in a row: gain, log lag and log delay per channel, log track, and per lane log top, acceleration, braking.
+constexpr int kChain = 6;
+constexpr int kTrack = 6;
+constexpr int kLanes = 7;
+constexpr int kPerLane = 3;
+using Parameters = Eigen::Matrix<double, kLanes + 2 * kPerLane, 1>;
+
+Parameters parameters_of(const LimitedDrive& drive) {
+  const CommandChain& chain = drive.chain;
+  const auto& [lanes, first, second, track] = drive.limits;
+  Parameters p;
+  p << chain.gain_v, chain.gain_omega, std::log(chain.lag_v), std::log(chain.lag_omega), std::log(chain.delay_v),
+      std::log(chain.delay_omega), std::log(track), std::log(first.top), std::log(first.acceleration),
+      std::log(first.braking), std::log(second.top), std::log(second.acceleration), std::log(second.braking);
+  return p;
+}
+
+LimitedDrive with_parameters(LimitedDrive drive, const Parameters& p) {
+  CommandChain& chain = drive.chain;
+  chain.gain_v = p[0];
+  chain.gain_omega = p[1];
+  chain.lag_v = std::exp(p[2]);
+  chain.lag_omega = std::exp(p[3]);
+  chain.delay_v = std::exp(p[4]);
+  chain.delay_omega = std::exp(p[5]);
+  drive.limits.track = std::exp(p[kTrack]);
+  const int lanes = separate_lanes(drive.limits.lanes);
+  for (int lane = 0; lane < lanes; ++lane) {
+    LaneLimits limits = lane_limits(drive.limits, lane);
+    for (int k = 0; k < kPerLane; ++k) {
+      limit_of(limits, kLimitKinds.at(static_cast<std::size_t>(k) + 1)) = std::exp(p[kLanes + lane * kPerLane + k]);
+    }
+    set_lane_limits(drive.limits, lane, limits);
+  }
+  return drive;
+}
+
+/// The parameters that do anything.
+std::vector<int> free_parameters(const LimitedDrive& drive) {
+  std::vector<int> free;
+  for (int i = 0; i < kChain; ++i) {
+    free.push_back(i);
+  }
+  if (drive.limits.lanes == Lanes::Sides && !unlimited(drive.limits)) {
+    free.push_back(kTrack);
+  }
+  for (int lane = 0; lane < separate_lanes(drive.limits.lanes); ++lane) {
+    const LaneLimits limits = lane_limits(drive.limits, lane);
+    for (int k = 0; k < kPerLane; ++k) {
+      if (limits_anything(limits, kLimitKinds.at(static_cast<std::size_t>(k) + 1))) {
+        free.push_back(kLanes + lane * kPerLane + k);
+      }
+    }
+  }
+  return free;
+}
+
+/// The likeliest scale of Student t residuals.
+double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
+  double squared = std::max(residual.squaredNorm() / static_cast<double>(residual.size()), kLeastScale * kLeastScale);
+  for (int i = 0; i < kScaleSteps; ++i) {
+    const auto r2 = residual.array().square();
+    squared = std::max(((kDof + 1.0) * r2 / (kDof + r2 / squared)).mean(), kLeastScale * kLeastScale);
+  }
+  return std::sqrt(squared);
+}
+
+double chi(double value, double std) { return (value / std) * (value / std); }
+
+}  // namespace
+
+double& limit_of(LaneLimits& limits, LimitKind kind) {
+  switch (kind) {
+    case LimitKind::DeadBand:
+      return limits.dead_band;
+    case LimitKind::Top:
+      return limits.top;
+    case LimitKind::Acceleration:
+      return limits.acceleration;
+    default:
+      return limits.braking;
+  }
+}
+
+double limit_of(const LaneLimits& limits, LimitKind kind) {
+  LaneLimits copy = limits;
+  return limit_of(copy, kind);
+}
+
+bool limits_anything(const LaneLimits& limits, LimitKind kind) {
+  return limit_of(limits, kind) != limit_of(LaneLimits{}, kind);
+}
+
+int separate_lanes(Lanes lanes) { return lanes == Lanes::Sides ? 1 : 2; }
+
+LaneLimits lane_limits(const CommandLimits& limits, int lane) { return lane == 0 ? limits.first : limits.second; }
+
+void set_lane_limits(CommandLimits& limits, int lane, const LaneLimits& lane_limits) {
+  if (lane == 0) {
+    limits.first = lane_limits;
+  }
+  if (lane == 1 || limits.lanes == Lanes::Sides) {
+    limits.second = lane_limits;
+  }
+}
+
+/// Measured less explained, one column per channel, with the scale and the t weights of each.
+struct LimitedDriveFit::Residuals {
+  Eigen::MatrixXd value;    // [samples, channels]
+  Eigen::Vector2d scale;
+  Eigen::MatrixXd weight;   // [samples, channels]
+};
+
+LimitedDriveFit::LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track)
+    : records_(records), prior_(prior), track_(track), samples_(0) {
+  for (const DriveRecord& record : records) {
+    samples_ += record.t.empty() ? 0 : record.t.size() - 1;
+  }
+}
+
+LimitedDrive LimitedDriveFit::start(Lanes lanes) const {
+  LimitedDrive drive;
+  drive.limits.lanes = lanes;
+  drive.limits.track = track_;
+  drive.chain.lag_v = drive.chain.lag_omega = prior_.lag;
+  drive.chain.delay_v = drive.chain.delay_omega = prior_.delay;
+  return drive;
+}
+
+LimitedDriveFit::Residuals LimitedDriveFit::residuals(const LimitedDrive& drive) const {
+  Residuals result{.value = Eigen::MatrixXd(static_cast<Eigen::Index>(samples_), kOutputs), .scale = {}, .weight = {}};
+  Eigen::Index row = 0;
+  for (const DriveRecord& record : records_) {
+    const InputTrack limited = limited_track(record.commands, drive.limits);
+    const ChainOutput output = chain_output(limited, drive.chain, record.t, record.wheels.front());
+    for (std::size_t i = 1; i < record.t.size(); ++i, ++row) {
+      result.value(row, 0) = record.wheels[i].v - output.v[i];
+      result.value(row, 1) = record.wheels[i].omega - output.omega[i];
+    }
+  }
+  result.weight.resize(result.value.rows(), kOutputs);
+  for (int c = 0; c < kOutputs; ++c) {
+    result.scale[c] = likeliest_scale(result.value.col(c));
+    result.weight.col(c) = (kDof + 1.0) / (kDof + (result.value.col(c).array() / result.scale[c]).square());
+  }
+  return result;
+}
+
+double LimitedDriveFit::prior_loss(const LimitedDrive& drive) const {
+  const CommandChain& chain = drive.chain;
+  return chi(chain.gain_v - 1.0, prior_.gain_std) + chi(chain.gain_omega - 1.0, prior_.gain_std) +
+         chi(std::log(chain.lag_v / prior_.lag), prior_.log_std) +
+         chi(std::log(chain.lag_omega / prior_.lag), prior_.log_std) +
+         chi(std::log(chain.delay_v / prior_.delay), prior_.log_std) +
+         chi(std::log(chain.delay_omega / prior_.delay), prior_.log_std) +
+         chi(std::log(drive.limits.track / track_), kTrackLogStd);
+}
+
+DriveLoss LimitedDriveFit::loss(const LimitedDrive& drive) const {
+  const Residuals r = residuals(drive);
+  const auto count = static_cast<double>(r.value.rows());
+  DriveLoss loss{.total = prior_loss(drive), .inflation = 1.0};
+  for (int c = 0; c < kOutputs; ++c) {
+    const Eigen::ArrayXd scaled = r.value.col(c).array() / r.scale[c];
+    loss.total += 2.0 * count * std::log(r.scale[c]) + (kDof + 1.0) * (1.0 + scaled.square() / kDof).log().sum();
+    const Eigen::ArrayXd score = r.weight.col(c).array() * scaled;
+    const double alike = (score.tail(score.size() - 1) * score.head(score.size() - 1)).sum() / score.square().sum();
+    const double one = std::clamp((1.0 + alike) / (1.0 - alike), 1.0, kMostInflation);
+    loss.inflation = std::max(loss.inflation, one);
+  }
+  return loss;
+}
+
+Eigen::MatrixXd LimitedDriveFit::jacobian(const LimitedDrive& drive, const std::vector<int>& free,
+                                          const Residuals& at) const {
+  const Parameters p = parameters_of(drive);
+  Eigen::MatrixXd result(at.value.size(), free.size());
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    Parameters moved = p;
+    moved[free[k]] += kDifference;
+    const Eigen::MatrixXd change = residuals(with_parameters(drive, moved)).value - at.value;
+    result.col(static_cast<Eigen::Index>(k)) = change.reshaped() * (-1.0 / kDifference);
+  }
+  return result;
+}
+
+namespace {
+
+/// Prior precision of a parameter, and how far it lies from its prior mean.
+struct PriorPull {
+  double precision, gap;
+};
+
+PriorPull prior_pull(int parameter, const Parameters& p, const PriorSettings& prior, double track) {
+  const auto pull = [](double std, double gap) { return PriorPull{1.0 / (std * std), gap}; };
+  if (parameter < 2) {
+    return pull(prior.gain_std, p[parameter] - 1.0);
+  }
+  if (parameter < 4) {
+    return pull(prior.log_std, p[parameter] - std::log(prior.lag));
+  }
+  if (parameter < kChain) {
+    return pull(prior.log_std, p[parameter] - std::log(prior.delay));
+  }
+  return parameter == kTrack ? pull(kTrackLogStd, p[kTrack] - std::log(track)) : PriorPull{0.0, 0.0};
+}
+
+}  // namespace
+
+LimitedDrive LimitedDriveFit::refine(const LimitedDrive& drive, int iterations) const {
+  const std::vector<int> free = free_parameters(drive);
+  const auto size = static_cast<Eigen::Index>(free.size());
+  LimitedDrive best = drive;
+  double least = loss(best).total;
+  double damping = 1e-3;
+  for (int i = 0; i < iterations; ++i) {
+    const Residuals r = residuals(best);
+    const Eigen::MatrixXd slope = jacobian(best, free, r);
+    Eigen::MatrixXd weighted = r.weight;
+    weighted.array().rowwise() /= r.scale.array().square().transpose();
+    const Eigen::VectorXd weight = weighted.reshaped();
+    Eigen::MatrixXd information = slope.transpose() * weight.asDiagonal() * slope;
+    Eigen::VectorXd pull = slope.transpose() * (weight.array() * r.value.reshaped().array()).matrix();
+    const Parameters p = parameters_of(best);
+    for (Eigen::Index k = 0; k < size; ++k) {
+      const PriorPull prior = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_);
+      information(k, k) += prior.precision;
+      pull[k] -= prior.precision * prior.gap;
+    }
+    const double before = least;
+    for (int attempt = 0; attempt < 6; ++attempt) {
+      Eigen::MatrixXd damped = information;
+      damped.diagonal() += damping * information.diagonal() + Eigen::VectorXd::Constant(size, 1e-9);
+      const Eigen::VectorXd step = damped.ldlt().solve(pull).cwiseMax(-0.7).cwiseMin(0.7);
+      Parameters moved = p;
+      for (Eigen::Index k = 0; k < size; ++k) {
+        moved[free[static_cast<std::size_t>(k)]] += step[k];
+      }
+      const LimitedDrive trial = with_parameters(best, moved);
+      const double total = loss(trial).total;
+      if (total < least) {
+        best = trial;
+        least = total;
+        damping = std::max(damping * 0.2, 1e-6);
+        break;
+      }
+      damping *= 8.0;
+    }
+    if (before - least < 0.05) {
+      break;
+    }
+  }
+  return best;
+}
+
+LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const {
+  const std::vector<int> free = free_parameters(drive);
+  const auto size = static_cast<Eigen::Index>(free.size());
+  const Residuals r = residuals(drive);
+  const Eigen::MatrixXd slope = jacobian(drive, free, r);
+  const Parameters p = parameters_of(drive);
+  Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(size, size);
+  for (Eigen::Index k = 0; k < size; ++k) {
+    bread(k, k) = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_).precision + 1e-12;
+  }
+  Eigen::MatrixXd meat = bread;
+  const Eigen::Index rows = r.value.rows();
+  for (int c = 0; c < kOutputs; ++c) {
+    const Eigen::ArrayXd u = r.value.col(c).array() / r.scale[c];
+    const Eigen::ArrayXd score = r.weight.col(c).array() * u / r.scale[c];
+    const double curvature =
+        ((kDof + 1.0) * (kDof - u.square()) / (kDof + u.square()).square()).mean() / (r.scale[c] * r.scale[c]);
+    const auto mine = slope.middleRows(c * rows, rows);
+    bread += std::max(curvature, 0.0) * mine.transpose() * mine;
+    Eigen::Index row = 0;
+    for (const DriveRecord& record : records_) {
+      const auto end = row + static_cast<Eigen::Index>(record.t.size()) - 1;
+      Eigen::VectorXd block = Eigen::VectorXd::Zero(size);
+      double block_end = record.t.front() + kSecondsAlike;
+      for (std::size_t i = 1; row < end; ++row, ++i) {
+        if (record.t[i] > block_end) {
+          meat += block * block.transpose();
+          block.setZero();
+          block_end = record.t[i] + kSecondsAlike;
+        }
+        block += score[row] * mine.row(row).transpose();
+      }
+      meat += block * block.transpose();
+    }
+  }
+  const Eigen::MatrixXd inverse = bread.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd covariance = inverse * meat * inverse;
+  Spread result{.std = {}, .track_std = 0.0};
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const int parameter = free[static_cast<std::size_t>(k)];
+    const double std = std::sqrt(std::max(covariance(k, k), 0.0)) * std::exp(p[parameter]);
+    if (parameter == kTrack) {
+      result.track_std = std;
+    } else if (parameter >= kLanes) {
+      const int lane = (parameter - kLanes) / kPerLane;
+      result.std.at(static_cast<std::size_t>(lane)).at(static_cast<std::size_t>((parameter - kLanes) % kPerLane) + 1) =
+          std;
+    }
+  }
+  return result;
+}
+
+}  // namespace slipwise
