@@ -72,21 +72,19 @@ void bind_actuator(nb::module_& m) {
       .def_ro("top", &LaneLimits::top)
       .def_ro("acceleration", &LaneLimits::acceleration)
       .def_ro("braking", &LaneLimits::braking);
-  nb::enum_<Lanes>(m, "Lanes", "Speed and yaw rate, or the left and the right side.")
-      .value("Channels", Lanes::Channels)
-      .value("Sides", Lanes::Sides);
-  nb::class_<CommandLimits>(m, "CommandLimits", "The limits of both lanes; the track [m] is between sides.")
+  nb::class_<CommandLimits>(m, "CommandLimits", "Limits of the commands, and then of the sides `track` [m] apart.")
       .def(
           "__init__",
-          [](CommandLimits* self, Lanes lanes, const LaneLimits& first, const LaneLimits& second, double track) {
-            new (self) CommandLimits{lanes, first, second, track};
-          },
-          "lanes"_a, "first"_a, "second"_a, "track"_a)
-      .def_ro("lanes", &CommandLimits::lanes)
-      .def_ro("first", &CommandLimits::first)
-      .def_ro("second", &CommandLimits::second)
+          [](CommandLimits* self, const LaneLimits& speed, const LaneLimits& yaw_rate, const LaneLimits& side,
+             double track, double gain_v,
+             double gain_omega) { new (self) CommandLimits{speed, yaw_rate, side, track, gain_v, gain_omega}; },
+          "speed"_a, "yaw_rate"_a, "side"_a, "track"_a, "gain_v"_a, "gain_omega"_a)
+      .def_ro("speed", &CommandLimits::speed)
+      .def_ro("yaw_rate", &CommandLimits::yaw_rate)
+      .def_ro("side", &CommandLimits::side)
       .def_ro("track", &CommandLimits::track)
-      .def("__eq__", [](const CommandLimits& a, const CommandLimits& b) { return a == b; }, nb::is_operator());
+      .def_ro("gain_v", &CommandLimits::gain_v)
+      .def_ro("gain_omega", &CommandLimits::gain_omega);
   m.def("limited_track", &limited_track, "commands"_a, "limits"_a, "longest_piece"_a,
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");
   m.attr("RAMP_PIECE") = kRampPiece;

@@ -2,6 +2,7 @@
 // Bindings of cpp/include/slipwise/estimate, the search for a drive's limits.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
 #include <stdexcept>
@@ -37,6 +38,10 @@ void bind_limits(nb::module_& m) {
       .value("Top", LimitKind::Top)
       .value("Acceleration", LimitKind::Acceleration)
       .value("Braking", LimitKind::Braking);
+  nb::enum_<Lane>(m, "Lane", "The commanded speed, the commanded yaw rate, or both sides.")
+      .value("Speed", Lane::Speed)
+      .value("YawRate", Lane::YawRate)
+      .value("Side", Lane::Side);
   nb::class_<FoundLimit>(m, "FoundLimit", "A limit that the data show, with its standard deviation.")
       .def_ro("lane", &FoundLimit::lane)
       .def_ro("kind", &FoundLimit::kind)
@@ -58,8 +63,7 @@ void bind_limits(nb::module_& m) {
       [](const std::vector<DriveRecord>& records, const PriorSettings& prior, double track, double least_gain) {
         return find_limits(records, prior, track, {.least_gain = least_gain});
       },
-      "records"_a, "prior"_a, "track"_a, "least_gain"_a,
-      "The limits that wheel speeds show, of channels or of sides, whichever explain them better.");
+      "records"_a, "prior"_a, "track"_a, "least_gain"_a, "The limits that wheel speeds show.");
   m.attr("LEAST_LIMIT_GAIN") = LimitSearchSettings{}.least_gain;
 }
 

@@ -44,9 +44,9 @@ std::vector<double> follow(const InputTrack& inputs, const Channel& channel, std
 
 ChainOutput chain_output(const InputTrack& inputs, const CommandChain& chain, std::span<const double> times,
                          const BodyTwist& initial) {
-  return {follow(inputs, {&BodyTwist::v, chain.gain_v, chain.lag_v, chain.delay_v}, times, initial.v),
-          follow(inputs, {&BodyTwist::omega, chain.gain_omega, chain.lag_omega, chain.delay_omega}, times,
-                 initial.omega)};
+  return {
+      follow(inputs, {&BodyTwist::v, chain.gain_v, chain.lag_v, chain.delay_v}, times, initial.v),
+      follow(inputs, {&BodyTwist::omega, chain.gain_omega, chain.lag_omega, chain.delay_omega}, times, initial.omega)};
 }
 
 }  // namespace slipwise

@@ -3,6 +3,7 @@
 #include "slipwise/actuator/command_limits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -13,7 +14,7 @@
 namespace slipwise {
 namespace {
 
-constexpr double kNoTime = 1e-6;  // [s]; stamps that count from 1970 are no finer
+constexpr double kNoTime = 1e-6;        // [s]; stamps that count from 1970 are no finer
 constexpr double kMostPieces = 2000.0;  // of one ramp, however slow
 constexpr double kLongestRamp = 1e6;    // [s]; nobody waits longer
 
@@ -52,6 +53,16 @@ class LaneRamp {
     return integral + state_ * seconds;
   }
 
+  /// The mean over a piece, of which `taken` seconds pass.
+  double mean_over(double piece, double taken) {
+    if (taken == piece) {
+      return follow(piece) / piece;
+    }
+    LaneRamp whole = *this;
+    follow(taken);
+    return whole.follow(piece) / piece;
+  }
+
  private:
   double rate_towards(double goal) const {
     return std::abs(goal) < std::abs(state_) ? limits_.braking : limits_.acceleration;
@@ -72,7 +83,11 @@ struct Columns {
     }
   }
 
+  /// A twist that goes on as it was needs no sample.
   void push(double time, const BodyTwist& twist) {
+    if (!t.empty() && v.back() == twist.v && vy.back() == twist.vy && omega.back() == twist.omega) {
+      return;
+    }
     t.push_back(time);
     v.push_back(twist.v);
     vy.push_back(twist.vy);
@@ -100,37 +115,70 @@ void check(const LaneLimits& limits, const char* lane) {
 }
 
 void check(const CommandLimits& limits, double longest_piece) {
-  check(limits.first, "first");
-  check(limits.second, "second");
-  if (limits.lanes == Lanes::Sides && !(limits.track > 0.0 && std::isfinite(limits.track))) {
-    throw std::invalid_argument("the track between the sides is " + std::to_string(limits.track) +
-                                " m; give more than zero");
+  check(limits.speed, "speed");
+  check(limits.yaw_rate, "yaw rate");
+  check(limits.side, "side");
+  const auto positive = [](const char* name, double value) {
+    if (!(value > 0.0 && std::isfinite(value))) {
+      throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + "; give more than zero");
+    }
+  };
+  positive("the track between the sides", limits.track);
+  positive("the gain of the speed", limits.gain_v);
+  positive("the gain of the yaw rate", limits.gain_omega);
+  positive("a ramp's longest piece", longest_piece);
+}
+
+struct LanePair {
+  double first, second;
+};
+
+/// Walks over held commands with two lanes; `to` and `from` turn a twist into what is asked of the lanes, and back.
+template <typename To, typename From>
+InputTrack ramped(const InputTrack& commands, std::array<LaneRamp, 2> lanes, double longest_piece, To to, From from) {
+  auto& [first, second] = lanes;
+  Columns out(commands.size());
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const BodyTwist command = commands.sample(i);
+    const LanePair asked = to(command);
+    first.aim(asked.first);
+    second.aim(asked.second);
+    const double next = i + 1 < commands.size() ? commands.time(i + 1) : std::numeric_limits<double>::infinity();
+    double now = commands.time(i);
+    const double ramp = std::min(std::max(first.seconds_left(), second.seconds_left()), kLongestRamp);
+    if (ramp > kNoTime) {
+      const int pieces = lag_parts(ramp, std::max(longest_piece, ramp / kMostPieces));
+      const double piece = ramp / pieces;
+      for (int k = 0; k < pieces && next - now > kNoTime; ++k) {
+        const double taken = std::min(piece, next - now);
+        const LanePair means{first.mean_over(piece, taken), second.mean_over(piece, taken)};
+        out.push(now, from(means, command.vy));
+        now += taken;
+      }
+    }
+    if (next - now > kNoTime) {
+      out.push(now, from({first.target(), second.target()}, command.vy));
+    }
   }
-  if (!(longest_piece > 0.0)) {
-    throw std::invalid_argument("a ramp's longest piece is " + std::to_string(longest_piece) +
-                                " s; give more than zero");
-  }
+  return {out.t, out.v, out.vy, out.omega};
 }
 
 }  // namespace
 
+bool limits_sides(const CommandLimits& limits) { return limits.side != LaneLimits{}; }
+
 bool unlimited(const CommandLimits& limits) {
-  return limits.first == LaneLimits{} && limits.second == LaneLimits{};
+  return limits.speed == LaneLimits{} && limits.yaw_rate == LaneLimits{} && !limits_sides(limits);
 }
 
-LanePair to_lanes(const CommandLimits& limits, double v, double omega) {
-  if (limits.lanes == Lanes::Channels) {
-    return {v, omega};
-  }
-  const double half = 0.5 * omega * limits.track;
+CommandLimits channel_limits(const CommandLimits& limits) {
+  return {.speed = limits.speed, .yaw_rate = limits.yaw_rate};
+}
+
+SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist) {
+  const double v = limits.gain_v * twist.v;
+  const double half = 0.5 * limits.gain_omega * twist.omega * limits.track;
   return {v - half, v + half};
-}
-
-BodyTwist from_lanes(const CommandLimits& limits, const LanePair& lanes, double vy) {
-  if (limits.lanes == Lanes::Channels) {
-    return {lanes.first, vy, lanes.second};
-  }
-  return {0.5 * (lanes.first + lanes.second), vy, (lanes.second - lanes.first) / limits.track};
 }
 
 InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
@@ -138,35 +186,25 @@ InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits
   if (unlimited(limits)) {
     return commands;
   }
-  LaneRamp first(limits.first);
-  LaneRamp second(limits.second);
-  Columns out(commands.size());
-  for (std::size_t i = 0; i < commands.size(); ++i) {
-    const BodyTwist command = commands.sample(i);
-    const LanePair lanes = to_lanes(limits, command.v, command.omega);
-    first.aim(lanes.first);
-    second.aim(lanes.second);
-    const double ramp = std::min(std::max(first.seconds_left(), second.seconds_left()), kLongestRamp);
-    const int pieces = lag_parts(ramp, std::max(longest_piece, ramp / kMostPieces));
-    const double piece = ramp / pieces;
-    const double next = i + 1 < commands.size() ? commands.time(i + 1) : std::numeric_limits<double>::infinity();
-    double now = commands.time(i);
-    for (int k = 0; k < pieces && piece > kNoTime && next - now > kNoTime; ++k) {
-      LaneRamp first_whole = first;
-      LaneRamp second_whole = second;
-      const double whole_first = first_whole.follow(piece) / piece;
-      const double whole_second = second_whole.follow(piece) / piece;
-      out.push(now, from_lanes(limits, {whole_first, whole_second}, command.vy));
-      const double taken = std::min(piece, next - now);
-      first.follow(taken);
-      second.follow(taken);
-      now += taken;
-    }
-    if (next - now > kNoTime) {
-      out.push(now, from_lanes(limits, {first.target(), second.target()}, command.vy));
-    }
+  const auto as_channels = [](const BodyTwist& twist) { return LanePair{twist.v, twist.omega}; };
+  const auto from_channels = [](const LanePair& lanes, double vy) { return BodyTwist{lanes.first, vy, lanes.second}; };
+  const auto as_sides = [&](const BodyTwist& twist) {
+    const SideSpeeds sides = side_speeds(limits, twist);
+    return LanePair{sides.left, sides.right};
+  };
+  const auto from_sides = [&](const LanePair& lanes, double vy) {
+    return BodyTwist{0.5 * (lanes.first + lanes.second), vy, (lanes.second - lanes.first) / limits.track};
+  };
+  const std::array<LaneRamp, 2> channels{LaneRamp(limits.speed), LaneRamp(limits.yaw_rate)};
+  const std::array<LaneRamp, 2> sides{LaneRamp(limits.side), LaneRamp(limits.side)};
+  if (!limits_sides(limits)) {
+    return ramped(commands, channels, longest_piece, as_channels, from_channels);
   }
-  return {out.t, out.v, out.vy, out.omega};
+  if (unlimited(channel_limits(limits))) {
+    return ramped(commands, sides, longest_piece, as_sides, from_sides);
+  }
+  const InputTrack limited = ramped(commands, channels, longest_piece, as_channels, from_channels);
+  return ramped(limited, sides, longest_piece, as_sides, from_sides);
 }
 
 }  // namespace slipwise

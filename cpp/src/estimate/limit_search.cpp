@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace slipwise {
 namespace {
@@ -15,12 +16,12 @@ constexpr std::size_t kFewestSamples = 20;
 constexpr int kMostLimits = 8;
 constexpr int kShortRefinement = 4;
 constexpr int kLongRefinement = 15;
-constexpr double kPlateau = 4.0;  // of -2 log likelihood: a dead-band within two standard deviations
+constexpr double kPlateau = 4.0;     // of -2 log likelihood: a dead-band within two standard deviations
 constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
 constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
 constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
 constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
-constexpr std::array kLagFactors{1.0, 0.4};  // a rate limit takes over what was taken for lag
+constexpr double kLagFactor = 0.4;
 
 /// Sorted sizes of what is asked of a lane and what was measured of it.
 struct LaneSizes {
@@ -34,36 +35,56 @@ double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
 }
 
-double in_lane(const CommandLimits& limits, int lane, const BodyTwist& twist) {
-  const LanePair pair = to_lanes(limits, twist.v, twist.omega);
-  return lane == 0 ? pair.first : pair.second;
+/// A twist in a lane: once, or once for each side.
+std::array<double, 2> in_lane(const CommandLimits& limits, Lane lane, const BodyTwist& twist) {
+  if (lane == Lane::Side) {
+    const SideSpeeds sides = side_speeds(limits, twist);
+    return {sides.left, sides.right};
+  }
+  const double one = lane == Lane::Speed ? twist.v : twist.omega;
+  return {one, one};
 }
 
-LaneSizes lane_sizes(std::span<const DriveRecord> records, const CommandLimits& limits, int lane) {
-  LaneSizes sizes;
-  const int last = limits.lanes == Lanes::Sides ? 1 : lane;  // both sides share their limits
-  for (int side = lane; side <= last; ++side) {
-    for (const DriveRecord& record : records) {
-      double before = 0.0;
-      for (std::size_t i = 0; i < record.commands.size(); ++i) {
-        const double command = in_lane(limits, side, record.commands.sample(i));
-        sizes.step = std::max(sizes.step, std::abs(command - before));
-        before = command;
-        if (command != 0.0) {
-          sizes.commands.push_back(std::abs(command));
-        }
-      }
-      std::size_t from = 0;
-      for (std::size_t i = 0; i < record.t.size(); ++i) {
-        const double speed = in_lane(limits, side, record.wheels[i]);
-        sizes.speeds.push_back(std::abs(speed));
-        if (record.t[i] - record.t[from] >= kRateStride) {
-          sizes.rates.push_back(std::abs(speed - in_lane(limits, side, record.wheels[from])) /
-                                (record.t[i] - record.t[from]));
-          from = i;
-        }
+/// Wheels have passed all gains.
+CommandLimits of_wheels(const CommandLimits& limits) { return {.track = limits.track}; }
+
+void add_commands(LaneSizes& sizes, const CommandLimits& limits, Lane lane, const InputTrack& commands) {
+  std::array<double, 2> before{};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const std::array<double, 2> now = in_lane(limits, lane, commands.sample(i));
+    for (std::size_t side = 0; side < now.size(); ++side) {
+      sizes.step = std::max(sizes.step, std::abs(now.at(side) - before.at(side)));
+      if (now.at(side) != 0.0) {
+        sizes.commands.push_back(std::abs(now.at(side)));
       }
     }
+    before = now;
+  }
+}
+
+void add_wheels(LaneSizes& sizes, const CommandLimits& limits, Lane lane, const DriveRecord& record) {
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < record.t.size(); ++i) {
+    const double seconds = record.t[i] - record.t[from];
+    const std::array<double, 2> now = in_lane(limits, lane, record.wheels[i]);
+    const std::array<double, 2> before = in_lane(limits, lane, record.wheels[from]);
+    for (std::size_t side = 0; side < now.size(); ++side) {
+      sizes.speeds.push_back(std::abs(now.at(side)));
+      if (seconds >= kRateStride) {
+        sizes.rates.push_back(std::abs(now.at(side) - before.at(side)) / seconds);
+      }
+    }
+    from = seconds >= kRateStride ? i : from;
+  }
+}
+
+LaneSizes lane_sizes(std::span<const DriveRecord> records, const CommandLimits& limits, Lane lane) {
+  LaneSizes sizes;
+  for (const DriveRecord& record : records) {
+    const bool behind = lane == Lane::Side && !unlimited(channel_limits(limits));
+    add_commands(sizes, limits, lane,
+                 behind ? limited_track(record.commands, channel_limits(limits)) : record.commands);
+    add_wheels(sizes, of_wheels(limits), lane, record);
   }
   for (auto* values : {&sizes.commands, &sizes.speeds, &sizes.rates}) {
     std::ranges::sort(*values);
@@ -108,15 +129,15 @@ class Search {
   std::vector<FoundLimit> found(const Scored& best) const {
     const LimitedDriveFit::Spread spread = fit_.spread(best.drive);
     std::vector<FoundLimit> result;
-    for (int lane = 0; lane < separate_lanes(best.drive.limits.lanes); ++lane) {
+    for (const Lane lane : kLanes) {
       for (std::size_t k = 0; k < kLimitKinds.size(); ++k) {
         const LimitKind kind = kLimitKinds.at(k);
-        const LaneLimits limits = lane_limits(best.drive.limits, lane);
+        const LaneLimits& limits = lane_of(best.drive.limits, lane);
         if (!limits_anything(limits, kind)) {
           continue;
         }
-        const double std = kind == LimitKind::DeadBand ? plateau_std(best, lane)
-                                                       : spread.std.at(static_cast<std::size_t>(lane)).at(k);
+        const double std =
+            kind == LimitKind::DeadBand ? plateau_std(best, lane) : spread.std.at(static_cast<std::size_t>(lane)).at(k);
         result.push_back({lane, kind, limit_of(limits, kind), std, gain_of(best, without(best, lane, kind))});
       }
     }
@@ -131,9 +152,9 @@ class Search {
   /// The best limit, or pair of rates, to add; nothing where none gains enough.
   std::optional<Scored> with_one_more(const Scored& now) const {
     std::vector<Scored> trials;
-    for (int lane = 0; lane < separate_lanes(now.drive.limits.lanes); ++lane) {
+    for (const Lane lane : kLanes) {
       const LaneSizes sizes = lane_sizes(records_, now.drive.limits, lane);
-      const LaneLimits limits = lane_limits(now.drive.limits, lane);
+      const LaneLimits& limits = lane_of(now.drive.limits, lane);
       for (const LimitKind kind : kLimitKinds) {
         if (!limits_anything(limits, kind)) {
           add(trials, profile(now, lane, {kind}, sizes));
@@ -151,7 +172,8 @@ class Search {
         best = trial;
       }
     }
-    return best && gain_of(*best, now) >= least_gain_ ? best : std::nullopt;
+    // While others are missing, residuals are alike; whether it gains enough is judged once all are found.
+    return best && now.loss.total - best->loss.total >= 2.0 * least_gain_ ? best : std::nullopt;
   }
 
   static void add(std::vector<Scored>& trials, std::optional<Scored> trial) {
@@ -160,31 +182,38 @@ class Search {
     }
   }
 
-  /// The best of the candidates, the chain held but for its lag.
-  std::optional<Scored> profile(const Scored& now, int lane, const std::vector<LimitKind>& kinds,
+  /// The best of the candidates, the chain held but for what took the limit's place: lag that of a rate, gain that of
+  /// a top.
+  std::optional<Scored> profile(const Scored& now, Lane lane, const std::vector<LimitKind>& kinds,
                                 const LaneSizes& sizes) const {
     std::optional<Scored> best;
-    const bool rate = kinds.front() == LimitKind::Acceleration || kinds.front() == LimitKind::Braking;
     for (const double value : candidates(kinds.front(), sizes)) {
-      for (const double factor : kLagFactors) {
-        LimitedDrive drive = now.drive;
-        LaneLimits limits = lane_limits(drive.limits, lane);
-        for (const LimitKind kind : kinds) {
-          limit_of(limits, kind) = value;
-        }
-        set_lane_limits(drive.limits, lane, limits);
-        drive.chain.lag_v *= factor;
-        drive.chain.lag_omega *= factor;
-        const Scored trial = scored(drive);
+      LimitedDrive drive = now.drive;
+      for (const LimitKind kind : kinds) {
+        limit_of(lane_of(drive.limits, lane), kind) = value;
+      }
+      for (const LimitedDrive& candidate : beside(kinds.front(), drive)) {
+        const Scored trial = scored(candidate);
         if (!best || trial.loss.total < best->loss.total) {
           best = trial;
-        }
-        if (!rate) {
-          break;
         }
       }
     }
     return best;
+  }
+
+  static std::vector<LimitedDrive> beside(LimitKind kind, const LimitedDrive& drive) {
+    LimitedDrive other = drive;
+    if (kind == LimitKind::Acceleration || kind == LimitKind::Braking) {
+      other.chain.lag_v *= kLagFactor;
+      other.chain.lag_omega *= kLagFactor;
+      return {drive, other};
+    }
+    if (kind == LimitKind::Top) {
+      other.limits.gain_v = other.limits.gain_omega = 1.0;
+      return {drive, other};
+    }
+    return {drive};
   }
 
   static std::vector<double> candidates(LimitKind kind, const LaneSizes& sizes) {
@@ -217,18 +246,16 @@ class Search {
     return 0.5 * (commands[at] + commands[at + 1]);
   }
 
-  LimitedDrive with_dead_band(LimitedDrive drive, int lane, double value) const {
-    LaneLimits limits = lane_limits(drive.limits, lane);
-    limits.dead_band = value;
-    set_lane_limits(drive.limits, lane, limits);
+  LimitedDrive with_dead_band(LimitedDrive drive, Lane lane, double value) const {
+    lane_of(drive.limits, lane).dead_band = value;
     return drive;
   }
 
   /// Finds every dead-band between the commands next to it, and refines the rest with it.
   Scored polished(const Scored& rough) const {
     Scored best = rough;
-    for (int lane = 0; lane < separate_lanes(best.drive.limits.lanes); ++lane) {
-      if (lane_limits(best.drive.limits, lane).dead_band > 0.0) {
+    for (const Lane lane : kLanes) {
+      if (lane_of(best.drive.limits, lane).dead_band > 0.0) {
         best = with_best_dead_band(best, lane);
       }
     }
@@ -237,29 +264,29 @@ class Search {
       return best;
     }
     best = smooth;
-    for (int lane = 0; lane < separate_lanes(best.drive.limits.lanes); ++lane) {
-      if (lane_limits(best.drive.limits, lane).dead_band > 0.0) {
+    for (const Lane lane : kLanes) {
+      if (lane_of(best.drive.limits, lane).dead_band > 0.0) {
         best = with_best_dead_band(best, lane);
       }
     }
     return best;
   }
 
-  Scored with_best_dead_band(const Scored& start, int lane) const {
+  Scored with_best_dead_band(const Scored& start, Lane lane) const {
     const std::vector<double> commands = lane_sizes(records_, start.drive.limits, lane).commands;
     if (commands.size() < 2) {
       return start;
     }
     Scored best = start;
     const auto last = static_cast<std::ptrdiff_t>(commands.size()) - 2;
-    auto centre = std::ranges::lower_bound(commands, lane_limits(start.drive.limits, lane).dead_band) -
-                  commands.begin() - 1;
-    for (std::ptrdiff_t stride = std::max<std::ptrdiff_t>(last / 8, 1);; stride = std::max<std::ptrdiff_t>(stride / 3, 1)) {
+    auto centre =
+        std::ranges::lower_bound(commands, lane_of(start.drive.limits, lane).dead_band) - commands.begin() - 1;
+    for (std::ptrdiff_t stride = std::max<std::ptrdiff_t>(last / 8, 1);;
+         stride = std::max<std::ptrdiff_t>(stride / 3, 1)) {
       std::ptrdiff_t found = centre;
       for (std::ptrdiff_t k = -3; k <= 3; ++k) {
         const std::ptrdiff_t at = std::clamp<std::ptrdiff_t>(centre + k * stride, 0, last);
-        const Scored trial =
-            scored(with_dead_band(start.drive, lane, between(commands, static_cast<std::size_t>(at))));
+        const Scored trial = scored(with_dead_band(start.drive, lane, between(commands, static_cast<std::size_t>(at))));
         if (trial.loss.total < best.loss.total) {
           best = trial;
           found = at;
@@ -274,9 +301,9 @@ class Search {
 
   /// Dead-bands between two neighbouring commands are all alike, and nearly so beyond them: half that width as of a
   /// uniform distribution.
-  double plateau_std(const Scored& best, int lane) const {
+  double plateau_std(const Scored& best, Lane lane) const {
     const std::vector<double> commands = lane_sizes(records_, best.drive.limits, lane).commands;
-    const double value = lane_limits(best.drive.limits, lane).dead_band;
+    const double value = lane_of(best.drive.limits, lane).dead_band;
     const auto above = std::ranges::lower_bound(commands, value) - commands.begin();
     const auto alike = [&](std::ptrdiff_t at) {
       const LimitedDrive drive = with_dead_band(best.drive, lane, between(commands, static_cast<std::size_t>(at)));
@@ -295,11 +322,9 @@ class Search {
     return std::max(upper - value, value - lower) / std::sqrt(3.0);
   }
 
-  Scored without(const Scored& all, int lane, LimitKind kind) const {
+  Scored without(const Scored& all, Lane lane, LimitKind kind) const {
     LimitedDrive drive = all.drive;
-    LaneLimits limits = lane_limits(drive.limits, lane);
-    limit_of(limits, kind) = limit_of(LaneLimits{}, kind);
-    set_lane_limits(drive.limits, lane, limits);
+    limit_of(lane_of(drive.limits, lane), kind) = limit_of(LaneLimits{}, kind);
     return refined(drive, kShortRefinement);
   }
 
@@ -307,9 +332,9 @@ class Search {
   bool drop_idle(Scored& best) const {
     std::optional<Scored> idle;
     double least = least_gain_;
-    for (int lane = 0; lane < separate_lanes(best.drive.limits.lanes); ++lane) {
+    for (const Lane lane : kLanes) {
       for (const LimitKind kind : kLimitKinds) {
-        if (limits_anything(lane_limits(best.drive.limits, lane), kind)) {
+        if (limits_anything(lane_of(best.drive.limits, lane), kind)) {
           const Scored less = without(best, lane, kind);
           if (gain_of(best, less) < least) {
             least = gain_of(best, less);
@@ -330,7 +355,7 @@ class Search {
 };
 
 LimitedDrive plain_drive(const LimitedDriveFit& fit) {
-  const LimitedDrive start = fit.start(Lanes::Channels);
+  const LimitedDrive start = fit.start();
   LimitedDrive late = start;
   std::swap(late.chain.lag_v, late.chain.delay_v);
   std::swap(late.chain.lag_omega, late.chain.delay_omega);
@@ -348,24 +373,23 @@ LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSetting
     throw std::invalid_argument("limits need at least " + std::to_string(kFewestSamples) + " wheel twists, got " +
                                 std::to_string(fit.samples()) + "; drive longer");
   }
-  const LimitedDrive plain = plain_drive(fit);
   Search search(records, fit, settings.least_gain);
-  Scored best = search.run(plain);
-  LimitedDrive sides = plain;
-  sides.limits = fit.start(Lanes::Sides).limits;
-  const Scored of_sides = search.run(sides);
-  if (of_sides.loss.total < best.loss.total) {
-    best = of_sides;
-  }
+  const Scored best = search.run(plain_drive(fit));
   LimitSearch result{.drive = best.drive, .found = {}, .track_std = 0.0, .reach = {}};
   if (!unlimited(best.drive.limits)) {
     result.found = search.found(best);
     result.track_std = fit.spread(best.drive).track_std;
   }
-  for (int lane = 0; lane < separate_lanes(best.drive.limits.lanes); ++lane) {
-    const LaneSizes sizes = lane_sizes(records, best.drive.limits, lane);
+  for (std::size_t k = 0; k < kLanes.size(); ++k) {
+    const LaneSizes sizes = lane_sizes(records, best.drive.limits, kLanes.at(k));
     const auto& commands = sizes.commands;
-    result.reach.push_back(commands.empty() ? LaneReach{} : LaneReach{commands.front(), commands.back(), sizes.step});
+    result.reach.at(k) = commands.empty() ? LaneReach{} : LaneReach{commands.front(), commands.back(), sizes.step};
+  }
+  CommandLimits& limits = result.drive.limits;
+  if (!limits_sides(limits)) {  // the chain says the gain, and nobody needs the track
+    limits.track = track;
+    result.drive.chain.gain_v = std::exchange(limits.gain_v, 1.0);
+    result.drive.chain.gain_omega = std::exchange(limits.gain_omega, 1.0);
   }
   return result;
 }

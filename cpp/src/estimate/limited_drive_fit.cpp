@@ -5,72 +5,77 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "slipwise/actuator/chain_output.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kDof = 4.0;            // of the residuals
-constexpr double kLeastScale = 1e-3;    // [m/s, rad/s]; encoders are no finer
-constexpr int kScaleSteps = 6;          // of finding the likeliest scale
-constexpr double kTrackLogStd = 0.3;    // of the track between the sides about the one given
-constexpr double kDifference = 1e-3;    // of parameters, for derivatives
+constexpr double kDof = 4.0;          // of the residuals
+constexpr double kLeastScale = 1e-3;  // [m/s, rad/s]; encoders are no finer
+constexpr int kScaleSteps = 6;        // of finding the likeliest scale
+constexpr double kTrackLogStd = 0.5;  // of the track between the sides about the one given
+constexpr double kDifference = 1e-3;  // of parameters, for derivatives
 constexpr double kMostInflation = 100.0;
-constexpr double kSecondsAlike = 1.0;   // residuals further apart are taken as independent
+constexpr double kSecondsAlike = 1.0;  // residuals further apart are taken as independent
 constexpr int kOutputs = 2;
+constexpr double kLeastGain = 0.05;  // a drive does not turn its commands round
 
 // Parameters in a row: gain, log lag and log delay per channel, log track, and per lane log top, acceleration, braking.
 constexpr int kChain = 6;
 constexpr int kTrack = 6;
-constexpr int kLanes = 7;
+constexpr int kFirstLimit = 7;
 constexpr int kPerLane = 3;
-using Parameters = Eigen::Matrix<double, kLanes + 2 * kPerLane, 1>;
+using Parameters = Eigen::Matrix<double, kFirstLimit + 3 * kPerLane, 1>;
+
+/// Where a lane's limit of a kind stands; dead-bands are no smooth parameters.
+int place_of(std::size_t lane, std::size_t kind) {
+  return kFirstLimit + static_cast<int>(lane) * kPerLane + static_cast<int>(kind) - 1;
+}
 
 Parameters parameters_of(const LimitedDrive& drive) {
   const CommandChain& chain = drive.chain;
-  const auto& [lanes, first, second, track] = drive.limits;
+  const CommandLimits& limits = drive.limits;
   Parameters p;
-  p << chain.gain_v, chain.gain_omega, std::log(chain.lag_v), std::log(chain.lag_omega), std::log(chain.delay_v),
-      std::log(chain.delay_omega), std::log(track), std::log(first.top), std::log(first.acceleration),
-      std::log(first.braking), std::log(second.top), std::log(second.acceleration), std::log(second.braking);
+  p.head<kFirstLimit>() << limits.gain_v, limits.gain_omega, std::log(chain.lag_v), std::log(chain.lag_omega),
+      std::log(chain.delay_v), std::log(chain.delay_omega), std::log(limits.track);
+  for (std::size_t lane = 0; lane < kLanes.size(); ++lane) {
+    for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
+      p[place_of(lane, kind)] = std::log(limit_of(lane_of(limits, kLanes.at(lane)), kLimitKinds.at(kind)));
+    }
+  }
   return p;
 }
 
 LimitedDrive with_parameters(LimitedDrive drive, const Parameters& p) {
   CommandChain& chain = drive.chain;
-  chain.gain_v = p[0];
-  chain.gain_omega = p[1];
+  drive.limits.gain_v = std::max(p[0], kLeastGain);
+  drive.limits.gain_omega = std::max(p[1], kLeastGain);
   chain.lag_v = std::exp(p[2]);
   chain.lag_omega = std::exp(p[3]);
   chain.delay_v = std::exp(p[4]);
   chain.delay_omega = std::exp(p[5]);
   drive.limits.track = std::exp(p[kTrack]);
-  const int lanes = separate_lanes(drive.limits.lanes);
-  for (int lane = 0; lane < lanes; ++lane) {
-    LaneLimits limits = lane_limits(drive.limits, lane);
-    for (int k = 0; k < kPerLane; ++k) {
-      limit_of(limits, kLimitKinds.at(static_cast<std::size_t>(k) + 1)) = std::exp(p[kLanes + lane * kPerLane + k]);
+  for (std::size_t lane = 0; lane < kLanes.size(); ++lane) {
+    for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
+      limit_of(lane_of(drive.limits, kLanes.at(lane)), kLimitKinds.at(kind)) = std::exp(p[place_of(lane, kind)]);
     }
-    set_lane_limits(drive.limits, lane, limits);
   }
   return drive;
 }
 
 /// The parameters that do anything.
 std::vector<int> free_parameters(const LimitedDrive& drive) {
-  std::vector<int> free;
-  for (int i = 0; i < kChain; ++i) {
-    free.push_back(i);
-  }
-  if (drive.limits.lanes == Lanes::Sides && !unlimited(drive.limits)) {
+  std::vector<int> free(kChain);
+  std::iota(free.begin(), free.end(), 0);
+  if (limits_sides(drive.limits)) {
     free.push_back(kTrack);
   }
-  for (int lane = 0; lane < separate_lanes(drive.limits.lanes); ++lane) {
-    const LaneLimits limits = lane_limits(drive.limits, lane);
-    for (int k = 0; k < kPerLane; ++k) {
-      if (limits_anything(limits, kLimitKinds.at(static_cast<std::size_t>(k) + 1))) {
-        free.push_back(kLanes + lane * kPerLane + k);
+  for (std::size_t lane = 0; lane < kLanes.size(); ++lane) {
+    for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
+      if (limits_anything(lane_of(drive.limits, kLanes.at(lane)), kLimitKinds.at(kind))) {
+        free.push_back(place_of(lane, kind));
       }
     }
   }
@@ -113,24 +118,33 @@ bool limits_anything(const LaneLimits& limits, LimitKind kind) {
   return limit_of(limits, kind) != limit_of(LaneLimits{}, kind);
 }
 
-int separate_lanes(Lanes lanes) { return lanes == Lanes::Sides ? 1 : 2; }
-
-LaneLimits lane_limits(const CommandLimits& limits, int lane) { return lane == 0 ? limits.first : limits.second; }
-
-void set_lane_limits(CommandLimits& limits, int lane, const LaneLimits& lane_limits) {
-  if (lane == 0) {
-    limits.first = lane_limits;
+LaneLimits& lane_of(CommandLimits& limits, Lane lane) {
+  switch (lane) {
+    case Lane::Speed:
+      return limits.speed;
+    case Lane::YawRate:
+      return limits.yaw_rate;
+    default:
+      return limits.side;
   }
-  if (lane == 1 || limits.lanes == Lanes::Sides) {
-    limits.second = lane_limits;
+}
+
+const LaneLimits& lane_of(const CommandLimits& limits, Lane lane) {
+  switch (lane) {
+    case Lane::Speed:
+      return limits.speed;
+    case Lane::YawRate:
+      return limits.yaw_rate;
+    default:
+      return limits.side;
   }
 }
 
 /// Measured less explained, one column per channel, with the scale and the t weights of each.
 struct LimitedDriveFit::Residuals {
-  Eigen::MatrixXd value;    // [samples, channels]
+  Eigen::MatrixXd value;  // [samples, channels]
   Eigen::Vector2d scale;
-  Eigen::MatrixXd weight;   // [samples, channels]
+  Eigen::MatrixXd weight;  // [samples, channels]
 };
 
 LimitedDriveFit::LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track)
@@ -140,9 +154,8 @@ LimitedDriveFit::LimitedDriveFit(std::span<const DriveRecord> records, const Pri
   }
 }
 
-LimitedDrive LimitedDriveFit::start(Lanes lanes) const {
+LimitedDrive LimitedDriveFit::start() const {
   LimitedDrive drive;
-  drive.limits.lanes = lanes;
   drive.limits.track = track_;
   drive.chain.lag_v = drive.chain.lag_omega = prior_.lag;
   drive.chain.delay_v = drive.chain.delay_omega = prior_.delay;
@@ -154,7 +167,12 @@ LimitedDriveFit::Residuals LimitedDriveFit::residuals(const LimitedDrive& drive)
   Eigen::Index row = 0;
   for (const DriveRecord& record : records_) {
     const InputTrack limited = limited_track(record.commands, drive.limits);
-    const ChainOutput output = chain_output(limited, drive.chain, record.t, record.wheels.front());
+    CommandChain chain = drive.chain;
+    if (!limits_sides(drive.limits)) {
+      chain.gain_v = drive.limits.gain_v;
+      chain.gain_omega = drive.limits.gain_omega;
+    }
+    const ChainOutput output = chain_output(limited, chain, record.t, record.wheels.front());
     for (std::size_t i = 1; i < record.t.size(); ++i, ++row) {
       result.value(row, 0) = record.wheels[i].v - output.v[i];
       result.value(row, 1) = record.wheels[i].omega - output.omega[i];
@@ -170,7 +188,7 @@ LimitedDriveFit::Residuals LimitedDriveFit::residuals(const LimitedDrive& drive)
 
 double LimitedDriveFit::prior_loss(const LimitedDrive& drive) const {
   const CommandChain& chain = drive.chain;
-  return chi(chain.gain_v - 1.0, prior_.gain_std) + chi(chain.gain_omega - 1.0, prior_.gain_std) +
+  return chi(drive.limits.gain_v - 1.0, prior_.gain_std) + chi(drive.limits.gain_omega - 1.0, prior_.gain_std) +
          chi(std::log(chain.lag_v / prior_.lag), prior_.log_std) +
          chi(std::log(chain.lag_omega / prior_.lag), prior_.log_std) +
          chi(std::log(chain.delay_v / prior_.delay), prior_.log_std) +
@@ -318,10 +336,9 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
     const double std = std::sqrt(std::max(covariance(k, k), 0.0)) * std::exp(p[parameter]);
     if (parameter == kTrack) {
       result.track_std = std;
-    } else if (parameter >= kLanes) {
-      const int lane = (parameter - kLanes) / kPerLane;
-      result.std.at(static_cast<std::size_t>(lane)).at(static_cast<std::size_t>((parameter - kLanes) % kPerLane) + 1) =
-          std;
+    } else if (parameter >= kFirstLimit) {
+      const auto place = static_cast<std::size_t>(parameter - kFirstLimit);
+      result.std.at(place / kPerLane).at(place % kPerLane + 1) = std;
     }
   }
   return result;

@@ -20,6 +20,7 @@ from slipwise.calibration.drive import (
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
 from slipwise.calibration.learner import Belief, Learner, Progress, make_learner
+from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, History, Verdict
 from slipwise.calibration.settings import Settings
@@ -28,6 +29,7 @@ from slipwise.calibration.verdict import FEWEST_WINDOWS, UNDETERMINED_RATIO, Jud
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.models import schema
+from slipwise.models.limits import limits_section
 from slipwise.models.model import Model
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -42,6 +44,7 @@ class _Learned:
     tails: dict[float, schema.Tail]
     judgement: Judgement
     verdict: Verdict
+    limits: schema.LimitsSection | None = None
 
 
 def calibrate(
@@ -126,7 +129,12 @@ def _judged(
     judgement = judge(predictions[chosen], plain)
     motion = belief.motion or forecaster.model
     names = tuple(info.name for info in motion.parameters)
-    return _Learned(motion, belief, tails, judgement, give_verdict(judgement, names, belief))
+    verdict = give_verdict(judgement, names, belief)
+    limits = None
+    if isinstance(passing, StructureChoice) and passing.limits is not None:
+        verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(passing.limits)))
+        limits = None if belief.limited is None else limits_section(passing.limits)
+    return _Learned(motion, belief, tails, judgement, verdict, limits)
 
 
 def fit_batch_over(
@@ -150,6 +158,7 @@ def _content(
         dynamics=learned.motion.dynamics,
         clock_offset=learned.motion.clock_offset,
         response=learned.motion.response,
+        limits=learned.limits,
         parameters=_parameters(learned.motion, learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),

@@ -11,10 +11,12 @@ from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet, collect_windows
 from slipwise.calibration.learner import Belief, make_learner
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings
 from slipwise.calibration.wheel_drive import chain_runs, wheel_runs
 
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
+RECENT_WINDOWS = 200  # from which the chain behind newly found limits is learned
 
 
 class CascadePass:
@@ -32,19 +34,31 @@ class CascadePass:
         slip = make_learner(settings, "wheel").fresh()
         self._slip = CausalPass(slip, self._slip_windows, self._see)
         self._changes: list[_core.ChangeTest] = []
+        self._settings = settings
         self._chain = _chain_estimator(settings)
         self._chain_learned = 0
+        self._limited: LimitedDrive | None = None
         self._offset = slip.model.clock_offset
         self.motion = _core.MotionModel.with_response(slip.model.basis, self._offset)
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
         slip = self._slip.belief(self._passed(self._slip_windows, count))
-        until = self._passed(self._chain_windows, count)
-        for i in range(self._chain_learned, until):
-            self._chain.learn(self._chain_windows.track(i), self._chain_windows.segments[i])
-        self._chain_learned = max(self._chain_learned, until)
+        self._learn_chain(self._passed(self._chain_windows, count))
         return self._joined(slip, noise_scale)
+
+    def restart_behind(self, limited: LimitedDrive) -> None:
+        """Put limits in front of the chain, and learn it anew from the most recent of its windows."""
+        self._limited, self._chain = limited, _chain_estimator(self._settings)
+        until = self._chain_learned
+        self._chain_learned = max(until - RECENT_WINDOWS, 0)
+        self._learn_chain(until)
+
+    def _learn_chain(self, until: int) -> None:
+        windows = self._chain_windows
+        for i in range(self._chain_learned, until):
+            self._chain.learn(windows.track(i, self._limited), windows.segments[i])
+        self._chain_learned = max(self._chain_learned, until)
 
     def change(self, i: int) -> _core.ChangeTest:
         """Return the strongest test for a change of ground while window i of the commands passed."""
@@ -76,7 +90,9 @@ class CascadePass:
         prior_std[with_slip], prior_std[of_chain] = slip.prior_std, self._chain.prior_std
         ratio[with_slip] = slip.variance_ratio
         ratio[of_chain] = np.diag(chain.covariance) / np.array(self._chain.prior_std) ** 2
-        return Belief(mean, covariance, noise_scale, prior_std, ratio, slip.weights, self.motion)
+        return Belief(
+            mean, covariance, noise_scale, prior_std, ratio, slip.weights, self.motion, limited=self._limited
+        )
 
 
 def _chain_estimator(settings: Settings) -> _core.FollowingEstimator:

@@ -93,7 +93,10 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 def _predict(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     at = _core.linearize_segment(
-        belief.motion or forecaster.model, belief.mean, targets.track(i), targets.segments[i]
+        belief.motion or forecaster.model,
+        belief.mean,
+        targets.track(i, belief.limited),
+        targets.segments[i],
     )
     draft.pose[i], draft.cascade[i] = at.predicted.vector(), belief.motion is not None
     draft.covariance[i] = _core.prediction_covariance(
@@ -106,7 +109,7 @@ def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i:
     path = _core.integrate_segment(
         belief.motion or forecaster.model,
         belief.mean,
-        targets.track(i),
+        targets.track(i, belief.limited),
         targets.segments[i],
         _core.Integrator.Exact,
     )

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 
 Floats = NDArray[np.float64]
@@ -28,6 +29,7 @@ class Belief:
     weights: Floats  # [B]
     motion: _core.MotionModel | None = None  # whose parameters these are, where it is not the forecaster's
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
+    limited: LimitedDrive | None = None  # the limits in front of the chain, where some were found
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,6 +99,7 @@ class AutoTable(_Section):
     learning_rate: Positive = _AVERAGE.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.share
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
+    limits: bool = True  # in cascade: also look for dead-band, top speed and rate limits of the drive
 
 
 class ChangeTable(_Section):

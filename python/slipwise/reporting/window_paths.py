@@ -36,12 +36,13 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         if inputs is None:
             continue
         track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        limited = contents.calibration.model.driven(track)
         segments = _segments(contents, run, inputs)
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
                 segment = segments.get(_stamp(window.t_start)) or _level_segment(window)
-                paths[window] = _paths(contents, window, _Drive(track, segment, measured))
+                paths[window] = _paths(contents, window, _Drive(track, limited, segment, measured))
     return paths
 
 
@@ -50,6 +51,7 @@ class _Drive:
     """What is known of one window."""
 
     track: _core.InputTrack
+    limited: _core.InputTrack  # what the model's limits leave of it
     segment: _core.Segment
     measured: Floats
 
@@ -63,7 +65,9 @@ def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPat
     return WindowPaths(
         measured=drive.measured,
         plain=_core.integrate_segment(plain_model, np.empty(0), drive.track, drive.segment, exact).poses,
-        predicted=_core.integrate_segment(model.motion, parameters, drive.track, drive.segment, exact).poses,
+        predicted=_core.integrate_segment(
+            model.motion, parameters, drive.limited, drive.segment, exact
+        ).poses,
         causal=known is not None,
     )
 

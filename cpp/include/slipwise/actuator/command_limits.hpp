@@ -3,7 +3,6 @@
 // section 4).
 #pragma once
 
-#include <cstdint>
 #include <limits>
 
 #include "slipwise/actuator/input_track.hpp"
@@ -20,27 +19,32 @@ struct LaneLimits {
   bool operator==(const LaneLimits&) const = default;
 };
 
-/// What the two lanes are: speed and yaw rate, or the left and the right side of a skid-steered or differential drive.
-enum class Lanes : std::uint8_t { Channels, Sides };
-
+/// Limits of the commands, as a controller has them, and then of the two sides of a skid-steered or differential drive,
+/// as its motors have them. Both sides are built alike.
 struct CommandLimits {
-  Lanes lanes = Lanes::Channels;
-  LaneLimits first = {};   ///< of the speed, or of the left side
-  LaneLimits second = {};  ///< of the yaw rate, or of the right side
-  double track = 1.0;      ///< [m] between the sides; channels do not use it
+  LaneLimits speed = {};
+  LaneLimits yaw_rate = {};
+  LaneLimits side = {};     ///< of each side's speed, v -+ omega * track / 2
+  double track = 1.0;       ///< [m] between the sides
+  double gain_v = 1.0;      ///< of the speed that is asked of the sides over the limited command [-]
+  double gain_omega = 1.0;  ///< of the yaw rate [-]
 
   bool operator==(const CommandLimits&) const = default;
 };
 
 /// Whether nothing is limited.
 bool unlimited(const CommandLimits& limits);
+/// Whether the sides are limited; if not, track and gains have no effect.
+bool limits_sides(const CommandLimits& limits);
 
-/// The twist as its two lanes, and back.
-struct LanePair {
-  double first, second;
+/// The commands behind the limits of speed and yaw rate alone, in front of those of the sides.
+CommandLimits channel_limits(const CommandLimits& limits);
+
+/// What a twist asks of the left and the right side.
+struct SideSpeeds {
+  double left, right;
 };
-LanePair to_lanes(const CommandLimits& limits, double v, double omega);
-BodyTwist from_lanes(const CommandLimits& limits, const LanePair& lanes, double vy);
+SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist);
 
 inline constexpr double kRampPiece = 0.02;  ///< [s]
 

@@ -2,6 +2,7 @@
 // Which limits the wheel speeds show: a profile of each over candidates from the data, the best taken one by one.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct LimitSearchSettings {
 
 /// A limit that the data show.
 struct FoundLimit {
-  int lane;  ///< 0: speed, or both sides; 1: yaw rate
+  Lane lane;
   LimitKind kind;
   double value;  ///< [m/s, rad/s, m/s^2 or rad/s^2]
   double std;    ///< of the value
@@ -26,19 +27,19 @@ struct FoundLimit {
 
 /// What the commands reached in a lane: beyond it no limit can show.
 struct LaneReach {
-  double slowest;  ///< command that is not zero
-  double fastest;  ///< command
-  double step;     ///< from one command to the next
+  double slowest = 0.0;  ///< command that is not zero
+  double fastest = 0.0;  ///< command
+  double step = 0.0;     ///< from one command to the next
 };
 
 struct LimitSearch {
   LimitedDrive drive;             ///< with the found limits alone
   std::vector<FoundLimit> found;  ///< empty: the data show none
-  double track_std;               ///< [m] of the track between the sides; zero for channels
-  std::vector<LaneReach> reach;   ///< per separate lane
+  double track_std;               ///< [m] of the track between the sides; zero where these have no limits
+  std::array<LaneReach, kLanes.size()> reach;
 };
 
-/// The limits of both channels or of both sides, whichever explain the wheels better.
+/// The limits that the wheels show.
 /// \throws std::invalid_argument when there are fewer than 20 twists to explain.
 LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSettings& prior, double track,
                         const LimitSearchSettings& settings);

@@ -31,16 +31,17 @@ double limit_of(const LaneLimits& limits, LimitKind kind);
 /// Whether it limits anything.
 bool limits_anything(const LaneLimits& limits, LimitKind kind);
 
-/// Limits and the chain behind them: gain, delay and lag per channel.
+/// What limits belong to: the commanded speed, the commanded yaw rate, or the two sides, which share them.
+enum class Lane : std::uint8_t { Speed, YawRate, Side };
+inline constexpr std::array kLanes{Lane::Speed, Lane::YawRate, Lane::Side};
+LaneLimits& lane_of(CommandLimits& limits, Lane lane);
+const LaneLimits& lane_of(const CommandLimits& limits, Lane lane);
+
+/// Limits and the chain behind them: delay and lag per channel. Its gain stands with the limits, in front of the sides.
 struct LimitedDrive {
   CommandLimits limits;
   CommandChain chain;
 };
-
-/// The two sides of a drive are built alike and share their limits; channels have limits of their own.
-int separate_lanes(Lanes lanes);
-LaneLimits lane_limits(const CommandLimits& limits, int lane);
-void set_lane_limits(CommandLimits& limits, int lane, const LaneLimits& lane_limits);
 
 /// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
 struct DriveLoss {
@@ -53,14 +54,15 @@ class LimitedDriveFit {
   /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
   LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track);
 
-  LimitedDrive start(Lanes lanes) const;
+  /// No limits, and the chain that is believed in before any data.
+  LimitedDrive start() const;
   DriveLoss loss(const LimitedDrive& drive) const;
   /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held.
   LimitedDrive refine(const LimitedDrive& drive, int iterations) const;
   /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
   /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
-    std::array<std::array<double, kLimitKinds.size()>, 2> std;
+    std::array<std::array<double, kLimitKinds.size()>, kLanes.size()> std;  ///< by lane and kind
     double track_std;
   };
   Spread spread(const LimitedDrive& drive) const;
