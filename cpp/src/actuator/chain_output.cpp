@@ -23,7 +23,7 @@ std::vector<double> follow(const InputTrack& inputs, const Channel& channel, std
   std::size_t next = inputs.count_until(now - channel.delay);
   double held = next == 0 ? 0.0 : channel.gain * inputs.sample(next - 1).*channel.input;
   const auto go_to = [&](double then) {
-    output = lag_step(output, held, channel.lag, then - now).output;
+    output = lag_output(output, held, channel.lag, then - now);
     now = then;
   };
   for (const double t : times) {

@@ -16,16 +16,25 @@ constexpr std::size_t kFewestSamples = 20;
 constexpr int kMostLimits = 8;
 constexpr int kShortRefinement = 4;
 constexpr int kLongRefinement = 15;
-constexpr double kPlateau = 4.0;     // of -2 log likelihood: a dead-band within two standard deviations
-constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
+constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
+constexpr double kNear = 0.1;         // of a dead-band; which commands it blocks may turn on what they ask for
+constexpr double kHopeless = 50.0;    // the same; polishing does not gain as much
+constexpr double kPlateau = 4.0;      // of -2 log likelihood: a dead-band within two standard deviations
+constexpr double kRateStride = 0.2;   // [s] over which measured accelerations are taken
 constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
 constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
 constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
 constexpr double kLagFactor = 0.4;
 
+/// A command in a lane.
+struct Asked {
+  double speed;
+  SideCommand of_side;  // of the sides alone
+};
+
 /// Sorted sizes of what is asked of a lane and what was measured of it.
 struct LaneSizes {
-  std::vector<double> commands;  // not zero, distinct
+  std::vector<Asked> commands;  // not zero, distinct
   std::vector<double> speeds;
   std::vector<double> rates;
   double step = 0.0;
@@ -51,11 +60,12 @@ CommandLimits of_wheels(const CommandLimits& limits) { return {.track = limits.t
 void add_commands(LaneSizes& sizes, const CommandLimits& limits, Lane lane, const InputTrack& commands) {
   std::array<double, 2> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    const std::array<double, 2> now = in_lane(limits, lane, commands.sample(i));
+    const BodyTwist twist = commands.sample(i);
+    const std::array<double, 2> now = in_lane(limits, lane, twist);
     for (std::size_t side = 0; side < now.size(); ++side) {
       sizes.step = std::max(sizes.step, std::abs(now.at(side) - before.at(side)));
       if (now.at(side) != 0.0) {
-        sizes.commands.push_back(std::abs(now.at(side)));
+        sizes.commands.push_back({std::abs(now.at(side)), {twist.v, side == 0 ? -twist.omega : twist.omega}});
       }
     }
     before = now;
@@ -86,10 +96,10 @@ LaneSizes lane_sizes(std::span<const DriveRecord> records, const CommandLimits& 
                  behind ? limited_track(record.commands, channel_limits(limits)) : record.commands);
     add_wheels(sizes, of_wheels(limits), lane, record);
   }
-  for (auto* values : {&sizes.commands, &sizes.speeds, &sizes.rates}) {
-    std::ranges::sort(*values);
-  }
-  const auto repeated = std::ranges::unique(sizes.commands);
+  std::ranges::sort(sizes.commands, {}, &Asked::speed);
+  std::ranges::sort(sizes.speeds);
+  std::ranges::sort(sizes.rates);
+  const auto repeated = std::ranges::unique(sizes.commands, {}, &Asked::speed);
   sizes.commands.erase(repeated.begin(), repeated.end());
   return sizes;
 }
@@ -120,7 +130,7 @@ class Search {
     }
     if (!unlimited(best.drive.limits)) {
       best = polished(best);
-      while (drop_idle(best)) {
+      while (drop_idle(best) || move_one(best)) {
       }
     }
     return best;
@@ -136,8 +146,8 @@ class Search {
         if (!limits_anything(limits, kind)) {
           continue;
         }
-        const double std =
-            kind == LimitKind::DeadBand ? plateau_std(best, lane) : spread.std.at(static_cast<std::size_t>(lane)).at(k);
+        const double std = kind == LimitKind::DeadBand ? dead_band_std(best, lane, spread.to_sides)
+                                                       : spread.std.at(static_cast<std::size_t>(lane)).at(k);
         result.push_back({lane, kind, limit_of(limits, kind), std, gain_of(best, without(best, lane, kind))});
       }
     }
@@ -192,6 +202,9 @@ class Search {
       for (const LimitKind kind : kinds) {
         limit_of(lane_of(drive.limits, lane), kind) = value;
       }
+      if (lane == Lane::Side && kinds.front() == LimitKind::DeadBand) {
+        set_edge(drive, sizes.commands);
+      }
       for (const LimitedDrive& candidate : beside(kinds.front(), drive)) {
         const Scored trial = scored(candidate);
         if (!best || trial.loss.total < best->loss.total) {
@@ -229,7 +242,7 @@ class Search {
     } else if (kind == LimitKind::Top) {
       for (const double share : kTopQuantiles) {
         const double top = quantile(sizes.speeds, share);
-        if (top > 0.0 && top < sizes.commands.back()) {
+        if (top > 0.0 && top < sizes.commands.back().speed) {
           values.push_back(top);
         }
       }
@@ -242,12 +255,25 @@ class Search {
   }
 
   /// A dead-band that blocks command `at` and no larger one.
-  static double between(const std::vector<double>& commands, std::size_t at) {
-    return 0.5 * (commands[at] + commands[at + 1]);
+  static double between(const std::vector<Asked>& commands, std::size_t at) {
+    return 0.5 * (commands[at].speed + commands[at + 1].speed);
   }
 
-  LimitedDrive with_dead_band(LimitedDrive drive, Lane lane, double value) const {
-    lane_of(drive.limits, lane).dead_band = value;
+  /// Remembers between which commands the sides' dead-band lies.
+  static void set_edge(LimitedDrive& drive, const std::vector<Asked>& commands) {
+    const auto passed = std::ranges::lower_bound(commands, drive.limits.side.dead_band, {}, &Asked::speed);
+    drive.edge.reset();
+    if (passed != commands.begin() && passed != commands.end()) {
+      drive.edge = {std::prev(passed)->of_side, passed->of_side};
+    }
+  }
+
+  static LimitedDrive with_dead_band(LimitedDrive drive, Lane lane, const std::vector<Asked>& commands,
+                                     std::ptrdiff_t at) {
+    lane_of(drive.limits, lane).dead_band = between(commands, static_cast<std::size_t>(at));
+    if (lane == Lane::Side) {
+      set_edge(drive, commands);
+    }
     return drive;
   }
 
@@ -273,20 +299,20 @@ class Search {
   }
 
   Scored with_best_dead_band(const Scored& start, Lane lane) const {
-    const std::vector<double> commands = lane_sizes(records_, start.drive.limits, lane).commands;
+    const std::vector<Asked> commands = lane_sizes(records_, start.drive.limits, lane).commands;
     if (commands.size() < 2) {
       return start;
     }
     Scored best = start;
     const auto last = static_cast<std::ptrdiff_t>(commands.size()) - 2;
-    auto centre =
-        std::ranges::lower_bound(commands, lane_of(start.drive.limits, lane).dead_band) - commands.begin() - 1;
+    auto centre = std::ranges::lower_bound(commands, lane_of(start.drive.limits, lane).dead_band, {}, &Asked::speed) -
+                  commands.begin() - 1;
     for (std::ptrdiff_t stride = std::max<std::ptrdiff_t>(last / 8, 1);;
          stride = std::max<std::ptrdiff_t>(stride / 3, 1)) {
       std::ptrdiff_t found = centre;
       for (std::ptrdiff_t k = -3; k <= 3; ++k) {
         const std::ptrdiff_t at = std::clamp<std::ptrdiff_t>(centre + k * stride, 0, last);
-        const Scored trial = scored(with_dead_band(start.drive, lane, between(commands, static_cast<std::size_t>(at))));
+        const Scored trial = scored(with_dead_band(start.drive, lane, commands, at));
         if (trial.loss.total < best.loss.total) {
           best = trial;
           found = at;
@@ -300,13 +326,13 @@ class Search {
   }
 
   /// Dead-bands between two neighbouring commands are all alike, and nearly so beyond them: half that width as of a
-  /// uniform distribution.
-  double plateau_std(const Scored& best, Lane lane) const {
-    const std::vector<double> commands = lane_sizes(records_, best.drive.limits, lane).commands;
+  /// uniform distribution. What those commands ask of the sides is not known exactly either.
+  double dead_band_std(const Scored& best, Lane lane, const Eigen::Matrix3d& to_sides) const {
+    const std::vector<Asked> commands = lane_sizes(records_, best.drive.limits, lane).commands;
     const double value = lane_of(best.drive.limits, lane).dead_band;
-    const auto above = std::ranges::lower_bound(commands, value) - commands.begin();
+    const auto above = std::ranges::lower_bound(commands, value, {}, &Asked::speed) - commands.begin();
     const auto alike = [&](std::ptrdiff_t at) {
-      const LimitedDrive drive = with_dead_band(best.drive, lane, between(commands, static_cast<std::size_t>(at)));
+      const LimitedDrive drive = with_dead_band(best.drive, lane, commands, at);
       return fit_.loss(drive).total - best.loss.total < kPlateau * best.loss.inflation;
     };
     std::ptrdiff_t low = above - 1;
@@ -317,15 +343,69 @@ class Search {
     while (high + 1 < std::ssize(commands) && alike(high)) {
       ++high;
     }
-    const double lower = low >= 0 ? commands[static_cast<std::size_t>(low)] : 0.0;
-    const double upper = high < std::ssize(commands) ? commands[static_cast<std::size_t>(high)] : value;
-    return std::max(upper - value, value - lower) / std::sqrt(3.0);
+    const double lower = low >= 0 ? commands[static_cast<std::size_t>(low)].speed : 0.0;
+    const double upper = high < std::ssize(commands) ? commands[static_cast<std::size_t>(high)].speed : value;
+    const double plateau = std::max(upper - value, value - lower) / std::sqrt(3.0);
+    return std::hypot(plateau, lane == Lane::Side ? side_std(best.drive.limits, lower, upper, to_sides) : 0.0);
+  }
+
+  /// How uncertain it is what the commands ask of a side that ask for about `lower` to `upper`.
+  double side_std(const CommandLimits& limits, double lower, double upper, const Eigen::Matrix3d& to_sides) const {
+    double variance = 0.0;
+    for (const DriveRecord& record : records_) {
+      const InputTrack asked = limited_track(record.commands, channel_limits(limits));
+      for (std::size_t i = 0; i < asked.size(); ++i) {
+        const BodyTwist twist = asked.sample(i);
+        const SideSpeeds sides = side_speeds(limits, twist);
+        for (const double sign : {-1.0, 1.0}) {
+          const double speed = std::abs(sign < 0.0 ? sides.left : sides.right);
+          if (speed > (1.0 - kNear) * lower && speed < (1.0 + kNear) * upper) {
+            const double half = 0.5 * sign * twist.omega * limits.track;
+            const Eigen::Vector3d slope(twist.v, half, half * limits.gain_omega);
+            variance = std::max(variance, slope.dot(to_sides * slope));
+          }
+        }
+      }
+    }
+    return std::sqrt(variance);
   }
 
   Scored without(const Scored& all, Lane lane, LimitKind kind) const {
     LimitedDrive drive = all.drive;
     limit_of(lane_of(drive.limits, lane), kind) = limit_of(LaneLimits{}, kind);
     return refined(drive, kShortRefinement);
+  }
+
+  /// Moves a limit to another lane, where it explains more; whether one was moved.
+  bool move_one(Scored& best) const {
+    for (const Lane from : kLanes) {
+      for (const LimitKind kind : kLimitKinds) {
+        if (!limits_anything(lane_of(best.drive.limits, from), kind)) {
+          continue;
+        }
+        for (const Lane to : kLanes) {
+          if (limits_anything(lane_of(best.drive.limits, to), kind)) {
+            continue;
+          }
+          Scored rest = best;
+          limit_of(lane_of(rest.drive.limits, from), kind) = limit_of(LaneLimits{}, kind);
+          const std::optional<Scored> moved = profile(rest, to, {kind}, lane_sizes(records_, rest.drive.limits, to));
+          if (!moved) {
+            continue;
+          }
+          Scored trial = refined(moved->drive, kShortRefinement);
+          if (trial.loss.total - best.loss.total > kHopeless) {
+            continue;
+          }
+          trial = polished(trial);
+          if (best.loss.total - trial.loss.total > kWorthMoving) {
+            best = trial;
+            return true;
+          }
+        }
+      }
+    }
+    return false;
   }
 
   /// Drops the limit that gains least, if that is not enough; whether one was dropped.
@@ -383,7 +463,8 @@ LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSetting
   for (std::size_t k = 0; k < kLanes.size(); ++k) {
     const LaneSizes sizes = lane_sizes(records, best.drive.limits, kLanes.at(k));
     const auto& commands = sizes.commands;
-    result.reach.at(k) = commands.empty() ? LaneReach{} : LaneReach{commands.front(), commands.back(), sizes.step};
+    result.reach.at(k) =
+        commands.empty() ? LaneReach{} : LaneReach{commands.front().speed, commands.back().speed, sizes.step};
   }
   CommandLimits& limits = result.drive.limits;
   if (!limits_sides(limits)) {  // the chain says the gain, and nobody needs the track

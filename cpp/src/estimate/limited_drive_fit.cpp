@@ -62,6 +62,10 @@ LimitedDrive with_parameters(LimitedDrive drive, const Parameters& p) {
       limit_of(lane_of(drive.limits, kLanes.at(lane)), kLimitKinds.at(kind)) = std::exp(p[place_of(lane, kind)]);
     }
   }
+  if (drive.edge && drive.limits.side.dead_band > 0.0) {
+    const auto& [blocked, passed] = *drive.edge;
+    drive.limits.side.dead_band = 0.5 * (speed_of_side(drive.limits, blocked) + speed_of_side(drive.limits, passed));
+  }
   return drive;
 }
 
@@ -140,6 +144,10 @@ const LaneLimits& lane_of(const CommandLimits& limits, Lane lane) {
   }
 }
 
+double speed_of_side(const CommandLimits& limits, const SideCommand& command) {
+  return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.track);
+}
+
 /// Measured less explained, one column per channel, with the scale and the t weights of each.
 struct LimitedDriveFit::Residuals {
   Eigen::MatrixXd value;  // [samples, channels]
@@ -162,22 +170,36 @@ LimitedDrive LimitedDriveFit::start() const {
   return drive;
 }
 
-LimitedDriveFit::Residuals LimitedDriveFit::residuals(const LimitedDrive& drive) const {
-  Residuals result{.value = Eigen::MatrixXd(static_cast<Eigen::Index>(samples_), kOutputs), .scale = {}, .weight = {}};
-  Eigen::Index row = 0;
+std::vector<InputTrack> LimitedDriveFit::limited(const CommandLimits& limits) const {
+  std::vector<InputTrack> tracks;
+  tracks.reserve(records_.size());
   for (const DriveRecord& record : records_) {
-    const InputTrack limited = limited_track(record.commands, drive.limits);
-    CommandChain chain = drive.chain;
-    if (!limits_sides(drive.limits)) {
-      chain.gain_v = drive.limits.gain_v;
-      chain.gain_omega = drive.limits.gain_omega;
-    }
-    const ChainOutput output = chain_output(limited, chain, record.t, record.wheels.front());
+    tracks.push_back(limited_track(record.commands, limits));
+  }
+  return tracks;
+}
+
+Eigen::MatrixXd LimitedDriveFit::errors(const LimitedDrive& drive, std::span<const InputTrack> limited) const {
+  Eigen::MatrixXd result(static_cast<Eigen::Index>(samples_), kOutputs);
+  CommandChain chain = drive.chain;
+  if (!limits_sides(drive.limits)) {
+    chain.gain_v = drive.limits.gain_v;
+    chain.gain_omega = drive.limits.gain_omega;
+  }
+  Eigen::Index row = 0;
+  for (std::size_t k = 0; k < records_.size(); ++k) {
+    const DriveRecord& record = records_[k];
+    const ChainOutput output = chain_output(limited[k], chain, record.t, record.wheels.front());
     for (std::size_t i = 1; i < record.t.size(); ++i, ++row) {
-      result.value(row, 0) = record.wheels[i].v - output.v[i];
-      result.value(row, 1) = record.wheels[i].omega - output.omega[i];
+      result(row, 0) = record.wheels[i].v - output.v[i];
+      result(row, 1) = record.wheels[i].omega - output.omega[i];
     }
   }
+  return result;
+}
+
+LimitedDriveFit::Residuals LimitedDriveFit::residuals(const LimitedDrive& drive) const {
+  Residuals result{.value = errors(drive, limited(drive.limits)), .scale = {}, .weight = {}};
   result.weight.resize(result.value.rows(), kOutputs);
   for (int c = 0; c < kOutputs; ++c) {
     result.scale[c] = likeliest_scale(result.value.col(c));
@@ -214,11 +236,14 @@ DriveLoss LimitedDriveFit::loss(const LimitedDrive& drive) const {
 Eigen::MatrixXd LimitedDriveFit::jacobian(const LimitedDrive& drive, const std::vector<int>& free,
                                           const Residuals& at) const {
   const Parameters p = parameters_of(drive);
+  const std::vector<InputTrack> tracks = limited(drive.limits);  // the same for all that stands behind the limits
   Eigen::MatrixXd result(at.value.size(), free.size());
   for (std::size_t k = 0; k < free.size(); ++k) {
     Parameters moved = p;
     moved[free[k]] += kDifference;
-    const Eigen::MatrixXd change = residuals(with_parameters(drive, moved)).value - at.value;
+    const LimitedDrive other = with_parameters(drive, moved);
+    const bool behind = free[k] < kChain && (free[k] >= 2 || !limits_sides(drive.limits));
+    const Eigen::MatrixXd change = errors(other, behind ? tracks : limited(other.limits)) - at.value;
     result.col(static_cast<Eigen::Index>(k)) = change.reshaped() * (-1.0 / kDifference);
   }
   return result;
@@ -304,6 +329,7 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
     bread(k, k) = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_).precision + 1e-12;
   }
   Eigen::MatrixXd meat = bread;
+  Eigen::MatrixXd alone = bread;  // the meat, if no residual knew of another
   const Eigen::Index rows = r.value.rows();
   for (int c = 0; c < kOutputs; ++c) {
     const Eigen::ArrayXd u = r.value.col(c).array() / r.scale[c];
@@ -312,6 +338,7 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
         ((kDof + 1.0) * (kDof - u.square()) / (kDof + u.square()).square()).mean() / (r.scale[c] * r.scale[c]);
     const auto mine = slope.middleRows(c * rows, rows);
     bread += std::max(curvature, 0.0) * mine.transpose() * mine;
+    alone += score.square().mean() * mine.transpose() * mine;
     Eigen::Index row = 0;
     for (const DriveRecord& record : records_) {
       const auto end = row + static_cast<Eigen::Index>(record.t.size()) - 1;
@@ -329,11 +356,22 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
     }
   }
   const Eigen::MatrixXd inverse = bread.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  const Eigen::MatrixXd covariance = inverse * meat * inverse;
-  Spread result{.std = {}, .track_std = 0.0};
+  // A limit may show in a few stretches alone, which the fit then follows: their residuals are too small to tell.
+  const Eigen::MatrixXd unlike = inverse * alone * inverse;
+  const Eigen::VectorXd variance = (inverse * meat * inverse).diagonal().cwiseMax(unlike.diagonal());
+  Spread result{.std = {}, .track_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
+  constexpr std::array kToSides{0, 1, kTrack};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const auto at = [&](Eigen::Index k) { return std::ranges::find(free, kToSides.at(static_cast<std::size_t>(k))); };
+      if (at(i) != free.end() && at(j) != free.end()) {
+        result.to_sides(i, j) = unlike(at(i) - free.begin(), at(j) - free.begin());
+      }
+    }
+  }
   for (Eigen::Index k = 0; k < size; ++k) {
     const int parameter = free[static_cast<std::size_t>(k)];
-    const double std = std::sqrt(std::max(covariance(k, k), 0.0)) * std::exp(p[parameter]);
+    const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
     if (parameter == kTrack) {
       result.track_std = std;
     } else if (parameter >= kFirstLimit) {

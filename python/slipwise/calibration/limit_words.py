@@ -11,6 +11,8 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
     """Return one sentence for each kind of limit that no lane shows; beyond what was commanded none can."""
     found = {limit.kind for limit in search.found}
     speed, turn = search.reach[0], search.reach[1]
+    if speed.fastest == 0.0 and turn.fastest == 0.0:
+        return ("No limit of the drive shows: it was commanded to stand still.",)
     kinds = _core.LimitKind
     sentences = {
         kinds.DeadBand: "No dead-band shows: command less than"
@@ -25,4 +27,5 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
 
 
 def _pair(speed: float, turn: float) -> str:
-    return f"{number_text(speed, 2)} m/s or {number_text(turn, 2)} rad/s"
+    reached = ((speed, "m/s"), (turn, "rad/s"))
+    return " or ".join(f"{number_text(value, 2)} {unit}" for value, unit in reached if value > 0.0)

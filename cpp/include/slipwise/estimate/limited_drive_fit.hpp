@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,10 +38,19 @@ inline constexpr std::array kLanes{Lane::Speed, Lane::YawRate, Lane::Side};
 LaneLimits& lane_of(CommandLimits& limits, Lane lane);
 const LaneLimits& lane_of(const CommandLimits& limits, Lane lane);
 
+/// A command as one side sees it: its speed is |gain_v * v + gain_omega * omega * track / 2|.
+struct SideCommand {
+  double v, omega;
+};
+double speed_of_side(const CommandLimits& limits, const SideCommand& command);
+
 /// Limits and the chain behind them: delay and lag per channel. Its gain stands with the limits, in front of the sides.
 struct LimitedDrive {
   CommandLimits limits;
   CommandChain chain;
+  /// The fastest command that the sides' dead-band blocks and the slowest that it lets through: while track and gains
+  /// are fitted, it stays between them.
+  std::optional<std::array<SideCommand, 2>> edge = {};
 };
 
 /// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
@@ -63,7 +73,8 @@ class LimitedDriveFit {
   /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
     std::array<std::array<double, kLimitKinds.size()>, kLanes.size()> std;  ///< by lane and kind
-    double track_std;
+    double track_std;                                                       ///< [m]
+    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log track
   };
   Spread spread(const LimitedDrive& drive) const;
 
@@ -71,6 +82,9 @@ class LimitedDriveFit {
 
  private:
   struct Residuals;
+  std::vector<InputTrack> limited(const CommandLimits& limits) const;
+  /// Measured less explained [samples, speed and yaw rate], with the commands of each record limited.
+  Eigen::MatrixXd errors(const LimitedDrive& drive, std::span<const InputTrack> limited) const;
   Residuals residuals(const LimitedDrive& drive) const;
   Eigen::MatrixXd jacobian(const LimitedDrive& drive, const std::vector<int>& free, const Residuals& at) const;
   double prior_loss(const LimitedDrive& drive) const;
