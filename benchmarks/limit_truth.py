@@ -26,7 +26,7 @@ from slipwise import _core
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.simulation import dull_drive, steps_drive
 
-SECONDS = 60.0
+SECONDS = 120.0
 FAR = _core.LaneLimits(0.0, 4.0, 30.0, 30.0)  # beyond what a dull drive shows
 CASES = {
     "sides": (SIDES, steps_drive),

@@ -16,7 +16,7 @@ constexpr double kDof = 4.0;          // of the residuals
 constexpr double kLeastScale = 1e-3;  // [m/s, rad/s]; encoders are no finer
 constexpr int kScaleSteps = 6;        // of finding the likeliest scale
 constexpr double kTrackLogStd = 0.5;  // of the track between the sides about the one given
-constexpr double kDifference = 1e-3;  // of parameters, for derivatives
+constexpr double kDifference = 1e-2;  // of parameters, for derivatives; the pieces of ramps make smaller ones rough
 constexpr double kMostInflation = 100.0;
 constexpr double kSecondsAlike = 1.0;  // residuals further apart are taken as independent
 constexpr int kOutputs = 2;
@@ -311,7 +311,7 @@ LimitedDrive LimitedDriveFit::refine(const LimitedDrive& drive, int iterations) 
       }
       damping *= 8.0;
     }
-    if (before - least < 0.05) {
+    if (before - least < 0.02) {
       break;
     }
   }

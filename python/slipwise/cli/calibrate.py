@@ -118,6 +118,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
         show_alarms,
         show_files,
         show_left_out,
+        show_limits,
         show_notes,
         show_parameters,
         show_verdict,
@@ -134,6 +135,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     if calibration.history is not None:
         show_alarms(out, calibration.history)
     show_parameters(out, content.parameters)
+    show_limits(out, content.limits)
     show_verdict(out, calibration.verdict)
     show_files(out, files)
 

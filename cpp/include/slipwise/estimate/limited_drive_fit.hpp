@@ -59,6 +59,11 @@ struct DriveLoss {
   double inflation;  ///< by how much that overstates the evidence, since residuals next to each other are alike
 };
 
+struct ScoredDrive {
+  LimitedDrive drive;
+  DriveLoss loss;
+};
+
 class LimitedDriveFit {
  public:
   /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
@@ -67,6 +72,7 @@ class LimitedDriveFit {
   /// No limits, and the chain that is believed in before any data.
   LimitedDrive start() const;
   DriveLoss loss(const LimitedDrive& drive) const;
+  ScoredDrive scored(const LimitedDrive& drive) const { return {drive, loss(drive)}; }
   /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held.
   LimitedDrive refine(const LimitedDrive& drive, int iterations) const;
   /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
