@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/actuator.
+#include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "slipwise/actuator/chain_output.hpp"
 #include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_track.hpp"
 
 namespace nb = nanobind;
@@ -22,7 +26,18 @@ void bind_actuator(nb::module_& m) {
           },
           "t"_a, "v"_a, "vy"_a, "omega"_a)
       .def("__len__", &InputTrack::size)
-      .def("at", &InputTrack::at, "t"_a, "The twist held at time t [s].");
+      .def("at", &InputTrack::at, "t"_a, "The twist held at time t [s].")
+      .def(
+          "rows",
+          [](const InputTrack& track) {
+            Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor> rows(track.size(), 4);
+            for (std::size_t i = 0; i < track.size(); ++i) {
+              const BodyTwist twist = track.sample(i);
+              rows.row(static_cast<Eigen::Index>(i)) << track.time(i), twist.v, twist.vy, twist.omega;
+            }
+            return rows;
+          },
+          "All samples, [N, 4]: t [s], v [m/s], vy [m/s], omega [rad/s].");
   nb::class_<CommandChain>(m, "CommandChain", "Gain, delay, lags [s] per channel, and clock offset [s].")
       .def(
           "__init__",
@@ -46,6 +61,45 @@ void bind_actuator(nb::module_& m) {
       .def_ro("slow_share_omega", &CommandChain::slow_share_omega)
       .def_ro("slow_lag_v", &CommandChain::slow_lag_v)
       .def_ro("slow_lag_omega", &CommandChain::slow_lag_omega);
+  nb::class_<LaneLimits>(m, "LaneLimits", "Dead-band, top, acceleration and braking of one lane of the drive.")
+      .def(
+          "__init__",
+          [](LaneLimits* self, double dead_band, double top, double acceleration, double braking) {
+            new (self) LaneLimits{dead_band, top, acceleration, braking};
+          },
+          "dead_band"_a, "top"_a, "acceleration"_a, "braking"_a)
+      .def_ro("dead_band", &LaneLimits::dead_band)
+      .def_ro("top", &LaneLimits::top)
+      .def_ro("acceleration", &LaneLimits::acceleration)
+      .def_ro("braking", &LaneLimits::braking);
+  nb::class_<CommandLimits>(m, "CommandLimits", "Limits of the commands, and then of the sides `track` [m] apart.")
+      .def(
+          "__init__",
+          [](CommandLimits* self, const LaneLimits& speed, const LaneLimits& yaw_rate, const LaneLimits& side,
+             double track, double gain_v,
+             double gain_omega) { new (self) CommandLimits{speed, yaw_rate, side, track, gain_v, gain_omega}; },
+          "speed"_a, "yaw_rate"_a, "side"_a, "track"_a, "gain_v"_a, "gain_omega"_a)
+      .def_ro("speed", &CommandLimits::speed)
+      .def_ro("yaw_rate", &CommandLimits::yaw_rate)
+      .def_ro("side", &CommandLimits::side)
+      .def_ro("track", &CommandLimits::track)
+      .def_ro("gain_v", &CommandLimits::gain_v)
+      .def_ro("gain_omega", &CommandLimits::gain_omega);
+  m.def("limited_track", &limited_track, "commands"_a, "limits"_a, "longest_piece"_a,
+        "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");
+  m.attr("RAMP_PIECE") = kRampPiece;
+  m.def(
+      "chain_output",
+      [](const InputTrack& inputs, const CommandChain& chain, Array times, const BodyTwist& initial) {
+        const ChainOutput output =
+            chain_output(inputs, chain, std::span<const double>(times.data(), times.size()), initial);
+        Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> rows(times.size(), 2);
+        for (std::size_t i = 0; i < times.size(); ++i) {
+          rows.row(static_cast<Eigen::Index>(i)) << output.v[i], output.omega[i];
+        }
+        return rows;
+      },
+      "inputs"_a, "chain"_a, "times"_a, "initial"_a, "The drive's speed and yaw rate at the times, [N, 2].");
 }
 
 }  // namespace slipwise::bindings

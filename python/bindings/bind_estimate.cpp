@@ -288,6 +288,7 @@ void bind_estimate(nb::module_& m) {
       .def_ro("nis", &ScoredSegment::nis);
   nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")
       .def(nb::init<const NoiseSettings&>(), "settings"_a)
+      .def(nb::init<const PredictiveScore&>(), "other"_a, "A copy.")
       .def("score", &PredictiveScore::score, "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
       .def_prop_ro("noise_scale", &PredictiveScore::noise_scale);
   nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighed by how well they predict.")

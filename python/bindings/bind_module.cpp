@@ -20,4 +20,5 @@ NB_MODULE(_core, m) {
   bind_coloured_slip(m);
   bind_regression(m);
   bind_estimators(m);
+  bind_limits(m);
 }

@@ -63,7 +63,7 @@ def predict(
         raise SettingsError("the start must not lie before the first command", advice="give earlier commands")
     if initial is not None and not np.isfinite(initial).all():
         raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
-    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
     known = _known_drive(begin, initial)
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]

@@ -19,6 +19,7 @@ from slipwise.calibration.forecast import Forecaster, final_tail, forecast, fore
 from slipwise.calibration.identifiability import UNDETERMINED_RATIO
 from slipwise.calibration.learner import Belief, Progress
 from slipwise.calibration.learning_run import LearningRun, start_learning
+from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, Verdict
 from slipwise.calibration.settings import Settings
@@ -28,6 +29,7 @@ from slipwise.calibration.wheel_drive import has_wheels
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
 from slipwise.models import schema
+from slipwise.models.limits import limits_section
 from slipwise.models.model import Model
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -41,6 +43,7 @@ class _Learned:
     tails: dict[float, schema.Tail]
     judgement: Judgement
     verdict: Verdict
+    limits: schema.LimitsSection | None = None
 
 
 def calibrate(
@@ -118,7 +121,12 @@ def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learne
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
     verdict = give_verdict(judgement, belief, wheels_logged=has_wheels(windows.drive))
-    return _Learned(belief, tails, judgement, verdict)
+    search = run.limits()
+    if search is None:
+        return _Learned(belief, tails, judgement, verdict)
+    verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(search)))
+    limits = None if belief.limited is None else limits_section(search)
+    return _Learned(belief, tails, judgement, verdict, limits)
 
 
 def _content(
@@ -135,6 +143,7 @@ def _content(
         clock_offset=motion.clock_offset,
         response=motion.response,
         mount=motion.mount,
+        limits=learned.limits,
         parameters=_parameters(learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),

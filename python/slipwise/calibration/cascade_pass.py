@@ -11,13 +11,15 @@ from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.core_learners import AverageLearner, EstimatorLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
-from slipwise.calibration.learner import CASCADE, Belief, make_learner
+from slipwise.calibration.learner import CASCADE, LIMITS, Belief, make_learner
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings
 from slipwise.calibration.wheel_drive import chain_runs, wheel_runs
 from slipwise.segments import WindowRules
 
 NO_SENSOR = WindowRules().sensor
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
+RECENT_CHAIN_WINDOWS = 200  # from which the chain behind newly found limits is learned
 
 
 class CascadePass:
@@ -31,11 +33,13 @@ class CascadePass:
         rules = replace(settings.rules(), whole_frames=True)
         slip_windows = collect_windows(wheel_runs(windows.drive), WINDOW_SECONDS["wheel"], rules)
         at_wheels = replace(rules, sensor=NO_SENSOR)  # what wheels tell is the motion of base_link itself
-        chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, at_wheels)
+        self._windows, self._settings = windows, settings
+        self._chain_windows = collect_windows(chain_runs(windows.drive), CHAIN_WINDOW, at_wheels)
         average = make_learner(settings, "wheel").fresh()
         self._average = AverageLearner(average)
         self._slip = CausalPass(self._average, slip_windows, self._see, pace=windows)
-        self._chain = CausalPass(EstimatorLearner(_chain_estimator(settings)), chain_windows, pace=windows)
+        self._chain = self._chain_pass(self._chain_windows)
+        self._limited: LimitedDrive | None = None
         self._changes: list[_core.ChangeTest] = []
         response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
         self.motion = response.with_mount(average.model.mount)
@@ -44,6 +48,14 @@ class CascadePass:
         """Return the belief once `count` windows of the commands have passed."""
         return self._joined(self._slip.belief(count), self._chain.belief(count), noise_scale)
 
+    def restart_behind(self, limited: LimitedDrive) -> None:
+        """Put limits in front of the chain, and learn it anew from the last of its windows."""
+        drive = self._chain_windows.drive
+        runs = tuple(replace(run, track=limited.track(k)) for k, run in enumerate(drive))
+        first = max(self._chain.learned - RECENT_CHAIN_WINDOWS, 0)
+        self._limited = limited
+        self._chain = self._chain_pass(replace(self._chain_windows, drive=runs), first)
+
     def change(self, i: int) -> _core.ChangeTest:
         """Return the strongest test for a change of ground while window i of the commands passed."""
         tests = self._changes[self._slip.passed(i) : self._slip.passed(i + 1)] or [_core.ChangeTest()]
@@ -51,6 +63,12 @@ class CascadePass:
 
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self._changes.append(self._average.change)
+
+    def _chain_pass(self, windows: WindowSet, first: int = 0) -> CausalPass[_core.IekfUpdate]:
+        motion = _core.MotionModel.with_response(_core.Basis("none", [], [], []), False)
+        filter_settings = self._settings.filter_settings()
+        estimator = _core.FollowingEstimator("iekf", motion, filter_settings, _core.EstimatorSettings())
+        return CausalPass(EstimatorLearner(estimator), windows, pace=self._windows, first=first)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
         """Put slip and chain into one belief; clock offset and mount are learned with the slip."""
@@ -64,11 +82,6 @@ class CascadePass:
         covariance[np.ix_(of_chain, of_chain)] = chain.covariance
         prior_std[with_slip], prior_std[of_chain] = slip.prior_std, chain.prior_std
         ratio[with_slip], ratio[of_chain] = slip.variance_ratio, chain.variance_ratio
-        return Belief(
-            self.motion, mean, covariance, noise_scale, prior_std, ratio, slip.weights, structure=CASCADE
-        )
-
-
-def _chain_estimator(settings: Settings) -> _core.FollowingEstimator:
-    motion = _core.MotionModel.with_response(_core.Basis("none", [], [], []), False)
-    return _core.FollowingEstimator("iekf", motion, settings.filter_settings(), _core.EstimatorSettings())
+        belief = Belief(self.motion, mean, covariance, noise_scale, prior_std, ratio, slip.weights)
+        structure = CASCADE if self._limited is None else LIMITS
+        return replace(belief, limited=self._limited, structure=structure)

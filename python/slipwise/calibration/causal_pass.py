@@ -36,6 +36,7 @@ class CausalPass(Generic[UpdateT]):
         observer: Callable[[int, UpdateT, Belief], None] | None = None,
         *,
         pace: WindowSet | None = None,
+        first: int = 0,
     ) -> None:
         """Start before the first window.
 
@@ -44,9 +45,10 @@ class CausalPass(Generic[UpdateT]):
             windows: what it learns, of any length, overlapping or not.
             observer: gets each window's index, its update, and the belief after it.
             pace: beliefs are asked for by counts of these windows, where they are not `windows` themselves.
+            first: windows before this one are passed over.
         """
         self._learner, self._windows, self._observer, self._pace = learner, windows, observer, pace
-        self._learned = 0
+        self._learned = first
 
     @property
     def learned(self) -> int:

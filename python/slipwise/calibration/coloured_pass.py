@@ -29,9 +29,11 @@ class ColouredPass:
             ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
         """
         for i in range(self._learned, count):
-            before = motion_belief(self._believed(i), self._shape)
+            before = self._believed(i)
             recent = self._windows.recent(i, int(self._windows.position[i]), float(self._windows.start[i]))
-            self._coloured.learn(before, self._windows.track(i), [*recent, self._windows.segments[i]])
+            track = self._windows.track(i, before.limited)
+            segments = [*recent, self._windows.segments[i]]
+            self._coloured.learn(motion_belief(before, self._shape), track, segments)
         self._learned = max(self._learned, count)
         return replace(self._believed(count), coloured=_core.ColouredSlip(self._coloured))
 

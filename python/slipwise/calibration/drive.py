@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
@@ -51,10 +52,10 @@ class WindowSet:
     def __len__(self) -> int:
         return len(self.start)
 
-    def track(self, i: int) -> _core.InputTrack:
-        """Return the inputs of window i."""
-        run: DriveRun = self.drive[int(self.position[i])]
-        return run.track
+    def track(self, i: int, limited: LimitedDrive | None = None) -> _core.InputTrack:
+        """Return the inputs of window i, behind the limits of the drive where there are some."""
+        position = int(self.position[i])
+        return self.drive[position].track if limited is None else limited.track(position)
 
     def distances(self) -> Floats:
         """Return how far the robot was driven in each window, by its inputs, [N] m."""

@@ -98,10 +98,11 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft, i: int) -> None:
     forecaster, learned = given
     targets, position = draft.targets, int(draft.targets.position[i])
+    track = targets.track(i, belief.limited)
     draft.structure[i] = belief.structure
     if belief.coloured is None:
         draft.recent[i] = 0
-        at = _core.linearize_segment(belief.motion, belief.mean, targets.track(i), targets.segments[i])
+        at = _core.linearize_segment(belief.motion, belief.mean, track, targets.segments[i])
         draft.pose[i] = at.predicted.vector()
         draft.covariance[i] = _core.prediction_covariance(
             at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
@@ -109,7 +110,7 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
         return
     expected = belief.coloured.predict(
         motion_belief(belief, forecaster.noise),
-        targets.track(i),
+        track,
         learned.recent(int(draft.recent[i]), position, float(targets.start[i])),
         targets.segments[i],
     )
@@ -119,7 +120,11 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
 def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     path = _core.integrate_segment(
-        belief.motion, belief.mean, targets.track(i), targets.segments[i], _core.Integrator.Exact
+        belief.motion,
+        belief.mean,
+        targets.track(i, belief.limited),
+        targets.segments[i],
+        _core.Integrator.Exact,
     )
     draft.in_sample[i] = path.sensor_poses[-1]
 

@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-STRUCTURES = ("together", "cascade")  # how chain and slip are learned from commands
-TOGETHER, CASCADE = range(len(STRUCTURES))
+STRUCTURES = ("together", "cascade", "limits")  # how chain and slip are learned from commands
+TOGETHER, CASCADE, LIMITS = range(len(STRUCTURES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,7 @@ class Belief:
     weights: Floats  # [B]
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
     coloured: _core.ColouredSlip | None = None  # how slip wanders about this belief, where that is learned
+    limited: LimitedDrive | None = None  # the limits in front of the chain, where some were found
     structure: int = TOGETHER  # of STRUCTURES; the errors of each are a population of their own
 
 

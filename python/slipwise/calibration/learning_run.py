@@ -15,7 +15,7 @@ from slipwise.calibration.history_recorder import HistoryRecorder
 from slipwise.calibration.learner import Belief, Progress, make_learner
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.structure_choice import learning_pass
+from slipwise.calibration.structure_choice import StructureChoice, learning_pass
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +25,7 @@ class LearningRun:
     belief: Callable[[int], Belief]  # known causally after so many windows; their number never decreases
     kept: Callable[[], Belief]  # learns what is left and returns what goes into a model
     history: Callable[[], History | None]  # of what is kept, where it was recorded
+    limits: Callable[[], _core.LimitSearch | None]  # what the last search for limits of the drive found
     bases: tuple[str, ...]
     dynamics: bool
     causal: bool  # whether what is kept is the last of the causal beliefs
@@ -66,8 +67,11 @@ def _averaging(
     def history() -> History | None:
         return None if recorder is None else recorder.history(passing.finish())
 
+    def limits() -> _core.LimitSearch | None:
+        return passing.limits if isinstance(passing, StructureChoice) else None
+
     belief = coloured.belief if settings.coloured.learn else passing.belief
-    return LearningRun(belief, passing.finish, history, bases, learner.dynamics, causal=True)
+    return LearningRun(belief, passing.finish, history, limits, bases, learner.dynamics, causal=True)
 
 
 def _estimating(
@@ -92,4 +96,4 @@ def _estimating(
     def history() -> History | None:
         return recorder.history(passing.finish()) if recorder is not None and causal else None
 
-    return LearningRun(passing.belief, kept, history, bases, motion.dynamics, causal)
+    return LearningRun(passing.belief, kept, history, lambda: None, bases, motion.dynamics, causal)

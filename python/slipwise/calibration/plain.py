@@ -3,11 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from slipwise import _core
+from slipwise.calibration.drive import DriveRun
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import Belief
+from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.models.model import Model
@@ -33,13 +37,16 @@ def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
     return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
 
 
-def model_forecaster(model: Model) -> Forecaster:
-    """`model`: a model file as it is."""
+def model_forecaster(model: Model, drive: tuple[DriveRun, ...]) -> Forecaster:
+    """`model`: a model file as it is, for the runs of `drive`."""
     size = len(model.mean)
     noise = np.array(model.content.noise.scale)
     belief = Belief(
         model.motion, model.mean, model.covariance, noise, np.ones(size), np.ones(size), np.ones(1)
     )
+    if model.limits is not None:
+        tracks = tuple(run.track for run in drive)
+        belief = replace(belief, limited=LimitedDrive(tracks, model.limits))
     return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics)
 
 

@@ -130,6 +130,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
         show_alarms,
         show_files,
         show_left_out,
+        show_limits,
         show_look_alikes,
         show_notes,
         show_parameters,
@@ -147,6 +148,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     if calibration.history is not None:
         show_alarms(out, calibration.history)
     show_parameters(out, content.parameters)
+    show_limits(out, content.limits)
     show_look_alikes(out, calibration.verdict.look_alikes)
     show_verdict(out, calibration.verdict)
     show_files(out, files)

@@ -42,6 +42,7 @@ def calibration_part(calibration: Calibration) -> dict[str, Any]:
         "input": content.input,
         "basis": content.slip.basis,
         "parameters": [parameter.model_dump() for parameter in content.parameters],
+        "limits": content.limits.model_dump() if content.limits else None,
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
         "learned_windows": content.provenance.learned_windows,
         "learned_seconds": content.provenance.learned_seconds,

@@ -17,7 +17,9 @@ def simulate(
         typer.Option("-o", "--output", metavar="FILE", help="The log: .mcap, .csv, .csv.gz or .parquet."),
     ],
     duration: Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")] = 300.0,
-    drive: Annotated[str, typer.Option(metavar="NAME", help="Command script: thesis or dull.")] = "thesis",
+    drive: Annotated[
+        str, typer.Option(metavar="NAME", help="Command script: thesis, steps or dull.")
+    ] = "thesis",
     ground: Annotated[
         str, typer.Option(metavar="NAME", help="tyre-force, traction-law, or MuJoCo's own contact-friction.")
     ] = "tyre-force",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.cli.output import Column, Output
+from slipwise.models.limits import limit_rows
 from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
-    from slipwise.models.schema import Parameter
+    from slipwise.models.schema import LimitsSection, Parameter
 
 _MOST_ALARMS = 6
 _MOST_PAIRS = 6
@@ -91,6 +92,17 @@ def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
         more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
         output.line(f"Hard to tell apart (correlation of their errors): {shown}{more}.")
+
+
+def show_limits(output: Output, limits: LimitsSection | None) -> None:
+    """Show the limits of the drive that wheel speeds showed; nothing where there are none."""
+    if limits is None:
+        return
+    rows = [
+        (name, number_text(value), number_text(std, 2), unit) for name, value, std, unit in limit_rows(limits)
+    ]
+    columns = (Column("limit"), Column("value", True), Column("std", True), Column("unit"))
+    output.table("Limits of the drive", columns, rows)
 
 
 def in_plain_units(parameter: Parameter) -> tuple[str, float, float, str]:

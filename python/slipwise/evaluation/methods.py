@@ -128,4 +128,4 @@ def _model(name: str, contest: Contest) -> Forecaster:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
-    return model_forecaster(contest.model)
+    return model_forecaster(contest.model, contest.windows.drive)

@@ -8,6 +8,7 @@ from importlib.resources import files
 from slipwise import _core
 from slipwise.export.c_covariance import covariance, noise, shifts
 from slipwise.export.chain import chain_of
+from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 
 _TEMPLATE = "model_template.h"
@@ -38,8 +39,9 @@ def c_header(model: Model, origin: list[str]) -> str:
         origin: lines of the comment on top.
 
     Raises:
-        ModelError: the command chain has a part that is not known.
+        ModelError: the command chain has a part that is not known, or limits of the drive.
     """
+    refuse_limits(model.content.limits, "the C header")
     model = model.body
     template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
     inputs = "commanded speeds" if model.content.input == "command" else "wheel speeds"

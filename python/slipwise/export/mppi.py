@@ -6,6 +6,7 @@ from __future__ import annotations
 from slipwise.errors import ModelError
 from slipwise.export.body_gains import body_gains, body_twists, turning_twists
 from slipwise.export.chain import Chain, chain_of
+from slipwise.export.mppi_limits import dead_band_notes, with_limits
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, ParameterFile
 from slipwise.models.model import Model
@@ -32,9 +33,12 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
         )
     chain = chain_of(model)
     slip = body_gains(body_twists(model))
-    gains = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
+    limits = model.content.limits
+    behind = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
+    gains = (behind[0] * chain.v.gain * slip[0], behind[1] * chain.omega.gain * slip[1])
     lateness = _delays(chain) if options.nav2 == "rolling" else _accelerations(chain, model, gains)
     entries = [*_kind(options), *_speeds(model, gains), *lateness, *_turning(model, options)]
+    entries = with_limits(entries, limits, gains)
     return ParameterFile(
         node="controller_server",
         entries=[Entry((CONTROLLER, *entry.key), entry.value, entry.meaning) for entry in entries],
@@ -45,7 +49,7 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
                 f" {gains[0]:.3f} of the speed\nand {gains[1]:.3f} of the yaw rate: correct that first,"
                 " where commands become wheel speeds. Speeds below are of the body."
             ),
-            "The model has no dead-band: VelocityDeadbandCritic is left as it is.",
+            *dead_band_notes(limits),
         ],
     )
 

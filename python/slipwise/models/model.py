@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
+from slipwise.models.limits import core_limits
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
 
@@ -84,6 +85,18 @@ class Model:
             "covariance": [row[:kept] for row in self.content.covariance[:kept]],
         }
         return Model(self.content.model_copy(update=rows))
+
+    @cached_property
+    def limits(self) -> _core.CommandLimits | None:
+        """The limits in front of the chain, where some were learned."""
+        section = self.content.limits
+        return None if section is None else core_limits(section)
+
+    def driven(self, inputs: _core.InputTrack) -> _core.InputTrack:
+        """Return what reaches the chain of these inputs: what the drive's limits leave of them."""
+        if self.limits is None:
+            return inputs
+        return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
 
     @property
     def mean(self) -> NDArray[np.float64]:

@@ -129,6 +129,34 @@ class VerdictSection(_Section):
     held_out: HeldOut | None = None
 
 
+class LearnedLimit(_Section):
+    """One limit of the drive, the same for both signs."""
+
+    value: Positive  # [m/s or rad/s; rates m/s^2 or rad/s^2]
+    std: NotNegative
+
+
+class LaneLimitsSection(_Section):
+    """Limits of one lane; what the log did not show is absent, and not limited."""
+
+    dead_band: LearnedLimit | None = None  # what is slower gives zero, the rest passes as it is
+    top: LearnedLimit | None = None  # no faster
+    acceleration: LearnedLimit | None = None  # away from zero no quicker
+    braking: LearnedLimit | None = None  # towards zero no quicker
+
+
+class LimitsSection(_Section):
+    """Limits in front of delay and lag: of the commands, and then of each side's speed, v -+ w track / 2."""
+
+    speed: LaneLimitsSection
+    yaw_rate: LaneLimitsSection
+    side: LaneLimitsSection
+    track: Positive  # between the sides [m]; without limits of the sides it has no effect, nor have the gains
+    track_std: NotNegative
+    gain_v: Positive  # of what is asked of the sides over the limited command [-]
+    gain_omega: Positive  # [-]
+
+
 class ModelFile(_Section):
     """Everything that crosses from learning to using."""
 
@@ -139,6 +167,7 @@ class ModelFile(_Section):
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
     mount: bool = False  # the pose of the pose sensor in base_link is three parameters
+    limits: LimitsSection | None = None  # of the drive, in front of its delay and lag
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
@@ -152,4 +181,10 @@ class ModelFile(_Section):
         size = len(self.parameters)
         if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
             raise ValueError(f"covariance must have {size} rows of {size} numbers, one per parameter")
+        return self
+
+    @model_validator(mode="after")
+    def _limits_have_commands(self) -> ModelFile:
+        if self.limits is not None and not self.dynamics:
+            raise ValueError("limits are of commands, and this model has no lag and delay of commands")
         return self

@@ -47,6 +47,10 @@ def limits_of(model: Model) -> Limits:
     """
     speed = max(abs(value) for value in model.content.range.speed)
     yaw_rate = max(abs(value) for value in model.content.range.yaw_rate)
+    learned = model.limits
+    if learned is not None:
+        speed = min(speed, learned.speed.top, learned.side.top)
+        yaw_rate = min(yaw_rate, learned.yaw_rate.top)
     if speed <= 0.0 or yaw_rate <= 0.0:
         raise SettingsError(
             "the model was learned from a drive without speed or without turning",

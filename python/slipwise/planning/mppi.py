@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
@@ -42,7 +43,12 @@ def vendor_motion(multiplier: float) -> Motion:
 
 
 def learned_motions(model: Model, *, samples: int = 0, seed: int = 1) -> list[Motion]:
-    """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance."""
+    """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
+
+    Raises:
+        ModelError: the model has limits of the drive, which the controller's rollouts do not know.
+    """
+    refuse_limits(model.content.limits, "the controller")
     rng = np.random.Generator(np.random.PCG64(seed))
     drawn = rng.multivariate_normal(model.mean, model.covariance, size=samples, method="eigh")
     return [Motion(model.motion, parameters) for parameters in (model.mean, *drawn)]

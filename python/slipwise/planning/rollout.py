@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.start import Start
@@ -72,8 +73,10 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         level: instruction level, one of `_core.instruction_levels()`; by default the best.
 
     Raises:
+        ModelError: the model has limits of the drive.
         SettingsError: the batch is empty, a command is not finite, or something does not fit the rest.
     """
+    refuse_limits(model.content.limits, "the rollout")
     numbers = checked_commands(commands, dtype)
     check_threads(threads)
     begin = Start() if start is None else start
@@ -138,6 +141,7 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
+    refuse_limits(model.content.limits, "the rollout")
     scale = np.array(model.content.noise.scale)
     growth = tail_at(model, horizon).growth
     return _core.UncertainModel(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
 from slipwise.prediction import Path, predict
@@ -76,6 +77,7 @@ class Planner:
         state: what the robot usually does when a plan begins.
 
     Raises:
+        ModelError: the model has limits of the drive.
         SettingsError: limits, options or state contradict each other.
     """
 
@@ -87,6 +89,7 @@ class Planner:
         options: TrajectoryOptions = USUAL,
         state: DriveState = AT_REST,
     ) -> None:
+        refuse_limits(model.content.limits, "the trajectory planner")
         self.limits = limits_of(model) if limits is None else limits
         settings = options.to_core(self.limits)
         try:

@@ -37,12 +37,13 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         if inputs is None:
             continue
         track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        limited = contents.calibration.model.driven(track)
         segments = _segments(contents, run, inputs)
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
                 segment = segments.get(_stamp(window.t_start)) or _level_segment(window, _sensor(contents))
-                paths[window] = _paths(contents, window, _Drive(track, segment, measured))
+                paths[window] = _paths(contents, window, _Drive(track, limited, segment, measured))
     return paths
 
 
@@ -51,6 +52,7 @@ class _Drive:
     """What is known of one window."""
 
     track: _core.InputTrack
+    limited: _core.InputTrack  # what the model's limits leave of it
     segment: _core.Segment
     measured: Floats
 
@@ -62,16 +64,18 @@ def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPat
     parameters = model.mean if known is None else known
     return WindowPaths(
         measured=drive.measured,
-        plain=_sensor_path(plain_model, np.empty(0), drive),
-        predicted=_sensor_path(model.motion, parameters, drive),
+        plain=_sensor_path(plain_model, np.empty(0), drive.track, drive.segment),
+        predicted=_sensor_path(model.motion, parameters, drive.limited, drive.segment),
         causal=known is not None,
     )
 
 
-def _sensor_path(motion: _core.MotionModel, parameters: Floats, drive: _Drive) -> Floats:
+def _sensor_path(
+    motion: _core.MotionModel, parameters: Floats, track: _core.InputTrack, segment: _core.Segment
+) -> Floats:
     """Return the path of what measures it, [N, 3]."""
     exact = _core.Integrator.Exact
-    return _core.integrate_segment(motion, parameters, drive.track, drive.segment, exact).sensor_poses
+    return _core.integrate_segment(motion, parameters, track, segment, exact).sensor_poses
 
 
 def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:

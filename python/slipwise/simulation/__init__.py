@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A simulated robot to learn from: physics, a ground with known slip, and drives that excite it."""
 
-from slipwise.simulation.drive import DRIVES, dull_drive, hold, thesis_drive
+from slipwise.simulation.drive import DRIVES, dull_drive, hold, steps_drive, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.live_robot import LiveRobot, LiveState
 from slipwise.simulation.perturbation import Perturbation
@@ -27,6 +27,7 @@ __all__ = [
     "dull_drive",
     "hold",
     "simulate",
+    "steps_drive",
     "thesis_drive",
     "traction_force",
     "tyre_force",

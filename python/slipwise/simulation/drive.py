@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Command scripts for a simulated robot: circles and random driving as in the thesis, or a dull drive."""
+"""Command scripts for a simulated robot: circles and random driving as in the thesis, steps, or dull."""
 
 from __future__ import annotations
 
@@ -24,6 +24,9 @@ TOP_SPEED = 2.0  # [m/s]
 TOP_REVERSE = 1.0  # [m/s]
 TOP_YAW_RATE = 1.0  # [rad/s]
 TOP_CURVATURE = 0.6  # [1/m]
+STEP_TIME = (0.8, 3.0)  # [s] between steps
+CREEP_SHARE = 0.25  # [1] of the steps that creep
+CREEP = 0.15  # [1] how fast these are at most, of the top
 
 Drive = Callable[[int, float], Inputs]
 
@@ -67,6 +70,20 @@ def dull_drive(seed: int, duration: float) -> Inputs:
     return hold(1.0, 0.0, duration)
 
 
+def steps_drive(seed: int, duration: float) -> Inputs:
+    """Steps of speed and yaw rate, large and creeping ones: they show dead-band, top speed and rate limits.
+
+    Raises:
+        SettingsError: the duration is not positive and finite.
+    """
+    t = _stamps(duration)
+    rng = np.random.Generator(np.random.PCG64(seed))
+    ends = np.cumsum(rng.uniform(*STEP_TIME, int(duration / STEP_TIME[0]) + 1))
+    scale = np.where(rng.random((len(ends), 2)) < CREEP_SHARE, CREEP, 1.0)
+    targets = scale * rng.uniform(-1.0, 1.0, (len(ends), 2)) * (TOP_SPEED, 1.5 * TOP_YAW_RATE)
+    return _inputs(t, targets[np.searchsorted(ends, t, side="right")])
+
+
 def hold(v: float, omega: float, duration: float) -> Inputs:
     """One command [m/s, rad/s] for the whole duration [s], at 20 Hz.
 
@@ -77,7 +94,9 @@ def hold(v: float, omega: float, duration: float) -> Inputs:
     return _inputs(t, np.tile((float(v), float(omega)), (t.size, 1)))
 
 
-DRIVES: MappingProxyType[str, Drive] = MappingProxyType({"thesis": thesis_drive, "dull": dull_drive})
+DRIVES: MappingProxyType[str, Drive] = MappingProxyType(
+    {"thesis": thesis_drive, "steps": steps_drive, "dull": dull_drive}
+)
 
 
 def _stamps(duration: float) -> NDArray[np.float64]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
@@ -30,6 +31,7 @@ class Scenario:
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
+    limits: _core.CommandLimits | None = None  # what the drive does to commands before its delay and lag
     change: GroundChange | None = None  # of a tyre-force ground, while driving
     perturbation: Perturbation | None = None  # slip surfaces in place of ground and physics
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
@@ -62,7 +64,7 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
     commands = scenario.commands
     if commands is None:
         commands = DRIVES[scenario.drive](seed, scenario.duration)
-    truth = _drive(scenario, commands, seed, progress)
+    truth = _drive(scenario, _limited(commands, scenario.limits), seed, progress)
     run = Run(
         name="simulation",
         commands=commands,
@@ -83,6 +85,14 @@ def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress |
     times = np.arange(sampling.count) / sampling.rate
     stream = _stream(seed, 1)
     return perturbed_truth(scenario.perturbation, scenario.vehicle, commands, times, random=stream)
+
+
+def _limited(commands: Inputs, limits: _core.CommandLimits | None) -> Inputs:
+    if limits is None:
+        return commands
+    track = _core.InputTrack(commands.t, commands.v, commands.vy, commands.omega)
+    t, v, vy, omega = np.ascontiguousarray(_core.limited_track(track, limits, _core.RAMP_PIECE).rows().T)
+    return Inputs(t=t, v=v, vy=vy, omega=omega)
 
 
 def _stream(seed: int, number: int) -> np.random.Generator:

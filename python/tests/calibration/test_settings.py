@@ -63,6 +63,7 @@ bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
 cascade = false
+limits = false
 
 [change]
 detect = false

@@ -118,7 +118,7 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
         ({"std_yaw": float("inf")}, "std_yaw is inf"),
         ({"pose_delay": float("nan")}, "pose_delay is nan"),
         ({"ground": "ice"}, "unknown ground 'ice'.*tyre-force, traction-law, contact-friction"),
-        ({"drive": "rally"}, "unknown drive 'rally'.*thesis, dull"),
+        ({"drive": "rally"}, "unknown drive 'rally'.*thesis, steps, dull"),
     ],
 )
 def test_senseless_scenario_is_refused(change: dict[str, object], message: str) -> None:

@@ -71,6 +71,11 @@ inline LagStepLinearization linearize_lag_step(double output, double input, doub
   return linearize_lag_step(output, input, LagDecay(time_constant, duration));
 }
 
+/// The output alone, where nobody asks for the way.
+inline double lag_output(double output, double input, double time_constant, double duration) {
+  return time_constant > 0.0 ? input + (output - input) * std::exp(-duration / time_constant) : input;
+}
+
 inline LagStep lag_step(double output, double input, double time_constant, double duration) {
   return linearize_lag_step(output, input, time_constant, duration).value;
 }

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.calibration.result import History
+from slipwise.models.limits import limit_rows
 from slipwise.models.model import Model
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
@@ -79,7 +80,14 @@ def _values(model: Model) -> str:
         )
         for parameter in model.content.parameters
     ]
-    return table(_VALUE_COLUMNS, rows)
+    html = table(_VALUE_COLUMNS, rows)
+    if model.content.limits is None:
+        return html
+    limits = [
+        (name, unit, number(value, 4), number(std, 2))
+        for name, value, std, unit in limit_rows(model.content.limits)
+    ]
+    return html + table(("limit of the drive", "unit", "value", "± 1 sigma"), limits)
 
 
 def _alarms(contents: Contents, history: History) -> str:

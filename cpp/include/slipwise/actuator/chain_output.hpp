@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The drive's speed and yaw rate at given moments, as wheel speeds measure them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/input_track.hpp"
+
+namespace slipwise {
+
+/// One channel of the chain, at each of the `times` [s, increasing, in input stamps].
+/// The drive does `initial` at the first of them, as it was measured. A slow part is not followed.
+struct ChainOutput {
+  std::vector<double> v, omega;
+};
+ChainOutput chain_output(const InputTrack& inputs, const CommandChain& chain, std::span<const double> times,
+                         const BodyTwist& initial);
+
+}  // namespace slipwise

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a drive does to its commands before it follows them: dead-band, saturation, and rate limits (derivations.md,
+// section 4).
+#pragma once
+
+#include <limits>
+
+#include "slipwise/actuator/input_track.hpp"
+
+namespace slipwise {
+
+/// Limits of one lane of the drive, the same for both signs; the defaults are the identity.
+struct LaneLimits {
+  double dead_band = 0.0;  ///< what is slower gives zero, the rest passes as it is [m/s or rad/s]
+  double top = std::numeric_limits<double>::infinity();           ///< no faster [m/s or rad/s]
+  double acceleration = std::numeric_limits<double>::infinity();  ///< away from zero no quicker [m/s^2 or rad/s^2]
+  double braking = std::numeric_limits<double>::infinity();       ///< towards zero no quicker [m/s^2 or rad/s^2]
+
+  bool operator==(const LaneLimits&) const = default;
+};
+
+/// Limits of the commands, as a controller has them, and then of the two sides of a skid-steered or differential drive,
+/// as its motors have them. Both sides are built alike.
+struct CommandLimits {
+  LaneLimits speed = {};
+  LaneLimits yaw_rate = {};
+  LaneLimits side = {};     ///< of each side's speed, v -+ omega * track / 2
+  double track = 1.0;       ///< [m] between the sides
+  double gain_v = 1.0;      ///< of the speed that is asked of the sides over the limited command [-]
+  double gain_omega = 1.0;  ///< of the yaw rate [-]
+
+  bool operator==(const CommandLimits&) const = default;
+};
+
+/// Whether nothing is limited.
+bool unlimited(const CommandLimits& limits);
+/// Whether the sides are limited; if not, track and gains have no effect.
+bool limits_sides(const CommandLimits& limits);
+
+/// The commands behind the limits of speed and yaw rate alone, in front of those of the sides.
+CommandLimits channel_limits(const CommandLimits& limits);
+
+/// What a twist asks of the left and the right side.
+struct SideSpeeds {
+  double left, right;
+};
+SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist);
+
+inline constexpr double kRampPiece = 0.02;  ///< [s]
+
+/// The held commands after dead-band, saturation and rate limits; vy passes as it is. The drive starts at rest.
+/// A ramp becomes held pieces of its mean over `longest_piece` [s]. Nothing depends on commands stamped later, so a
+/// piece that a command cuts short keeps the mean of the whole one: its distance errs by no more than
+/// rate * longest_piece^2 / 8.
+/// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top or track is not positive.
+InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece = kRampPiece);
+
+}  // namespace slipwise

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which limits the wheel speeds show: a profile of each over candidates from the data, the best taken one by one.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "slipwise/estimate/limited_drive_fit.hpp"
+
+namespace slipwise {
+
+struct LimitSearchSettings {
+  /// What a limit must gain in -2 log likelihood, for residuals that are not alike. Chance alone gives 20 to one of
+  /// 100 000 limits looked for.
+  double least_gain = 20.0;
+};
+
+/// A limit that the data show.
+struct FoundLimit {
+  Lane lane;
+  LimitKind kind;
+  double value;  ///< [m/s, rad/s, m/s^2 or rad/s^2]
+  double std;    ///< of the value
+  double gain;   ///< of having it over not having it, in -2 log likelihood
+};
+
+/// What the commands reached in a lane: beyond it no limit can show.
+struct LaneReach {
+  double slowest = 0.0;  ///< command that is not zero
+  double fastest = 0.0;  ///< command
+  double step = 0.0;     ///< from one command to the next
+};
+
+struct LimitSearch {
+  LimitedDrive drive;             ///< with the found limits alone
+  std::vector<FoundLimit> found;  ///< empty: the data show none
+  double track_std;               ///< [m] of the track between the sides; zero where these have no limits
+  std::array<LaneReach, kLanes.size()> reach;
+};
+
+/// The limits that the wheels show.
+/// \throws std::invalid_argument when there are fewer than 20 twists to explain.
+LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSettings& prior, double track,
+                        const LimitSearchSettings& settings);
+
+}  // namespace slipwise

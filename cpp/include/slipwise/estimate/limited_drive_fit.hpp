@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fitting limits and chain to measured wheel speeds: a robust likelihood, its minimum near a start, and how sure that
+// is.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/command_limits.hpp"
+#include "slipwise/estimate/prior.hpp"
+
+namespace slipwise {
+
+/// A stretch of one run over which the commands were known without a gap: the commands, and the wheels' twist beside
+/// them. The first twist is where the drive starts; only the others are explained.
+struct DriveRecord {
+  InputTrack commands;
+  std::vector<double> t;          ///< [s], increasing, in the stamps of the commands
+  std::vector<BodyTwist> wheels;  ///< [t]
+};
+
+enum class LimitKind : std::uint8_t { DeadBand, Top, Acceleration, Braking };
+inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Top, LimitKind::Acceleration,
+                                        LimitKind::Braking};
+double& limit_of(LaneLimits& limits, LimitKind kind);
+double limit_of(const LaneLimits& limits, LimitKind kind);
+/// Whether it limits anything.
+bool limits_anything(const LaneLimits& limits, LimitKind kind);
+
+/// What limits belong to: the commanded speed, the commanded yaw rate, or the two sides, which share them.
+enum class Lane : std::uint8_t { Speed, YawRate, Side };
+inline constexpr std::array kLanes{Lane::Speed, Lane::YawRate, Lane::Side};
+LaneLimits& lane_of(CommandLimits& limits, Lane lane);
+const LaneLimits& lane_of(const CommandLimits& limits, Lane lane);
+
+/// A command as one side sees it: its speed is |gain_v * v + gain_omega * omega * track / 2|.
+struct SideCommand {
+  double v, omega;
+};
+double speed_of_side(const CommandLimits& limits, const SideCommand& command);
+
+/// Limits and the chain behind them: delay and lag per channel. Its gain stands with the limits, in front of the sides.
+struct LimitedDrive {
+  CommandLimits limits;
+  CommandChain chain;
+  /// The fastest command that the sides' dead-band blocks and the slowest that it lets through: while track and gains
+  /// are fitted, it stays between them.
+  std::optional<std::array<SideCommand, 2>> edge = {};
+};
+
+/// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
+struct DriveLoss {
+  double total;      ///< prior included; residuals are taken as independent
+  double inflation;  ///< by how much that overstates the evidence, since residuals next to each other are alike
+};
+
+struct ScoredDrive {
+  LimitedDrive drive;
+  DriveLoss loss;
+};
+
+class LimitedDriveFit {
+ public:
+  /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
+  LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track);
+
+  /// No limits, and the chain that is believed in before any data.
+  LimitedDrive start() const;
+  DriveLoss loss(const LimitedDrive& drive) const;
+  ScoredDrive scored(const LimitedDrive& drive) const { return {drive, loss(drive)}; }
+  /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held.
+  LimitedDrive refine(const LimitedDrive& drive, int iterations) const;
+  /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
+  /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
+  struct Spread {
+    std::array<std::array<double, kLimitKinds.size()>, kLanes.size()> std;  ///< by lane and kind
+    double track_std;                                                       ///< [m]
+    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log track
+  };
+  Spread spread(const LimitedDrive& drive) const;
+
+  std::size_t samples() const { return samples_; }
+
+ private:
+  struct Residuals;
+  std::vector<InputTrack> limited(const CommandLimits& limits) const;
+  /// Measured less explained [samples, speed and yaw rate], with the commands of each record limited.
+  Eigen::MatrixXd errors(const LimitedDrive& drive, std::span<const InputTrack> limited) const;
+  Residuals residuals(const LimitedDrive& drive) const;
+  Eigen::MatrixXd jacobian(const LimitedDrive& drive, const std::vector<int>& free, const Residuals& at) const;
+  double prior_loss(const LimitedDrive& drive) const;
+
+  std::span<const DriveRecord> records_;
+  PriorSettings prior_;
+  double track_;
+  std::size_t samples_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speeds of a lane over all records, sorted.
+#include "slipwise/estimate/lane_range.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace slipwise {
+namespace {
+
+constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
+
+/// A twist in a lane: once, or once for each side.
+std::array<double, 2> in_lane(const CommandLimits& limits, Lane lane, const BodyTwist& twist) {
+  if (lane == Lane::Side) {
+    const SideSpeeds sides = side_speeds(limits, twist);
+    return {sides.left, sides.right};
+  }
+  const double one = lane == Lane::Speed ? twist.v : twist.omega;
+  return {one, one};
+}
+
+/// Wheels have passed all gains.
+CommandLimits of_wheels(const CommandLimits& limits) { return {.track = limits.track}; }
+
+void add_commands(LaneRange& range, const CommandLimits& limits, Lane lane, const InputTrack& commands) {
+  std::array<double, 2> before{};
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    const BodyTwist twist = commands.sample(i);
+    const std::array<double, 2> now = in_lane(limits, lane, twist);
+    for (std::size_t side = 0; side < now.size(); ++side) {
+      range.step = std::max(range.step, std::abs(now.at(side) - before.at(side)));
+      if (now.at(side) != 0.0) {
+        range.commands.push_back({std::abs(now.at(side)), {twist.v, side == 0 ? -twist.omega : twist.omega}});
+      }
+    }
+    before = now;
+  }
+}
+
+void add_wheels(LaneRange& range, const CommandLimits& limits, Lane lane, const DriveRecord& record) {
+  std::size_t from = 0;
+  for (std::size_t i = 0; i < record.t.size(); ++i) {
+    const double seconds = record.t[i] - record.t[from];
+    const std::array<double, 2> now = in_lane(limits, lane, record.wheels[i]);
+    const std::array<double, 2> before = in_lane(limits, lane, record.wheels[from]);
+    for (std::size_t side = 0; side < now.size(); ++side) {
+      range.speeds.push_back(std::abs(now.at(side)));
+      if (seconds >= kRateStride) {
+        range.rates.push_back(std::abs(now.at(side) - before.at(side)) / seconds);
+      }
+    }
+    from = seconds >= kRateStride ? i : from;
+  }
+}
+
+}  // namespace
+
+LaneRange lane_range(std::span<const DriveRecord> records, const CommandLimits& limits, Lane lane) {
+  LaneRange range;
+  for (const DriveRecord& record : records) {
+    const bool behind = lane == Lane::Side && !unlimited(channel_limits(limits));
+    add_commands(range, limits, lane,
+                 behind ? limited_track(record.commands, channel_limits(limits)) : record.commands);
+    add_wheels(range, of_wheels(limits), lane, record);
+  }
+  std::ranges::sort(range.commands, {}, &Asked::speed);
+  std::ranges::sort(range.speeds);
+  std::ranges::sort(range.rates);
+  const auto repeated = std::ranges::unique(range.commands, {}, &Asked::speed);
+  range.commands.erase(repeated.begin(), repeated.end());
+  return range;
+}
+
+}  // namespace slipwise

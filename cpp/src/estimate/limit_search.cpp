@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+// Forward selection of limits by their profiles, then backward elimination.
+#include "slipwise/estimate/limit_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/estimate/dead_band_search.hpp"
+#include "slipwise/estimate/lane_range.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kFewestSamples = 20;
+constexpr int kMostLimits = 8;
+constexpr int kRounds = 3;  // of adding; what was dropped may have stood in the way
+constexpr int kShortRefinement = 4;
+constexpr int kLongRefinement = 15;
+constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
+constexpr std::array kTrackFactors{0.98, 1.02};
+constexpr double kHopeless = 50.0;  // the same; polishing does not gain as much
+constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
+constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
+constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
+constexpr double kLagFactor = 0.4;
+
+double quantile(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+double gain_of(const ScoredDrive& more, const ScoredDrive& less) {
+  return (less.loss.total - more.loss.total) / more.loss.inflation;
+}
+
+/// The search over one kind of lanes.
+class Search {
+ public:
+  Search(std::span<const DriveRecord> records, const LimitedDriveFit& fit, double least_gain)
+      : records_(records), fit_(fit), bands_(records, fit), least_gain_(least_gain) {}
+
+  ScoredDrive run(const LimitedDrive& plain) {
+    ScoredDrive best = fit_.scored(plain);
+    for (int round = 0; round < kRounds && add_all(best); ++round) {
+      best = polished(best);
+      while (drop_idle(best) || move_one(best)) {
+      }
+    }
+    return best;
+  }
+
+  std::vector<FoundLimit> found(const ScoredDrive& best) const {
+    const LimitedDriveFit::Spread spread = fit_.spread(best.drive);
+    std::vector<FoundLimit> result;
+    for (const Lane lane : kLanes) {
+      for (std::size_t k = 0; k < kLimitKinds.size(); ++k) {
+        const LimitKind kind = kLimitKinds.at(k);
+        const LaneLimits& limits = lane_of(best.drive.limits, lane);
+        if (!limits_anything(limits, kind)) {
+          continue;
+        }
+        const double std = kind == LimitKind::DeadBand ? bands_.std(best, lane, spread.to_sides)
+                                                       : spread.std.at(static_cast<std::size_t>(lane)).at(k);
+        result.push_back({lane, kind, limit_of(limits, kind), std, gain_of(best, without(best, lane, kind))});
+      }
+    }
+    return result;
+  }
+
+ private:
+  /// Adds limits one by one, as long as they gain; whether any was added.
+  bool add_all(ScoredDrive& best) const {
+    bool added = false;
+    for (int i = 0; i < kMostLimits; ++i) {
+      const std::optional<ScoredDrive> next = with_one_more(best);
+      if (!next) {
+        break;
+      }
+      best = *next;
+      added = true;
+    }
+    return added;
+  }
+
+  ScoredDrive refined(const LimitedDrive& drive, int iterations) const {
+    return fit_.scored(fit_.refine(bands_.between_commands(drive), iterations));
+  }
+
+  /// The best limit, or pair of rates, to add; nothing where none gains enough.
+  std::optional<ScoredDrive> with_one_more(const ScoredDrive& now) const {
+    std::vector<ScoredDrive> trials;
+    for (const Lane lane : kLanes) {
+      const LaneRange range = lane_range(records_, now.drive.limits, lane);
+      const LaneLimits& limits = lane_of(now.drive.limits, lane);
+      for (const LimitKind kind : kLimitKinds) {
+        if (!limits_anything(limits, kind)) {
+          add(trials, profile(now, lane, {kind}, range));
+        }
+      }
+      if (!limits_anything(limits, LimitKind::Acceleration) && !limits_anything(limits, LimitKind::Braking)) {
+        add(trials, profile(now, lane, {LimitKind::Acceleration, LimitKind::Braking}, range));
+      }
+    }
+    std::ranges::sort(trials, {}, [](const ScoredDrive& trial) { return trial.loss.total; });
+    std::optional<ScoredDrive> best;
+    for (std::size_t i = 0; i < std::min<std::size_t>(trials.size(), 3); ++i) {
+      const ScoredDrive trial = refined(trials[i].drive, kShortRefinement);
+      if (!best || trial.loss.total < best->loss.total) {
+        best = trial;
+      }
+    }
+    // While others are missing, residuals are alike; whether it gains enough is judged once all are found.
+    return best && now.loss.total - best->loss.total >= 2.0 * least_gain_ ? best : std::nullopt;
+  }
+
+  static void add(std::vector<ScoredDrive>& trials, std::optional<ScoredDrive> trial) {
+    if (trial) {
+      trials.push_back(*std::move(trial));
+    }
+  }
+
+  /// The best of the candidates, the chain held but for what took the limit's place: lag that of a rate, gain that of
+  /// a top.
+  std::optional<ScoredDrive> profile(const ScoredDrive& now, Lane lane, const std::vector<LimitKind>& kinds,
+                                     const LaneRange& range) const {
+    std::optional<ScoredDrive> best;
+    for (const double value : candidates(kinds.front(), range)) {
+      LimitedDrive drive = now.drive;
+      for (const LimitKind kind : kinds) {
+        limit_of(lane_of(drive.limits, lane), kind) = value;
+      }
+      for (const LimitedDrive& candidate : beside(kinds.front(), drive)) {
+        const ScoredDrive trial = fit_.scored(candidate);
+        if (!best || trial.loss.total < best->loss.total) {
+          best = trial;
+        }
+      }
+    }
+    return best;
+  }
+
+  static std::vector<LimitedDrive> beside(LimitKind kind, const LimitedDrive& drive) {
+    LimitedDrive other = drive;
+    if (kind == LimitKind::Acceleration || kind == LimitKind::Braking) {
+      other.chain.lag_v *= kLagFactor;
+      other.chain.lag_omega *= kLagFactor;
+      return {drive, other};
+    }
+    if (kind == LimitKind::Top) {
+      other.limits.gain_v = other.limits.gain_omega = 1.0;
+      return {drive, other};
+    }
+    return {drive};
+  }
+
+  static std::vector<double> candidates(LimitKind kind, const LaneRange& range) {
+    std::vector<double> values;
+    if (range.commands.size() < 2 || range.speeds.empty() || range.rates.empty()) {
+      return values;
+    }
+    if (kind == LimitKind::DeadBand) {
+      for (const double share : kDeadBandQuantiles) {
+        const auto at = static_cast<std::size_t>(share * static_cast<double>(range.commands.size() - 2));
+        values.push_back(0.5 * (range.commands[at].speed + range.commands[at + 1].speed));
+      }
+    } else if (kind == LimitKind::Top) {
+      for (const double share : kTopQuantiles) {
+        const double top = quantile(range.speeds, share);
+        if (top > 0.0 && top < range.commands.back().speed) {
+          values.push_back(top);
+        }
+      }
+    } else if (const double usual = quantile(range.rates, 0.9); usual > 0.0) {
+      for (const double factor : kRateFactors) {
+        values.push_back(factor * usual);
+      }
+    }
+    return values;
+  }
+
+  /// Finds every dead-band between the commands next to it, and refines the rest with it.
+  ScoredDrive polished(const ScoredDrive& rough) const {
+    ScoredDrive best = settled(rough);
+    // Which commands the sides' dead-band blocks turns on the track, and no small step of it gets the order right.
+    if (best.drive.limits.side.dead_band > 0.0) {
+      for (const double factor : kTrackFactors) {
+        ScoredDrive shaken = best;
+        shaken.drive.limits.track *= factor;
+        shaken = settled(fit_.scored(shaken.drive));
+        best = shaken.loss.total < best.loss.total ? shaken : best;
+      }
+    }
+    return best;
+  }
+
+  ScoredDrive settled(const ScoredDrive& rough) const {
+    ScoredDrive best = bands_.best(rough);
+    const ScoredDrive smooth = refined(best.drive, kLongRefinement);
+    return smooth.loss.total > best.loss.total ? best : bands_.best(smooth);
+  }
+
+  ScoredDrive without(const ScoredDrive& all, Lane lane, LimitKind kind) const {
+    LimitedDrive drive = all.drive;
+    limit_of(lane_of(drive.limits, lane), kind) = limit_of(LaneLimits{}, kind);
+    return refined(drive, kShortRefinement);
+  }
+
+  /// Moves a limit to another lane, where it explains more; whether one was moved.
+  bool move_one(ScoredDrive& best) const {
+    for (const Lane from : kLanes) {
+      for (const LimitKind kind : kLimitKinds) {
+        if (!limits_anything(lane_of(best.drive.limits, from), kind)) {
+          continue;
+        }
+        for (const Lane to : kLanes) {
+          if (limits_anything(lane_of(best.drive.limits, to), kind)) {
+            continue;
+          }
+          ScoredDrive rest = best;
+          limit_of(lane_of(rest.drive.limits, from), kind) = limit_of(LaneLimits{}, kind);
+          const std::optional<ScoredDrive> moved =
+              profile(rest, to, {kind}, lane_range(records_, rest.drive.limits, to));
+          if (!moved) {
+            continue;
+          }
+          ScoredDrive trial = refined(moved->drive, kShortRefinement);
+          if (trial.loss.total - best.loss.total > kHopeless) {
+            continue;
+          }
+          trial = polished(trial);
+          if (best.loss.total - trial.loss.total > kWorthMoving) {
+            best = trial;
+            return true;
+          }
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Drops the limit that gains least, if that is not enough; whether one was dropped.
+  bool drop_idle(ScoredDrive& best) const {
+    std::optional<ScoredDrive> idle;
+    double least = least_gain_;
+    for (const Lane lane : kLanes) {
+      for (const LimitKind kind : kLimitKinds) {
+        if (limits_anything(lane_of(best.drive.limits, lane), kind)) {
+          const ScoredDrive less = without(best, lane, kind);
+          if (gain_of(best, less) < least) {
+            least = gain_of(best, less);
+            idle = less;
+          }
+        }
+      }
+    }
+    if (idle) {
+      best = *idle;
+    }
+    return idle.has_value();
+  }
+
+  std::span<const DriveRecord> records_;
+  const LimitedDriveFit& fit_;
+  DeadBandSearch bands_;
+  double least_gain_;
+};
+
+LimitedDrive plain_drive(const LimitedDriveFit& fit) {
+  const LimitedDrive start = fit.start();
+  LimitedDrive late = start;
+  std::swap(late.chain.lag_v, late.chain.delay_v);
+  std::swap(late.chain.lag_omega, late.chain.delay_omega);
+  const LimitedDrive one = fit.refine(start, kLongRefinement);
+  const LimitedDrive other = fit.refine(late, kLongRefinement);
+  return fit.loss(one).total <= fit.loss(other).total ? one : other;
+}
+
+}  // namespace
+
+LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSettings& prior, double track,
+                        const LimitSearchSettings& settings) {
+  const LimitedDriveFit fit(records, prior, track);
+  if (fit.samples() < kFewestSamples) {
+    throw std::invalid_argument("limits need at least " + std::to_string(kFewestSamples) + " wheel twists, got " +
+                                std::to_string(fit.samples()) + "; drive longer");
+  }
+  Search search(records, fit, settings.least_gain);
+  const ScoredDrive best = search.run(plain_drive(fit));
+  LimitSearch result{.drive = best.drive, .found = {}, .track_std = 0.0, .reach = {}};
+  if (!unlimited(best.drive.limits)) {
+    result.found = search.found(best);
+    result.track_std = fit.spread(best.drive).track_std;
+  }
+  for (std::size_t k = 0; k < kLanes.size(); ++k) {
+    const LaneRange range = lane_range(records, best.drive.limits, kLanes.at(k));
+    const auto& commands = range.commands;
+    result.reach.at(k) =
+        commands.empty() ? LaneReach{} : LaneReach{commands.front().speed, commands.back().speed, range.step};
+  }
+  CommandLimits& limits = result.drive.limits;
+  if (!limits_sides(limits)) {  // the chain says the gain, and nobody needs the track
+    limits.track = track;
+    result.drive.chain.gain_v = std::exchange(limits.gain_v, 1.0);
+    result.drive.chain.gain_omega = std::exchange(limits.gain_omega, 1.0);
+  }
+  return result;
+}
+
+}  // namespace slipwise

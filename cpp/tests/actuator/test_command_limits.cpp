@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits of the drive: what passes, how ramps run, and that nothing comes from later commands.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include "slipwise/actuator/chain_output.hpp"
+#include "slipwise/actuator/command_limits.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+InputTrack track(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
+  const std::vector<double> vy(t.size(), 0.25);
+  return {t, v, vy, omega};
+}
+
+/// Integral of the speed from the first sample to `until`.
+double distance(const InputTrack& inputs, double until) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < inputs.size() && inputs.time(i) < until; ++i) {
+    const double next = i + 1 < inputs.size() ? std::min(inputs.time(i + 1), until) : until;
+    sum += inputs.sample(i).v * (next - inputs.time(i));
+  }
+  return sum;
+}
+
+TEST_CASE("without limits the commands pass as they are") {
+  const InputTrack commands = track({0.0, 1.0}, {1.0, -2.0}, {0.5, 0.0});
+  const InputTrack limited = limited_track(commands, {});
+  REQUIRE(limited.size() == commands.size());
+  CHECK(limited.sample(1) == commands.sample(1));
+}
+
+TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a top cuts; both signs alike") {
+  const CommandLimits limits{.speed = {.dead_band = 0.2, .top = 1.0}};
+  const InputTrack limited =
+      limited_track(track({0, 1, 2, 3, 4}, {0.1, 0.3, 5.0, -0.19, -7.0}, {1, 1, 1, 1, 1}), limits);
+  CHECK(limited.at(0.5).v == 0.0);
+  CHECK(limited.at(1.5).v == 0.3);
+  CHECK(limited.at(2.5).v == 1.0);
+  CHECK(limited.at(3.5).v == 0.0);
+  CHECK(limited.at(4.5).v == -1.0);
+  CHECK(limited.at(4.5).omega == 1.0);
+  CHECK(limited.at(4.5).vy == 0.25);
+}
+
+TEST_CASE("ramps keep the distance exactly, through zero with braking first") {
+  const CommandLimits limits{.speed = {.acceleration = 2.0, .braking = 4.0}};
+  const InputTrack limited = limited_track(track({0.0, 3.0}, {1.0, -1.0}, {0.0, 0.0}), limits);
+  CHECK(distance(limited, 3.0) == doctest::Approx(3.0 - 0.25));  // 0.5 s up to 1 m/s
+  // 0.25 s down to zero, 0.5 s up to -1 m/s.
+  CHECK(distance(limited, 5.0) == doctest::Approx(2.75 + 0.125 - 0.25 - 1.25));
+  CHECK(limited.at(3.2).v > 0.0);
+  CHECK(limited.at(3.3).v < 0.0);
+}
+
+TEST_CASE("a ramp cut short by a command errs in distance by no more than stated") {
+  const double rate = 2.0;
+  const double piece = 0.02;
+  const CommandLimits limits{.speed = {.acceleration = rate, .braking = rate}};
+  const InputTrack limited = limited_track(track({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
+  CHECK(std::abs(distance(limited, 0.33) - 0.5 * rate * 0.33 * 0.33) <= rate * piece * piece / 8.0 + 1e-12);
+}
+
+TEST_CASE("sides are limited each for itself, behind gains") {
+  const CommandLimits limits{.side = {.top = 1.0}, .track = 0.5, .gain_v = 2.0, .gain_omega = 0.5};
+  const InputTrack limited = limited_track(track({0.0}, {0.4}, {4.0}), limits);
+  // Asked: 0.8 -+ 0.5: left 0.3, right 1.3, cut to 1.
+  CHECK(limited.at(0.0).v == doctest::Approx(0.65));
+  CHECK(limited.at(0.0).omega == doctest::Approx(1.4));
+}
+
+TEST_CASE("what comes out until some moment does not depend on later commands") {
+  const CommandLimits limits{.speed = {.dead_band = 0.1, .top = 1.0, .acceleration = 0.7, .braking = 1.3},
+                             .side = {.top = 0.8, .acceleration = 0.9, .braking = 1.1},
+                             .track = 0.6};
+  const InputTrack whole = limited_track(track({0, 0.3, 0.71, 1.4}, {0.5, -0.8, 1.5, 0.0}, {1, -1, 0.3, 0}), limits);
+  const InputTrack early = limited_track(track({0, 0.3}, {0.5, -0.8}, {1, -1}), limits);
+  for (double t = 0.0; t < 0.71; t += 0.003) {
+    CHECK(whole.at(t) == early.at(t));
+  }
+}
+
+TEST_CASE("limits that make no sense are refused with the lane and what to give") {
+  const InputTrack commands = track({0.0}, {1.0}, {0.0});
+  CHECK_THROWS_WITH_AS(limited_track(commands, {.yaw_rate = {.top = -1.0}}),
+                       doctest::Contains("yaw rate lane's top speed"), std::invalid_argument);
+  CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_track(commands, {.speed = {.acceleration = 0.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_track(commands, {.side = {.braking = std::nan("")}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_track(commands, {.side = {.top = 1.0}, .track = 0.0}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = kNone}}), std::invalid_argument);
+}
+
+TEST_CASE("the chain's output is that of its drive steps") {
+  const InputTrack inputs = track({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
+  const CommandChain chain{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
+  const std::vector<double> times{0.0, 2.0, 2.0005};
+  const ChainOutput output = chain_output(inputs, chain, times, {});
+  const DriveSteps steps = drive_steps(inputs, chain, {.start = 2.0, .end = 2.0005});
+  CHECK(output.v[1] == doctest::Approx(steps.steps[0].forward / 0.0005).epsilon(1e-3));
+  CHECK(output.omega[1] == doctest::Approx(steps.steps[0].turn / 0.0005).epsilon(1e-3));
+}
+
+}  // namespace
+}  // namespace slipwise

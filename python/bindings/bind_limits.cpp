@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of cpp/include/slipwise/estimate, the search for a drive's limits.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/vector.h>
+
+#include <stdexcept>
+
+#include "bindings.hpp"
+#include "slipwise/estimate/limit_search.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+
+void bind_limits(nb::module_& m) {
+  using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+  nb::class_<DriveRecord>(m, "DriveRecord", "Commands without a gap, and wheel twists beside them.")
+      .def(
+          "__init__",
+          [](DriveRecord* self, const InputTrack& commands, Rows wheels) {
+            DriveRecord record{.commands = commands, .t = {}, .wheels = {}};
+            for (std::size_t i = 0; i < wheels.shape(0); ++i) {
+              const double* row = wheels.data() + 3 * i;
+              record.t.push_back(row[0]);
+              record.wheels.push_back({row[1], 0.0, row[2]});
+            }
+            if (record.t.empty()) {
+              throw std::invalid_argument("a record has no wheel twists; leave it out");
+            }
+            new (self) DriveRecord(std::move(record));
+          },
+          "commands"_a, "wheels"_a, "`wheels` are rows of t [s], v [m/s], omega [rad/s].");
+  nb::enum_<LimitKind>(m, "LimitKind")
+      .value("DeadBand", LimitKind::DeadBand)
+      .value("Top", LimitKind::Top)
+      .value("Acceleration", LimitKind::Acceleration)
+      .value("Braking", LimitKind::Braking);
+  nb::enum_<Lane>(m, "Lane", "The commanded speed, the commanded yaw rate, or both sides.")
+      .value("Speed", Lane::Speed)
+      .value("YawRate", Lane::YawRate)
+      .value("Side", Lane::Side);
+  nb::class_<FoundLimit>(m, "FoundLimit", "A limit that the data show, with its standard deviation.")
+      .def_ro("lane", &FoundLimit::lane)
+      .def_ro("kind", &FoundLimit::kind)
+      .def_ro("value", &FoundLimit::value)
+      .def_ro("std", &FoundLimit::std)
+      .def_ro("gain", &FoundLimit::gain);
+  nb::class_<LaneReach>(m, "LaneReach", "What the commands reached in a lane.")
+      .def_ro("slowest", &LaneReach::slowest)
+      .def_ro("fastest", &LaneReach::fastest)
+      .def_ro("step", &LaneReach::step);
+  nb::class_<LimitSearch>(m, "LimitSearch", "What a search for limits found.")
+      .def_prop_ro("limits", [](const LimitSearch& search) { return search.drive.limits; })
+      .def_prop_ro("chain", [](const LimitSearch& search) { return search.drive.chain; })
+      .def_ro("found", &LimitSearch::found)
+      .def_ro("track_std", &LimitSearch::track_std)
+      .def_ro("reach", &LimitSearch::reach);
+  m.def(
+      "find_limits",
+      [](const std::vector<DriveRecord>& records, const PriorSettings& prior, double track, double least_gain) {
+        return find_limits(records, prior, track, {.least_gain = least_gain});
+      },
+      "records"_a, "prior"_a, "track"_a, "least_gain"_a, "The limits that wheel speeds show.");
+  m.attr("LEAST_LIMIT_GAIN") = LimitSearchSettings{}.least_gain;
+}
+
+}  // namespace slipwise::bindings

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The limits of a drive in a model: for the core, in words, and for those who cannot use them."""
+
+from __future__ import annotations
+
+import math
+
+from slipwise import _core
+from slipwise.errors import ModelError
+from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
+
+LANES = ("speed", "yaw_rate", "side")
+KINDS = ("dead_band", "top", "acceleration", "braking")
+_LANE_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
+_CORE_LANES = dict(zip(LANES, (_core.Lane.Speed, _core.Lane.YawRate, _core.Lane.Side), strict=True))
+_CORE_KINDS = dict(
+    zip(
+        KINDS,
+        (
+            _core.LimitKind.DeadBand,
+            _core.LimitKind.Top,
+            _core.LimitKind.Acceleration,
+            _core.LimitKind.Braking,
+        ),
+        strict=True,
+    )
+)
+
+
+def limits_section(search: _core.LimitSearch) -> LimitsSection:
+    """Return what a search found as the section of a model file."""
+    found = {(limit.lane, limit.kind): limit for limit in search.found}
+
+    def learned(lane: str, kind: str) -> LearnedLimit | None:
+        limit = found.get((_CORE_LANES[lane], _CORE_KINDS[kind]))
+        return None if limit is None else LearnedLimit(value=limit.value, std=limit.std)
+
+    lanes = {lane: LaneLimitsSection(**{kind: learned(lane, kind) for kind in KINDS}) for lane in LANES}
+    limits = search.limits
+    return LimitsSection(
+        **lanes,
+        track=limits.track,
+        track_std=search.track_std,
+        gain_v=limits.gain_v,
+        gain_omega=limits.gain_omega,
+    )
+
+
+def core_limits(section: LimitsSection) -> _core.CommandLimits:
+    """Return the limits for the core."""
+
+    def lane(name: str) -> _core.LaneLimits:
+        limits: LaneLimitsSection = getattr(section, name)
+        values = {kind: getattr(limits, kind) for kind in KINDS}
+        absent = {"dead_band": 0.0}
+        return _core.LaneLimits(
+            **{k: absent.get(k, math.inf) if v is None else v.value for k, v in values.items()}
+        )
+
+    return _core.CommandLimits(
+        lane("speed"), lane("yaw_rate"), lane("side"), section.track, section.gain_v, section.gain_omega
+    )
+
+
+def limit_rows(section: LimitsSection) -> list[tuple[str, float, float, str]]:
+    """Return name, value, standard deviation and unit of every limit."""
+    rows = []
+    for lane in LANES:
+        for kind in KINDS:
+            limit: LearnedLimit | None = getattr(getattr(section, lane), kind)
+            if limit is not None:
+                unit = _LANE_UNITS[lane] + ("^2" if kind in ("acceleration", "braking") else "")
+                rows.append((f"limits.{lane}.{kind}", limit.value, limit.std, unit))
+    if any(name.startswith("limits.side") for name, *_ in rows):
+        rows.append(("limits.track", section.track, section.track_std, "m"))
+    return rows
+
+
+def refuse_limits(section: LimitsSection | None, who: str) -> None:
+    """Raise for a model with limits, which `who` would leave out.
+
+    Raises:
+        ModelError: the model has limits.
+    """
+    if section is not None:
+        names = ", ".join(name for name, *_ in limit_rows(section))
+        raise ModelError(
+            f"the model has limits of the drive ({names}), which {who} does not know",
+            advice="learn one without: settings with `[auto] limits = false`",
+        )

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Limits of the drive: found where wheel speeds show them, left alone where not, never from the future."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
+
+from slipwise import _core
+from slipwise.calibration import Settings, calibrate
+from slipwise.calibration.calibrate import learning_windows
+from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.limit_watch import FIRST, MOST, LimitWatch
+from slipwise.calibration.limit_words import limits_advice
+from slipwise.errors import ModelError
+from slipwise.logs.log import Inputs, Log, Poses, Run, Source
+from slipwise.models import Model, load_model
+from slipwise.planning import rollout
+from slipwise.planning.mppi import learned_motions
+from slipwise.prediction import predict
+from slipwise.simulation import Scenario, dull_drive, simulate, steps_drive
+
+SLIP = (-0.06, -0.35)  # lon.V, ang.w
+SECONDS = 150.0
+
+
+def driven(limits: _core.CommandLimits, commands: Inputs, seed: int = 1) -> Log:
+    """A log with commands, wheel speeds behind limits, and poses of a robot that slips."""
+    wheels = wheels_behind(limits, commands, seed)
+    still = wheels_behind(limits, commands, seed)
+    model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
+    whole = _core.Segment(0.0, float(wheels.t[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    path = _core.integrate_segment(model, np.array(SLIP), track_of(still), whole, _core.Integrator.Exact)
+    noise = np.random.default_rng(seed).normal(0.0, 1.0, (len(path.poses), 3)) * (0.01, 0.01, 0.005)
+    x, y, yaw = np.ascontiguousarray((path.poses + noise).T)
+    poses = Poses(t=np.array(path.times), x=x, y=y, yaw=yaw, frame=np.zeros(len(x), dtype=np.int64))
+    run = Run(name="run", poses=poses, commands=commands, wheels=wheels)
+    return Log((run,), (Source("simulated", "0", "simulated", len(x)),), (), ())
+
+
+@pytest.fixture(scope="module")
+def log() -> Log:
+    return driven(SIDES, steps_drive(3, SECONDS))
+
+
+@pytest.fixture(scope="module")
+def model(log: Log) -> Model:
+    return calibrate(log, input_name="command").model
+
+
+@pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
+@pytest.mark.parametrize("seed", [11, 12])
+def test_limits_are_found_within_three_sigma(limits: _core.CommandLimits, seed: int) -> None:
+    found = search(limits, steps_drive(seed, 60.0), seed).found
+    shown = {(limit.lane, limit.kind) for limit in found}
+    lanes = (_core.Lane.Side,) if limits is SIDES else (_core.Lane.Speed, _core.Lane.YawRate)
+    smooth = (_core.LimitKind.Top, _core.LimitKind.Acceleration, _core.LimitKind.Braking)
+    assert {(lane, kind) for lane in lanes for kind in smooth} <= shown
+    assert {lane for lane, _ in shown} == set(lanes)
+    for limit in found:
+        truth = true_value(limits, limit)
+        assert abs(limit.value - truth) <= 3.0 * limit.std
+        assert limit.std < 0.5 * truth
+
+
+def test_a_drive_without_limits_shows_none() -> None:
+    none = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
+    assert not search(none, steps_drive(5, 60.0), 5).found
+
+
+def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
+    found = search(SIDES, dull_drive(1, 60.0), 1)
+    assert not {limit.kind for limit in found.found} & {_core.LimitKind.Top, _core.LimitKind.DeadBand}
+    text = " ".join(limits_advice(found))
+    assert "No top speed shows: command more than 1.0 m/s to see one" in text
+    assert "No dead-band shows" in text
+
+
+def test_simulated_physics_behind_limits_show_them() -> None:
+    side = _core.LaneLimits(0.15, 1.2, 1.0, 1.5)
+    limits = _core.CommandLimits(FREE, FREE, side, TRACK, 1.0, 1.0)
+    scenario = Scenario(duration=90.0, drive="steps", limits=limits)
+    run = simulate(scenario, seed=2).log.runs[0]
+    rows = np.column_stack((run.wheels.t, run.wheels.v, run.wheels.omega))
+    record = _core.DriveRecord(track_of(run.commands), np.ascontiguousarray(rows))
+    found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN)
+    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.lane == _core.Lane.Side]
+    assert len(tops) == 1
+    assert tops[0].value == pytest.approx(1.2, rel=0.05)
+
+
+def test_limits_are_used_where_they_predict_better(model: Model) -> None:
+    limits = model.limits
+    assert limits is not None
+    assert limits.side.top == pytest.approx(1.5, rel=0.02)
+    assert limits.side.acceleration == pytest.approx(1.2, rel=0.05)
+    assert limits.track == pytest.approx(TRACK, rel=0.05)
+
+
+def test_without_the_setting_there_are_none(log: Log) -> None:
+    settings = Settings(auto={"limits": False})
+    learned = calibrate(log, input_name="command", settings=settings).model
+    assert learned.limits is None
+
+
+def test_a_model_with_limits_is_saved_and_predicts_as_before(model: Model, tmp_path) -> None:
+    read = load_model(model.save(tmp_path / "m.yaml"))
+    assert read.content == model.content
+    fast = predict(read, [(0.0, 3.0, 0.0)], horizon=5.0)
+    limited = predict(read, [(0.0, 1.5, 0.0)], horizon=5.0)
+    assert fast.poses[-1, 0] == pytest.approx(limited.poses[-1, 0], rel=0.03)
+    assert predict(read, [(0.0, 0.05, 0.0)], horizon=5.0).poses[-1, 0] == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda model: rollout(model, np.zeros((1, 2, 2)), 0.1),
+        learned_motions,
+    ],
+    ids=["rollout", "controller"],
+)
+def test_what_does_not_know_limits_refuses_them(model: Model, use) -> None:
+    with pytest.raises(ModelError, match="limits of the drive") as caught:
+        use(model)
+    assert "[auto] limits = false" in caught.value.advice
+
+
+def test_a_watch_sees_nothing_of_the_future(log: Log) -> None:
+    run, until = log.runs[0], 60.0
+    told = run.wheels.t <= until
+    cut = Inputs(
+        t=run.wheels.t[told], v=run.wheels.v[told], vy=run.wheels.vy[told], omega=run.wheels.omega[told]
+    )
+    short = replace(log, runs=(replace(run, wheels=cut),))
+    found = []
+    for each in (log, short):
+        watch = LimitWatch(prepare_drive(each, "command"), Settings())
+        assert watch.look(0, until)
+        found.append([(f.kind, f.value, f.std) for f in watch.search.found])
+    assert found[0] == found[1]
+    assert found[0]
+
+
+def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
+    drive = prepare_drive(log, "command")
+    watch = LimitWatch(drive, Settings())
+    windows = learning_windows(drive, "command", Settings())
+    searched = [watch.look(0, end) for end in windows.end]
+    assert sum(searched) == 2  # at FIRST and at three times as many
+    assert len(drive[0].wheels) > MOST > FIRST
