@@ -21,6 +21,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
 
 STRUCTURES = ("together", "cascade", "limits")
+JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
 Floats = NDArray[np.float64]
 
 
@@ -69,7 +70,7 @@ class StructureChoice:
     """Runs all causally and weighs them by their predictive likelihood, as bases are weighed.
 
     Predictions are those of the heaviest: they have different parameters, which have no mean. The one behind
-    limits joins with half of the cascade's weight once wheel speeds show limits.
+    limits joins with a part of the cascade's weight once wheel speeds show limits.
     """
 
     def __init__(
@@ -155,7 +156,7 @@ class StructureChoice:
             self._limited, self._weights = None, np.array([together, cascade])
             return
         if self._limited is None:
-            self._weights = np.array([together, cascade / 2.0, cascade / 2.0])
+            self._weights = np.array([together, (1.0 - JOINING) * cascade, JOINING * cascade])
         commands = tuple(run.track for run in self._windows.drive)
         self._limited = self._cascade.behind(LimitedDrive(commands, search.limits), i + 1)
 
