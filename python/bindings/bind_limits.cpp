@@ -60,10 +60,13 @@ void bind_limits(nb::module_& m) {
       .def_ro("reach", &LimitSearch::reach);
   m.def(
       "find_limits",
-      [](const std::vector<DriveRecord>& records, const PriorSettings& prior, double track, double least_gain) {
-        return find_limits(records, prior, track, {.least_gain = least_gain});
+      [](const std::vector<DriveRecord>& records, const PriorSettings& prior, double track, double least_gain,
+         const LimitSearch* before) {
+        const auto start = before == nullptr ? std::nullopt : std::optional<LimitedDrive>(before->drive);
+        return find_limits(records, prior, track, {.least_gain = least_gain}, start);
       },
-      "records"_a, "prior"_a, "track"_a, "least_gain"_a, "The limits that wheel speeds show.");
+      "records"_a, "prior"_a, "track"_a, "least_gain"_a, "before"_a.none(),
+      "The limits that wheel speeds show; the search goes on from those found `before`.");
   m.attr("LEAST_LIMIT_GAIN") = LimitSearchSettings{}.least_gain;
 }
 

@@ -37,7 +37,7 @@ def search(limits: _core.CommandLimits, commands: Inputs, seed: int) -> _core.Li
     wheels = wheels_behind(limits, commands, seed)
     rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
     record = _core.DriveRecord(track_of(commands), np.ascontiguousarray(rows))
-    return _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN)
+    return _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
 
 
 def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:

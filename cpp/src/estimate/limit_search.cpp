@@ -42,12 +42,13 @@ class Search {
   Search(std::span<const DriveRecord> records, const LimitedDriveFit& fit, double least_gain)
       : records_(records), fit_(fit), bands_(records, fit), least_gain_(least_gain) {}
 
-  ScoredDrive run(const LimitedDrive& plain) {
-    ScoredDrive best = fit_.scored(plain);
+  ScoredDrive run(const LimitedDrive& start) {
+    ScoredDrive best = fit_.scored(start);
+    if (!unlimited(start.limits)) {
+      settle_on(best);
+    }
     for (int round = 0; round < kRounds && add_all(best); ++round) {
-      best = polished(best);
-      while (drop_idle(best) || move_one(best)) {
-      }
+      settle_on(best);
     }
     return best;
   }
@@ -71,6 +72,13 @@ class Search {
   }
 
  private:
+  /// Fits what there is, and drops or moves what does not earn its place.
+  void settle_on(ScoredDrive& best) const {
+    best = polished(best);
+    while (drop_idle(best) || move_one(best)) {
+    }
+  }
+
   /// Adds limits one by one, as long as they gain; whether any was added.
   bool add_all(ScoredDrive& best) const {
     bool added = false;
@@ -112,8 +120,10 @@ class Search {
         best = trial;
       }
     }
-    // While others are missing, residuals are alike; whether it gains enough is judged once all are found.
-    return best && now.loss.total - best->loss.total >= 2.0 * least_gain_ ? best : std::nullopt;
+    // While others are missing, residuals are more alike than they will be; whether each gains enough is judged once
+    // all are found.
+    const bool gains = best && now.loss.total - best->loss.total >= least_gain_ * std::sqrt(best->loss.inflation);
+    return gains ? best : std::nullopt;
   }
 
   static void add(std::vector<ScoredDrive>& trials, std::optional<ScoredDrive> trial) {
@@ -278,17 +288,24 @@ LimitedDrive plain_drive(const LimitedDriveFit& fit) {
   return fit.loss(one).total <= fit.loss(other).total ? one : other;
 }
 
+/// The fit has the gain in front of the sides, limited or not.
+LimitedDrive with_gain_at_sides(LimitedDrive drive) {
+  drive.limits.gain_v *= std::exchange(drive.chain.gain_v, 1.0);
+  drive.limits.gain_omega *= std::exchange(drive.chain.gain_omega, 1.0);
+  return drive;
+}
+
 }  // namespace
 
 LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSettings& prior, double track,
-                        const LimitSearchSettings& settings) {
+                        const LimitSearchSettings& settings, const std::optional<LimitedDrive>& before) {
   const LimitedDriveFit fit(records, prior, track);
   if (fit.samples() < kFewestSamples) {
     throw std::invalid_argument("limits need at least " + std::to_string(kFewestSamples) + " wheel twists, got " +
                                 std::to_string(fit.samples()) + "; drive longer");
   }
   Search search(records, fit, settings.least_gain);
-  const ScoredDrive best = search.run(plain_drive(fit));
+  const ScoredDrive best = search.run(before ? with_gain_at_sides(*before) : plain_drive(fit));
   LimitSearch result{.drive = best.drive, .found = {}, .track_std = 0.0, .reach = {}};
   if (!unlimited(best.drive.limits)) {
     result.found = search.found(best);

@@ -16,9 +16,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SPACING = 0.05  # s between the wheel twists looked at
-FIRST = 400  # twists of a moving robot before the first search
+FIRST = 1000  # twists of a moving robot before the first search
 GROWTH = 3.0  # each search waits for this many times the twists of the last one
-MOST = 1200  # recent twists looked at
+MOST = 1000  # recent twists looked at
 LEAD_IN = 3.0  # s of commands before the first twist of a stretch
 
 
@@ -51,7 +51,8 @@ class LimitWatch:
         records = self._records(slice(max(count - MOST, 0), count))
         prior = self._settings.filter_settings().prior
         track = self._settings.vehicle.track
-        self.search = _core.find_limits(records, prior, track, _core.LEAST_LIMIT_GAIN)
+        before = self.search if self.search is not None and self.search.found else None
+        self.search = _core.find_limits(records, prior, track, _core.LEAST_LIMIT_GAIN, before)
         return True
 
     def _count(self, position: int, t: float) -> int:

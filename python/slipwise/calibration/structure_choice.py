@@ -20,6 +20,8 @@ from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
 
+JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
+
 
 def learning_pass(
     average: _core.ModelAverage,
@@ -80,7 +82,7 @@ class StructureChoice:
     """Runs all causally and weighs them by their predictive likelihood, as bases are weighed.
 
     Predictions are those of the heaviest: they have different parameters, which have no mean. The one behind
-    limits joins with half of the cascade's weight once wheel speeds show limits.
+    limits joins with a part of the cascade's weight once wheel speeds show limits.
     """
 
     def __init__(
@@ -166,7 +168,7 @@ class StructureChoice:
             self._contenders, self._weights = [cascade], np.array([together, cascades])
             return
         if len(self._contenders) == 1:
-            self._weights = np.array([together, cascades / 2.0, cascades / 2.0])
+            self._weights = np.array([together, (1.0 - JOINING) * cascades, JOINING * cascades])
         limited = LimitedDrive(tuple(run.track for run in self._windows.drive), search.limits)
         self._contenders = [cascade, cascade.behind(limited, i + 1)]
 

@@ -24,7 +24,7 @@ from slipwise.prediction import predict
 from slipwise.simulation import Scenario, dull_drive, simulate, steps_drive
 
 SLIP = (-0.06, -0.35)  # lon.V, ang.w
-SECONDS = 150.0
+SECONDS = 180.0
 
 
 def driven(limits: _core.CommandLimits, commands: Inputs, seed: int = 1) -> Log:
@@ -86,7 +86,7 @@ def test_simulated_physics_behind_limits_show_them() -> None:
     run = simulate(scenario, seed=2).log.runs[0]
     rows = np.column_stack((run.wheels.t, run.wheels.v, run.wheels.omega))
     record = _core.DriveRecord(track_of(run.commands), np.ascontiguousarray(rows))
-    found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN)
+    found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
     tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.lane == _core.Lane.Side]
     assert len(tops) == 1
     assert tops[0].value == pytest.approx(1.2, rel=0.05)
@@ -151,4 +151,4 @@ def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
     windows = learning_windows(drive, "command", Settings())
     searched = [watch.look(0, end) for end in windows.end]
     assert sum(searched) == 2  # at FIRST and at three times as many
-    assert len(drive[0].wheels) > MOST > FIRST
+    assert len(drive[0].wheels) > 3 * MOST >= 3 * FIRST

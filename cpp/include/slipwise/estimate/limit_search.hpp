@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -39,9 +40,9 @@ struct LimitSearch {
   std::array<LaneReach, kLanes.size()> reach;
 };
 
-/// The limits that the wheels show.
+/// The limits that the wheels show. The search goes on from `before`, such as what was found in earlier records.
 /// \throws std::invalid_argument when there are fewer than 20 twists to explain.
 LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSettings& prior, double track,
-                        const LimitSearchSettings& settings);
+                        const LimitSearchSettings& settings, const std::optional<LimitedDrive>& before = std::nullopt);
 
 }  // namespace slipwise
