@@ -130,6 +130,18 @@ TEST_CASE("every rollout may have a start of its own") {
   }
 }
 
+TEST_CASE("without commands before the start a drive with a slow part is taken to be settled") {
+  const tests::SampleChain chain = tests::sample_chains()[6];
+  const MotionModel model(Basis("none", {}, {}, {}), chain.learned);
+  const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+  const RolloutProgram program(model, parameters, {kPeriod});
+  const double gain = model.chain(parameters).gain_v;
+  const std::vector<double> v(40, 0.5), omega(40, 0.0);
+  const std::vector<RolloutStart> settled{{{}, {0.5 * gain, 0.0}}};
+  const RolloutBatch<double> batch{1, 40, {v.data(), omega.data(), 1, 1}, settled};
+  CHECK(tests::roll(program, batch).x[39] == doctest::Approx(0.5 * gain * 40 * kPeriod));
+}
+
 TEST_CASE("last poses and costs are those along the path") {
   const tests::SampleChain chain = tests::sample_chains()[3];
   const MotionModel model(named_basis("thesis-15"), chain.learned);
