@@ -62,8 +62,17 @@ adapt = false
 bases = ["custom", "edd-2"]
 learning_rate = 0.7
 share = 0.01
+richest = 0.3
 cascade = false
 limits = false
+
+[coloured]
+learn = false
+fractions = [0.02, 0.1]
+time_constants = [5.0]
+white = 0.4
+learning_rate = 0.6
+share = 0.02
 
 [change]
 detect = false
@@ -134,6 +143,11 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert kalman.jacobian == _core.SegmentJacobian.Exact
     average = settings.average_settings()
     assert (average.weighing.learning_rate, average.weighing.share) == (0.7, 0.01)
+    assert average.richest == 0.3
+    coloured = settings.coloured_settings()
+    assert (list(coloured.fractions), list(coloured.time_constants)) == ([0.02, 0.1], [5.0])
+    assert coloured.white == 0.4
+    assert (coloured.weighing.learning_rate, coloured.weighing.share) == (0.6, 0.02)
     (basis,) = settings.bases()
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
 
@@ -163,7 +177,9 @@ def test_defaults_are_those_of_the_core() -> None:
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
     for prior in (ours.prior, core.prior):
         assert not prior.sensor.vector().any()
-    assert settings.average_settings().share == _core.ModelAverageSettings().share
+    average = settings.average_settings()
+    assert average.weighing.share == _core.ModelAverageSettings().weighing.share
+    assert average.richest == _core.ModelAverageSettings().richest
     for name in ("detect", "threshold", "fraction", "forget"):
         assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)
     assert settings.rules() == WindowRules()
