@@ -100,7 +100,7 @@ void check(const LaneLimits& limits, const char* lane) {
     throw std::invalid_argument("the " + std::string(lane) + " lane's " + name + " is " + std::to_string(value) +
                                 "; give " + wanted + ", or leave it out");
   };
-  if (!(limits.dead_band >= 0.0 && std::isfinite(limits.dead_band))) {
+  if (std::isnan(limits.dead_band) || limits.dead_band < 0.0 || std::isinf(limits.dead_band)) {
     refuse("dead band", limits.dead_band, "zero or more");
   }
   if (!(limits.top > 0.0)) {
@@ -119,7 +119,7 @@ void check(const CommandLimits& limits, double longest_piece) {
   check(limits.yaw_rate, "yaw rate");
   check(limits.side, "side");
   const auto positive = [](const char* name, double value) {
-    if (!(value > 0.0 && std::isfinite(value))) {
+    if (std::isnan(value) || value <= 0.0 || std::isinf(value)) {
       throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + "; give more than zero");
     }
   };

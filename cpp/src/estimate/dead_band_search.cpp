@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <vector>
 
 #include "slipwise/estimate/lane_range.hpp"
@@ -104,7 +105,7 @@ double DeadBandSearch::std(const ScoredDrive& drive, Lane lane, const Eigen::Mat
   const std::ptrdiff_t high = passed + steps_as_long_as([&](std::ptrdiff_t n) { return alike(passed - 1 + n); });
   const double lower = low >= 0 ? commands[static_cast<std::size_t>(low)].speed : 0.0;
   const double upper = high < std::ssize(commands) ? commands[static_cast<std::size_t>(high)].speed : value;
-  const double plateau = std::max(upper - value, value - lower) / std::sqrt(3.0);
+  const double plateau = std::max(upper - value, value - lower) / std::numbers::sqrt3;
   return std::hypot(plateau, lane == Lane::Side ? side_std(limits, lower, upper, to_sides) : 0.0);
 }
 

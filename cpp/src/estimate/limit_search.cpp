@@ -207,7 +207,7 @@ class Search {
   }
 
   ScoredDrive settled(const ScoredDrive& rough) const {
-    ScoredDrive best = bands_.best(rough);
+    const ScoredDrive best = bands_.best(rough);
     const ScoredDrive smooth = refined(best.drive, kLongRefinement);
     return smooth.loss.total > best.loss.total ? best : bands_.best(smooth);
   }

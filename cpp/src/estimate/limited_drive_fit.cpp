@@ -156,7 +156,7 @@ struct LimitedDriveFit::Residuals {
 };
 
 LimitedDriveFit::LimitedDriveFit(std::span<const DriveRecord> records, const PriorSettings& prior, double track)
-    : records_(records), prior_(prior), track_(track), samples_(0) {
+    : records_(records), prior_(prior), track_(track) {
   for (const DriveRecord& record : records) {
     samples_ += record.t.empty() ? 0 : record.t.size() - 1;
   }
@@ -318,6 +318,36 @@ LimitedDrive LimitedDriveFit::refine(const LimitedDrive& drive, int iterations) 
   return best;
 }
 
+namespace {
+
+/// Standard deviations from the covariance of free parameters, and from variances that are larger where need be.
+LimitedDriveFit::Spread spread_of(const std::vector<int>& free, const Parameters& p, const Eigen::MatrixXd& unlike,
+                                  const Eigen::VectorXd& variance) {
+  LimitedDriveFit::Spread result{.std = {}, .track_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
+  constexpr std::array kToSides{0, 1, kTrack};
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const auto at = [&](Eigen::Index k) { return std::ranges::find(free, kToSides.at(static_cast<std::size_t>(k))); };
+      if (at(i) != free.end() && at(j) != free.end()) {
+        result.to_sides(i, j) = unlike(at(i) - free.begin(), at(j) - free.begin());
+      }
+    }
+  }
+  for (Eigen::Index k = 0; k < variance.size(); ++k) {
+    const int parameter = free[static_cast<std::size_t>(k)];
+    const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
+    if (parameter == kTrack) {
+      result.track_std = std;
+    } else if (parameter >= kFirstLimit) {
+      const auto place = static_cast<std::size_t>(parameter - kFirstLimit);
+      result.std.at(place / kPerLane).at(place % kPerLane + 1) = std;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
 LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const {
   const std::vector<int> free = free_parameters(drive);
   const auto size = static_cast<Eigen::Index>(free.size());
@@ -359,27 +389,7 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
   // A limit may show in a few stretches alone, which the fit then follows: their residuals are too small to tell.
   const Eigen::MatrixXd unlike = inverse * alone * inverse;
   const Eigen::VectorXd variance = (inverse * meat * inverse).diagonal().cwiseMax(unlike.diagonal());
-  Spread result{.std = {}, .track_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
-  constexpr std::array kToSides{0, 1, kTrack};
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      const auto at = [&](Eigen::Index k) { return std::ranges::find(free, kToSides.at(static_cast<std::size_t>(k))); };
-      if (at(i) != free.end() && at(j) != free.end()) {
-        result.to_sides(i, j) = unlike(at(i) - free.begin(), at(j) - free.begin());
-      }
-    }
-  }
-  for (Eigen::Index k = 0; k < size; ++k) {
-    const int parameter = free[static_cast<std::size_t>(k)];
-    const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
-    if (parameter == kTrack) {
-      result.track_std = std;
-    } else if (parameter >= kFirstLimit) {
-      const auto place = static_cast<std::size_t>(parameter - kFirstLimit);
-      result.std.at(place / kPerLane).at(place % kPerLane + 1) = std;
-    }
-  }
-  return result;
+  return spread_of(free, p, unlike, variance);
 }
 
 }  // namespace slipwise

@@ -16,8 +16,12 @@ from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.limit_watch import FIRST, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.errors import ModelError
+from slipwise.export.c_header import c_header
+from slipwise.export.mppi_limits import with_limits
+from slipwise.export.parameter_file import Entry
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
+from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
 from slipwise.planning import rollout
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
@@ -120,13 +124,32 @@ def test_a_model_with_limits_is_saved_and_predicts_as_before(model: Model, tmp_p
     [
         lambda model: rollout(model, np.zeros((1, 2, 2)), 0.1),
         learned_motions,
+        lambda model: c_header(model, []),
     ],
-    ids=["rollout", "controller"],
+    ids=["rollout", "controller", "header"],
 )
 def test_what_does_not_know_limits_refuses_them(model: Model, use) -> None:
     with pytest.raises(ModelError, match="limits of the drive") as caught:
         use(model)
     assert "[auto] limits = false" in caught.value.advice
+
+
+def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
+    def learned(value: float) -> LearnedLimit:
+        return LearnedLimit(value=value, std=0.01)
+
+    lane = LaneLimitsSection(dead_band=learned(0.1), top=learned(1.0), acceleration=learned(2.0))
+    none = LaneLimitsSection()
+    section = LimitsSection(
+        speed=lane, yaw_rate=none, side=none, track=1.0, track_std=0.0, gain_v=1.0, gain_omega=1.0
+    )
+    known = [Entry(("vx_max",), 3.0, "as far as the log went"), Entry(("wz_max",), 2.0, "the same")]
+    entries = {entry.key: entry.value for entry in with_limits(known, section, (0.9, 1.0))}
+    assert entries[("vx_max",)] == pytest.approx(0.9)
+    assert entries[("wz_max",)] == 2.0
+    assert entries[("ax_max",)] == pytest.approx(1.8)
+    assert entries[("VelocityDeadbandCritic", "deadband_velocities")] == [0.1, 0.0, 0.0]
+    assert with_limits(known, None, (0.9, 1.0)) == known
 
 
 def test_a_watch_sees_nothing_of_the_future(log: Log) -> None:

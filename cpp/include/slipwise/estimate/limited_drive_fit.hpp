@@ -98,7 +98,7 @@ class LimitedDriveFit {
   std::span<const DriveRecord> records_;
   PriorSettings prior_;
   double track_;
-  std::size_t samples_;
+  std::size_t samples_ = 0;
 };
 
 }  // namespace slipwise
