@@ -74,7 +74,7 @@ TEST_CASE("the average has every term once and a covariance that is one") {
 TEST_CASE("before any data nothing is determined, and the richest basis has its weight beforehand") {
   const ModelAverage average("auto", {plain(), named_basis("edd-2"), named_basis("drive-5")}, {}, {}, {});
   const AverageState state = average.state();
-  CHECK(state.weights.isApprox(Eigen::Vector3d(0.2, 0.2, 0.6)));
+  CHECK(state.weights.isApprox(Eigen::Vector3d(0.3, 0.3, 0.4)));
   CHECK(state.variance_ratio.isApproxToConstant(1.0));
   CHECK(state.estimate.mean.isZero());
 }

@@ -16,7 +16,7 @@ namespace slipwise {
 
 struct ModelAverageSettings {
   WeighingSettings weighing = {};
-  double richest = 0.6;  ///< weight beforehand of the basis with the most terms: of all, it is best most often [-]
+  double richest = 0.4;  ///< weight beforehand of the basis with the most terms: of all, it is best most often [-]
   ChangeSettings change = {};
 };
 
