@@ -57,8 +57,8 @@ Seen see(const MotionBelief& belief, const WanderingTerms& terms, const InputTra
   Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
   innovation.z() = wrap_angle(innovation.z());
   const auto known = Eigen::MatrixXd::Zero(belief.model.size(), belief.model.size());
-  return {segment.start, segment.end, innovation,
-          prediction_covariance(at, known, belief.shape, belief.noise_scale), at.by_parameter(Eigen::all, terms.places)};
+  return {segment.start, segment.end, innovation, prediction_covariance(at, known, belief.shape, belief.noise_scale),
+          at.by_parameter(Eigen::all, terms.places)};
 }
 
 /// The deviation under one candidate. It holds still within a segment and decays between their middles.
@@ -128,7 +128,7 @@ void check_positive(const std::vector<double>& values, const char* what) {
     throw std::invalid_argument(std::string(what) + " of coloured slip must not be empty");
   }
   for (const double value : values) {
-    if (!(value > 0.0 && std::isfinite(value))) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
       throw std::invalid_argument(std::string(what) + " of coloured slip must be positive and finite, got " +
                                   std::to_string(value));
     }

@@ -9,7 +9,6 @@
 #include <string>
 #include <utility>
 
-
 namespace slipwise {
 namespace {
 
@@ -25,7 +24,7 @@ Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
 
 /// Weights beforehand: `richest` for the basis with the most terms, the rest in equal parts.
 Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double richest) {
-  if (!(richest > 0.0 && richest < 1.0)) {
+  if (!(richest > 0.0) || !(richest < 1.0)) {
     throw std::invalid_argument("the weight of the richest basis must lie between 0 and 1, got " +
                                 std::to_string(richest));
   }

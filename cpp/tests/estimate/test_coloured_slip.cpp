@@ -99,9 +99,8 @@ TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted
   for (int i = 1; i < 300; ++i) {
     wander.push_back(kept * wander.back() + std::sqrt(1.0 - kept * kept) * 0.09 * normal(random));
   }
-  const auto segments = drive(s.model, s.inputs, 300, [&](int i) {
-    return Eigen::Vector2d(-0.1, -0.3 + wander[static_cast<std::size_t>(i)]);
-  });
+  const auto segments = drive(s.model, s.inputs, 300,
+                              [&](int i) { return Eigen::Vector2d(-0.1, -0.3 + wander[static_cast<std::size_t>(i)]); });
   const Followed found = follow(belief, s.inputs, segments);
   double turning = 0.0;
   for (std::size_t i = 0; i < found.slip.candidates().size(); ++i) {
@@ -134,8 +133,8 @@ TEST_CASE("what was seen is let go with time, and the covariance comes back to w
 TEST_CASE("a model without linear terms is predicted as it is") {
   const Setting s;
   const MotionModel plain(Basis("none", {}, {}, {}), {});
-  const MotionBelief belief{plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise,
-                            Eigen::Vector3d::Ones()};
+  const MotionBelief belief{
+      plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise, Eigen::Vector3d::Ones()};
   const auto segments = drive(s.model, s.inputs, 13, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
   ColouredSlip slip({});
   slip.learn(belief, s.inputs, segments);

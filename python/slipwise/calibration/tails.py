@@ -18,7 +18,7 @@ Ints = NDArray[np.int64]
 # The prior: ln(scale) and ln(dof) are normal. A log of some ten held-out windows outweighs it.
 PRIOR_SCALE, PRIOR_SCALE_STD = 1.0, 0.7  # median and standard deviation of the logarithm
 PRIOR_DOF, PRIOR_DOF_STD = 8.0, 0.8
-MEMORY = 50.0  # windows; the covariance that the tails correct changes while the filter learns
+MEMORY = 100.0  # windows; the covariance that the tails correct changes while the filter learns
 MATCHED = (0.50, 0.95)  # shares whose ellipsoids the point estimate takes over from the posterior
 
 _STEP = 0.1  # of the logarithms of scale and squared distance

@@ -63,7 +63,7 @@ class ColouredSlip {
  private:
   std::vector<SlipWander> candidates_;
   WeighingSettings weighing_;
-  Eigen::VectorXd prior_;    ///< weights beforehand
+  Eigen::VectorXd prior_;  ///< weights beforehand
   Eigen::VectorXd weights_;
 };
 
