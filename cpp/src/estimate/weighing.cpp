@@ -2,7 +2,6 @@
 // Tempered, shared Bayes over rivals.
 #include "slipwise/estimate/weighing.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
@@ -39,10 +38,10 @@ Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<cons
   for (std::size_t i = 0; i < covariances.size(); ++i) {
     covariance += weights[static_cast<Eigen::Index>(i)] * covariances[i];
   }
-  const Eigen::LLT<Eigen::Matrix3d> factor(covariance);
+  const Eigen::Matrix3d precision = covariance.inverse();
   Eigen::VectorXd scores(weights.size());
   for (std::size_t i = 0; i < innovations.size(); ++i) {
-    const double nis = innovations[i].dot(factor.solve(innovations[i]));
+    const double nis = innovations[i].dot(precision * innovations[i]);
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, covariance);
   }
   return scores;
