@@ -69,8 +69,8 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
 Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
                                       const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
                                       const Eigen::Vector3d& scale) {
-  const Eigen::Matrix3d noise = slip_covariance(at.path, shape) + pose_noise_covariance(at.predicted, shape);
-  return at.by_parameter * parameters * at.by_parameter.transpose() + scaled_covariance(noise, scale);
+  return at.by_parameter * parameters * at.by_parameter.transpose() +
+         segment_noise(at.path, at.predicted, shape, scale);
 }
 
 }  // namespace slipwise

@@ -12,6 +12,7 @@
 
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
 namespace {
@@ -56,9 +57,18 @@ Seen see(const MotionBelief& belief, const WanderingTerms& terms, const InputTra
   const auto at = linearize_segment(belief.model, belief.estimate.mean, inputs, segment);
   Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
   innovation.z() = wrap_angle(innovation.z());
-  const auto known = Eigen::MatrixXd::Zero(belief.model.size(), belief.model.size());
-  return {segment.start, segment.end, innovation, prediction_covariance(at, known, belief.shape, belief.noise_scale),
+  return {segment.start, segment.end, innovation,
+          segment_noise(at.path, at.predicted, belief.shape, belief.noise_scale),
           at.by_parameter(Eigen::all, terms.places)};
+}
+
+std::vector<Seen> see_all(const MotionBelief& belief, const WanderingTerms& terms, const InputTrack& inputs,
+                          std::span<const Segment> segments) {
+  std::vector<Seen> seen;
+  for (const Segment& segment : segments) {
+    seen.push_back(see(belief, terms, inputs, segment));
+  }
+  return seen;
 }
 
 /// The deviation under one candidate. It holds still within a segment and decays between their middles.
@@ -163,15 +173,12 @@ void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, s
   if (terms.places.empty() || segments.empty()) {
     return;
   }
-  std::vector<Seen> seen;
-  for (const Segment& segment : segments) {
-    seen.push_back(see(belief, terms, inputs, segment));
-  }
-  const Seen next = seen.back();
-  seen.pop_back();
+  const std::vector<Seen> seen = see_all(belief, terms, inputs, segments);
+  const Seen& next = seen.back();
+  const auto before = std::span(seen).first(seen.size() - 1);
   Eigen::VectorXd scores(weights_.size());
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
-    const State deviation = followed(candidates_[i], terms, seen).mean_over(next.start, next.end).first;
+    const State deviation = followed(candidates_[i], terms, before).mean_over(next.start, next.end).first;
     const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
     const double nis = innovation.dot(next.noise.llt().solve(innovation));
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
@@ -188,10 +195,7 @@ ExpectedPose ColouredSlip::predict(const MotionBelief& belief, const InputTrack&
   if (terms.places.empty()) {
     return expected;
   }
-  std::vector<Seen> seen;
-  for (const Segment& one : recent) {
-    seen.push_back(see(belief, terms, inputs, one));
-  }
+  const std::vector<Seen> seen = see_all(belief, terms, inputs, recent);
   const ByDeviation h = at.by_parameter(Eigen::all, terms.places);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();

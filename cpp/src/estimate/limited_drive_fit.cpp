@@ -98,51 +98,43 @@ double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
 
 double chi(double value, double std) { return (value / std) * (value / std); }
 
-}  // namespace
-
-double& limit_of(LaneLimits& limits, LimitKind kind) {
+double LaneLimits::* member_of(LimitKind kind) {
   switch (kind) {
     case LimitKind::DeadBand:
-      return limits.dead_band;
+      return &LaneLimits::dead_band;
     case LimitKind::Top:
-      return limits.top;
+      return &LaneLimits::top;
     case LimitKind::Acceleration:
-      return limits.acceleration;
+      return &LaneLimits::acceleration;
     default:
-      return limits.braking;
+      return &LaneLimits::braking;
   }
 }
 
-double limit_of(const LaneLimits& limits, LimitKind kind) {
-  LaneLimits copy = limits;
-  return limit_of(copy, kind);
+LaneLimits CommandLimits::* member_of(Lane lane) {
+  switch (lane) {
+    case Lane::Speed:
+      return &CommandLimits::speed;
+    case Lane::YawRate:
+      return &CommandLimits::yaw_rate;
+    default:
+      return &CommandLimits::side;
+  }
 }
+
+}  // namespace
+
+double& limit_of(LaneLimits& limits, LimitKind kind) { return limits.*member_of(kind); }
+
+double limit_of(const LaneLimits& limits, LimitKind kind) { return limits.*member_of(kind); }
 
 bool limits_anything(const LaneLimits& limits, LimitKind kind) {
   return limit_of(limits, kind) != limit_of(LaneLimits{}, kind);
 }
 
-LaneLimits& lane_of(CommandLimits& limits, Lane lane) {
-  switch (lane) {
-    case Lane::Speed:
-      return limits.speed;
-    case Lane::YawRate:
-      return limits.yaw_rate;
-    default:
-      return limits.side;
-  }
-}
+LaneLimits& lane_of(CommandLimits& limits, Lane lane) { return limits.*member_of(lane); }
 
-const LaneLimits& lane_of(const CommandLimits& limits, Lane lane) {
-  switch (lane) {
-    case Lane::Speed:
-      return limits.speed;
-    case Lane::YawRate:
-      return limits.yaw_rate;
-    default:
-      return limits.side;
-  }
-}
+const LaneLimits& lane_of(const CommandLimits& limits, Lane lane) { return limits.*member_of(lane); }
 
 double speed_of_side(const CommandLimits& limits, const SideCommand& command) {
   return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.track);
