@@ -271,9 +271,12 @@ void bind_estimate(nb::module_& m) {
   m.def(
       "reweighed",
       [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const Eigen::VectorXd& prior,
-         const WeighingSettings& settings) { return reweighed(weights, log_scores, prior, settings); },
-      "weights"_a, "log_scores"_a, "prior"_a, "settings"_a,
-      "The weights after models predicted with these log scores, [M]; `prior` are those beforehand.");
+         const WeighingSettings& settings,
+         std::size_t seen) { return reweighed(weights, log_scores, prior, settings, seen); },
+      "weights"_a, "log_scores"_a, "prior"_a, "settings"_a, "seen"_a,
+      "The weights after models predicted with these log scores, [M], `seen` segments having spoken before; `prior` "
+      "are "
+      "those beforehand.");
   m.def(
       "common_log_scores",
       [](const Eigen::VectorXd& weights, const std::vector<Eigen::Vector3d>& innovations,

@@ -183,7 +183,8 @@ void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, s
     const double nis = innovation.dot(next.noise.llt().solve(innovation));
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
   }
-  weights_ = reweighed(weights_, scores, prior_, weighing_);
+  weights_ = reweighed(weights_, scores, prior_, weighing_, seen_);
+  ++seen_;
 }
 
 ExpectedPose ColouredSlip::predict(const MotionBelief& belief, const InputTrack& inputs,

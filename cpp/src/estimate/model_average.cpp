@@ -99,7 +99,9 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   weights_.maxCoeff(&heaviest);
   const Eigen::Index rivals = weights_.size() / prior_.size();
   const Eigen::VectorXd prior = prior_.replicate(rivals, 1) / static_cast<double>(rivals);
-  weights_ = reweighed(weights_, common_log_scores(weights_, innovations, covariances), prior, settings_.weighing);
+  weights_ =
+      reweighed(weights_, common_log_scores(weights_, innovations, covariances), prior, settings_.weighing, seen_);
+  ++seen_;
   if (on_trial_ > 0) {
     --on_trial_;
     if (on_trial_ == 0) {

@@ -3,6 +3,7 @@
 #include "slipwise/estimate/weighing.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -12,14 +13,15 @@
 namespace slipwise {
 
 Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
-                          const Eigen::VectorXd& prior, const WeighingSettings& settings) {
+                          const Eigen::VectorXd& prior, const WeighingSettings& settings, std::size_t seen) {
   if (weights.size() != log_scores.size() || weights.size() != prior.size() || weights.size() == 0) {
     throw std::invalid_argument("each rival needs a weight, a log score and a prior weight, got " +
                                 std::to_string(weights.size()) + ", " + std::to_string(log_scores.size()) + " and " +
                                 std::to_string(prior.size()));
   }
   // Shared before the segment speaks, not after: what is spread to rivals that it refutes never reaches a prediction.
-  const Eigen::ArrayXd shared = (1.0 - settings.share) * weights.array() + settings.share * prior.array();
+  const double share = std::min(settings.share, 1.0 / static_cast<double>(seen + 1));
+  const Eigen::ArrayXd shared = (1.0 - share) * weights.array() + share * prior.array();
   const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
   const Eigen::VectorXd heavier = shared * tempered.exp();
   return heavier / heavier.sum();

@@ -14,7 +14,7 @@ namespace {
 TEST_CASE("weights are tempered Bayes after a share is spread by the weights beforehand") {
   const Eigen::Vector2d prior(0.75, 0.25);
   const WeighingSettings settings{.learning_rate = 0.5, .share = 0.1};
-  const Eigen::VectorXd weights = reweighed(Eigen::Vector2d(0.2, 0.8), Eigen::Vector2d(1.0, -1.0), prior, settings);
+  const Eigen::VectorXd weights = reweighed(Eigen::Vector2d(0.2, 0.8), Eigen::Vector2d(1.0, -1.0), prior, settings, 0);
   const double first = 0.9 * 0.2 + 0.1 * 0.75, second = (0.9 * 0.8 + 0.1 * 0.25) * std::exp(-1.0);
   CHECK(weights[0] == doctest::Approx(first / (first + second)).epsilon(1e-12));
   CHECK(weights.sum() == doctest::Approx(1.0));
@@ -24,9 +24,16 @@ TEST_CASE("equal scores bring the weights back to those beforehand") {
   const Eigen::Vector2d prior(0.6, 0.4);
   Eigen::VectorXd weights = Eigen::Vector2d(1.0, 0.0);
   for (int i = 0; i < 200; ++i) {
-    weights = reweighed(weights, Eigen::Vector2d::Zero(), prior, {});
+    weights = reweighed(weights, Eigen::Vector2d::Zero(), prior, {}, 0);
   }
   CHECK(weights.isApprox(prior, 1e-4));
+}
+
+TEST_CASE("the share falls with the segments seen, so that one that leads for long keeps nearly all the weight") {
+  const Eigen::Vector2d prior(0.5, 0.5), leading(1.0, 0.0), equal = Eigen::Vector2d::Zero();
+  const WeighingSettings settings{.learning_rate = 1.0, .share = 0.1};
+  CHECK(reweighed(leading, equal, prior, settings, 3)[1] == doctest::Approx(0.05));
+  CHECK(reweighed(leading, equal, prior, settings, 199)[1] == doctest::Approx(0.0025));
 }
 
 TEST_CASE("rivals are judged by their errors under one covariance, whatever they say of themselves") {
@@ -48,9 +55,9 @@ TEST_CASE("a small error scores higher than a large one, and less steeply than a
 
 TEST_CASE("what does not fit together is refused") {
   const Eigen::Vector2d two(0.5, 0.5);
-  CHECK_THROWS_AS(reweighed(two, Eigen::Vector3d::Zero(), two, {}), std::invalid_argument);
-  CHECK_THROWS_AS(reweighed(two, two, Eigen::Vector3d::Zero(), {}), std::invalid_argument);
-  CHECK_THROWS_AS(reweighed({}, {}, {}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(reweighed(two, Eigen::Vector3d::Zero(), two, {}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(reweighed(two, two, Eigen::Vector3d::Zero(), {}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(reweighed({}, {}, {}, {}, 0), std::invalid_argument);
   const std::array<Eigen::Vector3d, 1> one{};
   const std::array<Eigen::Matrix3d, 2> sizes{};
   CHECK_THROWS_AS(common_log_scores(two, one, sizes), std::invalid_argument);

@@ -138,7 +138,7 @@ class StructureChoice:
         covariances = [self._update.innovation_covariance, *(seen.innovation_covariance for seen in scored)]
         scores = _core.common_log_scores(self._weights, innovations, covariances)  # by errors, as bases are
         equal = np.full(len(self._weights), 1.0 / len(self._weights))
-        self._weights = np.array(_core.reweighed(self._weights, scores, equal, self._weighing))
+        self._weights = np.array(_core.reweighed(self._weights, scores, equal, self._weighing, i))
         for contender in self._contenders:
             contender.learn(i + 1)
         self._record(i, [seen.nis for seen in scored])

@@ -65,6 +65,7 @@ class ColouredSlip {
   WeighingSettings weighing_;
   Eigen::VectorXd prior_;  ///< weights beforehand
   Eigen::VectorXd weights_;
+  std::size_t seen_ = 0;  ///< segments weighed by
 };
 
 }  // namespace slipwise

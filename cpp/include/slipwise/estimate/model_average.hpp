@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <deque>
 #include <string>
 #include <vector>
@@ -61,6 +62,7 @@ class ModelAverage {
   ModelAverageSettings settings_;
   Eigen::VectorXd prior_;    ///< weights of the bases beforehand
   Eigen::VectorXd weights_;  ///< one per filter
+  std::size_t seen_ = 0;     ///< segments weighed by
   DrivenSpeeds speeds_;
   std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
   std::deque<AverageState> before_;     ///< before each of the last segments

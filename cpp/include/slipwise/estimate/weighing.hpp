@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighing rivals by how well they predict: a fixed share (Herbster and Warmuth 1998) of a tempered predictive density
-// (Gruenwald 2012).
+// Weighing rivals by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that falls
+// with time (Herbster and Warmuth 1998; van Erven, Gruenwald and de Rooij 2012).
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <span>
 
 namespace slipwise {
@@ -11,14 +12,15 @@ namespace slipwise {
 struct WeighingSettings {
   double learning_rate =
       0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double share = 0.05;  ///< part of the weight that is spread anew each segment, so that a rival can come back [-]
+  double share = 0.05;  ///< part of the weight that segment n spreads anew, 1/n where that is less: poor rivals lead
+                        ///< while data are few, and the longer one has led, the less is a change expected [-]
 };
 
-/// The weights after rivals predicted a segment with these log scores; what is spread anew is spread by `prior`, their
-/// weights beforehand (derivations.md, section 7).
+/// The weights after rivals predicted a segment with these log scores, `seen` segments having spoken before; what is
+/// spread anew is spread by `prior`, their weights beforehand (derivations.md, section 7).
 /// \throws std::invalid_argument when there is not one score and one prior weight per weight.
 Eigen::VectorXd reweighed(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
-                          const Eigen::VectorXd& prior, const WeighingSettings& settings);
+                          const Eigen::VectorXd& prior, const WeighingSettings& settings, std::size_t seen);
 
 /// Log density of an innovation under a Student-t with the scale of its covariance, without constants: real residuals
 /// have heavy tails.
