@@ -8,10 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from slipwise import _core
 from slipwise.calibration import Settings, calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.learner import make_learner
+from slipwise.calibration.structure_choice import StructureChoice
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
 
@@ -53,6 +56,33 @@ def test_step_is_told_where_slip_is_learned_in_cascade(changing: Log) -> None:
     passing.belief(len(windows), np.ones(3))
     (found,) = (i for i in range(len(windows)) if passing.change(i).alarm)
     assert CHANGE < windows.end[found] <= CHANGE + 5.0
+
+
+def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log) -> None:
+    bare = replace(changing, runs=tuple(replace(run, wheels=None) for run in changing.runs))
+    found = {}
+    for name, log in (("with wheels", changing), ("alone", bare)):
+        history = calibrate(log, input_name="command").history
+        assert history is not None
+        ((_, found[name]),) = history.alarms()
+    assert CHANGE < found["with wheels"] <= CHANGE + 5.0
+    assert found["with wheels"] < found["alone"] <= CHANGE + 10.0
+
+
+def test_change_told_by_wheels_is_learned_by_all_structures(changing: Log) -> None:
+    windows = learning_windows(prepare_drive(changing, "command"), "command", Settings())
+    last = {}
+    for threshold in (10.0, 1e9):
+        settings = make_settings({"change": {"threshold": threshold}})
+        learner = make_learner(make_settings({"change": {"threshold": 1e9}}), "command")  # blind on its own
+        average = learner.fresh()
+        StructureChoice(average, windows, settings).finish()
+        last[threshold] = np.array(average.state().estimate.mean)[names_of(average).index("ang.w")]
+    assert last[10.0] < last[1e9] - 0.02
+
+
+def names_of(average: _core.ModelAverage) -> list[str]:
+    return [info.name for info in average.model.parameters]
 
 
 def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:
