@@ -24,6 +24,19 @@ ByChange turns(int segment, double size) {
   return by_change;
 }
 
+/// Six changes, as of the terms linear in V or w: of each direction by what keeps its sign and by what turns with w.
+ByChange linear(int segment, double size) {
+  ByChange by_change = ByChange::Zero(3, 6);
+  for (int direction = 0; direction < 3; ++direction) {
+    by_change(direction, 2 * direction) = size;
+    by_change(direction, 2 * direction + 1) = segment % 2 == 0 ? size : -size;
+  }
+  return by_change;
+}
+
+const ChangeKinds kAll{{0, 1, 2, 3, 4, 5}};
+const ChangeKinds kLinearKinds{{0}, {5}, {0, 5}, {0, 1, 2, 3, 4, 5}};
+
 Eigen::Vector3d noise(std::mt19937_64& random) {
   std::student_t_distribution<double> tail(5.0);
   const double x = tail(random), y = tail(random);
@@ -46,37 +59,37 @@ TEST_CASE("a change that residuals agree on is found within three segments") {
   CHECK(found);
 }
 
-/// How many of 200 changes of `size` sigmas are found within three segments, after 60 with residuals `scale` as large
-/// as their covariance says.
+/// How many of 200 changes of yaw slip by `size` sigmas are found within three segments, after 60 with residuals
+/// `scale` as large as their covariance says.
 int found_soon(const ChangeKinds& kinds, double size, double scale) {
   int found = 0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937_64 random(seed);
     ChangeDetector detector{ChangeSettings{}, kinds};
     for (int i = 0; i < 60; ++i) {
-      detector.see(scale * noise(random), kUnit, turns(i, 2.0));
+      detector.see(scale * noise(random), kUnit, linear(i, 2.0));
     }
     bool alarm = false;
     for (int i = 0; i < 3 && !alarm; ++i) {
-      const Eigen::Vector3d jump = turns(i, size).col(1);
-      alarm = detector.see(jump + scale * noise(random), kUnit, turns(i, 2.0)).alarm;
+      const Eigen::Vector3d jump = linear(i, size).col(5);
+      alarm = detector.see(jump + scale * noise(random), kUnit, linear(i, 2.0)).alarm;
     }
     found += alarm ? 1 : 0;
   }
   return found;
 }
 
-TEST_CASE("nearly all changes of five sigmas are found within three segments") {
-  CHECK(found_soon(kKinds, 5.0, 1.0) >= 190);
+TEST_CASE("nine in ten changes of five sigmas are found within three segments") {
+  CHECK(found_soon(kLinearKinds, 5.0, 1.0) >= 180);
 }
 
 TEST_CASE("residuals that are always smaller than foretold tell of smaller changes") {
-  CHECK(found_soon(kKinds, 2.5, 1.0) < 100);
-  CHECK(found_soon(kKinds, 2.5, 0.4) >= 190);
+  CHECK(found_soon(kLinearKinds, 2.5, 1.0) < 100);
+  CHECK(found_soon(kLinearKinds, 2.5, 0.4) >= 190);
 }
 
 TEST_CASE("a change of one kind is found sooner than where all must be fitted") {
-  CHECK(found_soon(kKinds, 4.0, 1.0) > found_soon({{0, 1}}, 4.0, 1.0));
+  CHECK(found_soon(kLinearKinds, 4.0, 1.0) > found_soon(kAll, 4.0, 1.0) + 20);
 }
 
 TEST_CASE("one outlier is no change of ground, however large") {
