@@ -10,14 +10,14 @@ namespace slipwise {
 
 struct ChangeSettings {
   bool detect = true;
-  double threshold = 10.0;  ///< log odds of a change against none beyond which there is an alarm [-]
-  int shortest = 2;         ///< segments that must agree: one alone is an outlier, not a ground
-  int longest = 4;          ///< segments that are tested together, at most
-  double fraction = 0.1;    ///< usual size of a change of a term's slip, as a fraction of the driven twist [-]
-  double forget = 0.03;     ///< on an alarm, part of the prior variance that the slip parameters get back [-]
-  int trial = 20;           ///< segments after an alarm in which the models as they were compete with those that forgot
-  int warm_up = 20;         ///< segments before the first test, in which the size of the noise is learned
-  double memory = 100.0;    ///< segments over which the usual size and likeness of residuals are averaged [-]
+  double threshold = 9.5;  ///< log odds of a change against none beyond which there is an alarm [-]
+  int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a ground
+  int longest = 4;         ///< segments that are tested together, at most
+  double fraction = 0.1;   ///< usual size of a change of a term's slip, as a fraction of the driven twist [-]
+  double forget = 0.03;    ///< on an alarm, part of the prior variance that the slip parameters get back [-]
+  int trial = 20;          ///< segments after an alarm in which the models as they were compete with those that forgot
+  int warm_up = 20;        ///< segments before the first test, in which the size of the noise is learned
+  double memory = 100.0;   ///< segments over which the usual size and likeness of residuals are averaged [-]
 };
 
 /// The test of one segment together with those just before it.
