@@ -302,8 +302,6 @@ void bind_estimate(nb::module_& m) {
           },
           "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "mount"_a, "filter"_a, "settings"_a)
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
-      .def("doubt", &ModelAverage::doubt,
-           "Go on as after an alarm: for a change of ground that was found by other means.")
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })
       .def_prop_ro("model", &ModelAverage::model)

@@ -106,7 +106,7 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
   }
   best.alarm = best.log_odds > settings_.threshold && seen_ > settings_.warm_up;
   if (best.alarm) {
-    restart();
+    recent_.clear();
   }
   return best;
 }

@@ -161,11 +161,7 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
 /// Every model once as if the ground had changed and once as it was: what follows decides between them, so that a
 /// passing disturbance costs little, and the old ground is known at once where it comes back soon.
 void ModelAverage::doubt() {
-  if (on_trial_ > 0) {
-    return;
-  }
   before_.clear();
-  detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
   for (CausalFilter& filter : filters_) {
     filter.forget(settings_.change.forget);

@@ -116,23 +116,6 @@ TEST_CASE("a change of ground is found while driving, and learned faster than wi
   CHECK(seeing.state().weights.size() == 1);
 }
 
-TEST_CASE("a change found by other means is doubted once, and forgotten where the ground stayed") {
-  const MotionModel real(named_basis("edd-2"), {});
-  const Eigen::Vector2d truth(-0.1, -0.4);
-  ModelAverage average = learned({named_basis("edd-2")}, real, truth);
-  const double sure = average.state().estimate.covariance(1, 1);
-  average.doubt();
-  const double doubting = average.state().estimate.covariance(1, 1);
-  CHECK(doubting > 2.0 * sure);
-  average.doubt();
-  CHECK(average.state().estimate.covariance(1, 1) == doubting);
-  const auto same = tests::simulate_drive(real, truth, {.seed = 84, .windows = 20, .window = 2.0, .noise = kNoise});
-  for (const Segment& segment : same.segments) {
-    average.learn(same.inputs, segment);
-  }
-  CHECK(average.state().estimate.covariance(1, 1) < sure);
-}
-
 TEST_CASE("a parked robot forgets nothing") {
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverage average = learned({named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));

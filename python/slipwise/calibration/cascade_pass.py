@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -21,11 +20,6 @@ from slipwise.segments import WindowRules
 NO_SENSOR = WindowRules().sensor
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
 RECENT_CHAIN_WINDOWS = 200  # from which the chain behind newly found limits is learned
-
-
-def strongest(tests: Sequence[_core.ChangeTest]) -> _core.ChangeTest:
-    """Return the test that speaks most for a change of ground; one that says nothing where there is none."""
-    return max(tests, key=lambda test: (test.alarm, test.log_odds), default=_core.ChangeTest())
 
 
 class CascadePass:
@@ -64,7 +58,8 @@ class CascadePass:
 
     def change(self, i: int) -> _core.ChangeTest:
         """Return the strongest test for a change of ground while window i of the commands passed."""
-        return strongest(self._changes[self._slip.passed(i) : self._slip.passed(i + 1)])
+        tests = self._changes[self._slip.passed(i) : self._slip.passed(i + 1)] or [_core.ChangeTest()]
+        return max(tests, key=lambda test: (test.alarm, test.log_odds))
 
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self._changes.append(self._average.change)

@@ -34,11 +34,6 @@ class AverageLearner:
         """The test for a change of ground that came with the last window."""
         return self._average.change
 
-    def doubt(self) -> None:
-        """Go on as after an alarm, for a change of ground found by other means."""
-        self._belief = None
-        self._average.doubt()
-
     def _now(self) -> Belief:
         state = self._average.state()
         return Belief(

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.cascade_pass import CascadePass, strongest
+from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
@@ -141,20 +141,16 @@ class StructureChoice:
         self._weights = np.array(_core.reweighed(self._weights, scores, equal, self._weighing))
         for contender in self._contenders:
             contender.learn(i + 1)
-        change = self._contenders[0].passing.change(i)
-        if change.alarm:  # the wheels' shorter windows tell a change first
-            self._average.doubt()
-        self._record(i, [seen.nis for seen in scored], change)
+        self._record(i, [seen.nis for seen in scored])
 
-    def _record(self, i: int, nis: list[float], change: _core.ChangeTest) -> None:
+    def _record(self, i: int, nis: list[float]) -> None:
         """Until limits are found, what lies behind them is the cascade itself."""
         if self._recorder is None:
             return
         weights = np.zeros(len(STRUCTURES))
         weights[: len(self._weights)] = self._weights
         self._recorder.weigh(i, weights)
-        together = strongest((self._average.change, change))
-        self._recorder.mark(i, together, self._together.belief(i + 1))
+        change = self._contenders[0].passing.change(i)
         beliefs = [contender.believed for contender in self._contenders]
         if len(beliefs) == 1:
             beliefs, nis = [*beliefs, replace(beliefs[0], structure=LIMITS)], nis * 2
@@ -180,3 +176,4 @@ class StructureChoice:
         self._update = update
         if self._recorder is not None:
             self._recorder.record(i, update.nis, update.weight, belief)
+            self._recorder.mark(i, self._average.change, belief)

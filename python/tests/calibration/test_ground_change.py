@@ -8,13 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from slipwise import _core
 from slipwise.calibration import Settings, calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learner import make_learner
-from slipwise.calibration.structure_choice import StructureChoice
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
 
@@ -67,22 +64,6 @@ def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log)
         ((_, found[name]),) = history.alarms()
     assert CHANGE < found["with wheels"] <= CHANGE + 5.0
     assert found["with wheels"] < found["alone"] <= CHANGE + 10.0
-
-
-def test_change_told_by_wheels_is_learned_by_all_structures(changing: Log) -> None:
-    windows = learning_windows(prepare_drive(changing, "command"), "command", Settings())
-    last = {}
-    for threshold in (9.5, 1e9):
-        settings = make_settings({"change": {"threshold": threshold}})
-        learner = make_learner(make_settings({"change": {"threshold": 1e9}}), "command")  # blind on its own
-        average = learner.fresh()
-        StructureChoice(average, windows, settings).finish()
-        last[threshold] = np.array(average.state().estimate.mean)[names_of(average).index("ang.w")]
-    assert last[9.5] < last[1e9] - 0.02
-
-
-def names_of(average: _core.ModelAverage) -> list[str]:
-    return [info.name for info in average.model.parameters]
 
 
 def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:

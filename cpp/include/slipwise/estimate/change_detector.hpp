@@ -55,8 +55,6 @@ class ChangeDetector {
   /// alarm the test starts anew.
   ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
-  /// Looks for changes after the last segment only. What is usual is kept.
-  void restart() { recent_.clear(); }
 
  private:
   struct Whitened {

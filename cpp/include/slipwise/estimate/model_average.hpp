@@ -42,10 +42,6 @@ class ModelAverage {
   /// weighed most before.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
 
-  /// Goes on as after an alarm: for a change of ground that was found by other means, such as wheel speeds beside the
-  /// commands. Does nothing while the models after the last alarm are on trial.
-  void doubt();
-
   const MotionModel& model() const { return model_; }
   AverageState state() const;
   /// The test of the last segment for a change of ground.
@@ -54,6 +50,7 @@ class ModelAverage {
 
  private:
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  void doubt();
   void settle();
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
