@@ -2,6 +2,7 @@
 // A change of ground is found when residuals agree on it, and not otherwise.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <stdexcept>
@@ -118,10 +119,14 @@ TEST_CASE("heavy-tailed residuals raise at most one alarm in a thousand segments
   std::mt19937_64 random(154);
   ChangeDetector detector{ChangeSettings{}, kKinds};
   int alarms = 0;
+  int longest = 0;
   for (int i = 0; i < 20000; ++i) {
-    alarms += detector.see(noise(random), kUnit, turns(i, 4.0)).alarm ? 1 : 0;
+    const ChangeTest test = detector.see(noise(random), kUnit, turns(i, 4.0));
+    alarms += test.alarm ? 1 : 0;
+    longest = std::max(longest, test.segments);
   }
   CHECK(alarms <= 20);
+  CHECK(longest == ChangeSettings{}.longest);  // and none is remembered for longer
 }
 
 TEST_CASE("a parked robot shows no change") {
