@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
 
@@ -18,6 +19,9 @@ constexpr int kIterations = 4;           // of iteratively reweighted least squa
 constexpr double kStart = 1e-3;          // weight of the change's prior in the first iteration, which has to get far
 constexpr double kLargestRatio = 6.0;    // a gain counts at most this many times what is usual
 constexpr double kUsualSegments = 20.0;  // whiteness is believed as if it had been seen over this many segments
+constexpr double kSizeSegments = 5.0;    // and the size that was foretold over this many
+constexpr double kLargestSquare = 9.0;   // a squared residual counts at most this many times its size
+constexpr double kLeastSize = 0.1;       // smaller residuals count as of this square size
 
 /// The change that explains most, with the weights of the segments' residuals and of the change's prior there.
 struct Fitted {
@@ -71,32 +75,34 @@ ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by
   return {.log_odds = gain - occam, .gain = gain, .expected_gain = 0.5 * determined};
 }
 
-ChangeDetector::ChangeDetector(const ChangeSettings& settings) : settings_(settings) {
+ChangeDetector::ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds)
+    : settings_(settings), kinds_(std::move(kinds)) {
   if (settings.shortest < 1 || settings.longest < settings.shortest) {
     throw std::invalid_argument("a change is tested over at least one segment, and `longest` is not below `shortest`");
   }
-  usual_.assign(static_cast<std::size_t>(settings.longest) + 1, 1.0);
+  if (std::ranges::any_of(kinds_, &std::vector<Eigen::Index>::empty)) {
+    throw std::invalid_argument("each kind of change needs at least one column");
+  }
+  sizes_.emplace_back(Eigen::Vector3d::Ones());
+  usual_ = Eigen::MatrixXd::Ones(settings.longest + 1, std::ssize(kinds_));
 }
 
 ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
                                const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) {
-  if (!settings_.detect || by_change.cols() == 0) {
+  if (!settings_.detect || kinds_.empty()) {
     return {};
   }
   seen_ += 1.0;
-  // S^-1/2 by eigenvectors: any root serves, and the residuals' order within a segment does not matter.
-  const Eigen::Matrix3d whiten = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorInverseSqrt();
-  recent_.push_back({whiten * innovation, whiten.lazyProduct(by_change)});
+  recent_.push_back(whitened(innovation, covariance, by_change));
   if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
   }
   ChangeTest best;
   for (int n = settings_.shortest; n <= static_cast<int>(std::ssize(recent_)); ++n) {
-    const ChangeFit found = fit_last(n, usual_[static_cast<std::size_t>(n)]);
-    if (found.log_odds > best.log_odds) {
-      best = {.log_odds = found.log_odds, .segments = n, .alarm = false};
+    const double log_odds = test_last(n);
+    if (log_odds > best.log_odds) {
+      best = {.log_odds = log_odds, .segments = n, .alarm = false};
     }
-    learn_usual(n, found);
   }
   best.alarm = best.log_odds > settings_.threshold && seen_ > settings_.warm_up;
   if (best.alarm) {
@@ -105,27 +111,61 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
   return best;
 }
 
+/// By the covariance, and by how large residuals were up to `longest` segments ago: a covariance that is still wide
+/// from the first segments would hide a change. A segment teaches the size as much as it could tell of a change: poses
+/// of a parked robot hardly err, and say nothing of those of a moving one.
+ChangeDetector::Whitened ChangeDetector::whitened(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
+                                                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) {
+  // S^-1/2 by eigenvectors: the one root that is symmetric keeps the directions (x, y, theta) apart.
+  const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorInverseSqrt();
+  const Eigen::Vector3d residual = root * innovation;
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> derivative = root.lazyProduct(by_change);
+  const Eigen::Vector3d last = sizes_.back();
+  const double told = 1.0 - 1.0 / (1.0 + derivative.squaredNorm());
+  sized_ += told;
+  const double gain = told * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.memory);
+  sizes_.emplace_back(last + gain * (residual.cwiseAbs2().cwiseMin(kLargestSquare * last) - last));
+  const Eigen::Vector3d unit = sizes_.front().cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
+  if (std::ssize(sizes_) > settings_.longest) {
+    sizes_.pop_front();
+  }
+  return {unit.cwiseProduct(residual), unit.asDiagonal() * derivative};
+}
+
+/// Log of the mean odds of the kinds of change. A kind with few changes pays for little freedom, and sees a change that
+/// is of its kind sooner than one with many; the mean costs at most the logarithm of their number.
+double ChangeDetector::test_last(int segments) {
+  Eigen::ArrayXd log_odds(std::ssize(kinds_));
+  for (std::size_t k = 0; k < kinds_.size(); ++k) {
+    const auto column = static_cast<Eigen::Index>(k);
+    double& usual = usual_(segments, column);
+    const ChangeFit found = fit_last(segments, kinds_[k], usual);
+    log_odds[column] = found.log_odds;
+    learn_usual(usual, found);
+  }
+  const double most = log_odds.maxCoeff();
+  return most + std::log((log_odds - most).exp().mean());
+}
+
 /// The last segments, as if their residuals were `usual` times as large in square.
-ChangeFit ChangeDetector::fit_last(int segments, double usual) const {
+ChangeFit ChangeDetector::fit_last(int segments, const std::vector<Eigen::Index>& kind, double usual) const {
   const double unit = 1.0 / std::sqrt(std::max(usual, 1.0));
   const Eigen::Index rows = Eigen::Index{3} * segments;
-  const Eigen::Index changes = recent_.back().by_change.cols();
   Eigen::VectorXd residuals(rows);
-  Eigen::MatrixXd by_change(rows, changes);
+  Eigen::MatrixXd by_change(rows, std::ssize(kind));
   for (int i = 0; i < segments; ++i) {
     const Eigen::Index row = Eigen::Index{3} * i;
     const Whitened& segment = recent_[recent_.size() - static_cast<std::size_t>(segments - i)];
     residuals.segment<3>(row) = unit * segment.residual;
-    by_change.middleRows<3>(row) = unit * segment.by_change;
+    by_change.middleRows<3>(row) = unit * segment.by_change(Eigen::all, kind);
   }
   return fit_change(residuals, by_change);
 }
 
-void ChangeDetector::learn_usual(int segments, const ChangeFit& fit) {
+void ChangeDetector::learn_usual(double& usual, const ChangeFit& fit) const {
   if (fit.expected_gain <= 0.0) {
     return;  // nothing could have been seen, as on a parked robot
   }
-  double& usual = usual_[static_cast<std::size_t>(segments)];
   const double ratio = std::clamp(fit.gain / fit.expected_gain, 0.0, kLargestRatio) * std::max(usual, 1.0);
   usual += std::max(1.0 / (seen_ + kUsualSegments), 1.0 / settings_.memory) * (ratio - usual);
 }

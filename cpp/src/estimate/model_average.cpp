@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <iterator>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -49,20 +51,46 @@ std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& 
   return places;
 }
 
+bool has_term(const Basis& basis, const std::string& name) {
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    if (basis.parameter_name(i) == name) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// The terms linear in V or w, by which every ground can be told; all terms where the basis has none of them.
 std::vector<Eigen::Index> changing_terms(const Basis& basis) {
   const Basis linear = named_basis("full-linear-6");
-  std::vector<Eigen::Index> all;
+  std::vector<Eigen::Index> all(basis.size());
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
   std::vector<Eigen::Index> found;
-  for (std::size_t i = 0; i < basis.size(); ++i) {
-    all.push_back(static_cast<Eigen::Index>(i));
-    for (std::size_t j = 0; j < linear.size(); ++j) {
-      if (basis.parameter_name(i) == linear.parameter_name(j)) {
-        found.push_back(all.back());
-      }
+  std::ranges::copy_if(all, std::back_inserter(found), [&](Eigen::Index i) {
+    return has_term(linear, basis.parameter_name(static_cast<std::size_t>(i)));
+  });
+  return found.empty() ? all : found;
+}
+
+/// Of the changing terms, by their places among these: all, the forward slip that goes with V and the yaw slip that
+/// goes with w together, and each of the two alone.
+ChangeKinds change_kinds(const Basis& basis, const std::vector<Eigen::Index>& changing) {
+  const Basis main = named_basis("edd-2");
+  std::set<std::vector<Eigen::Index>> kinds;
+  std::vector<Eigen::Index> all;
+  std::vector<Eigen::Index> both;
+  for (const Eigen::Index term : changing) {
+    const Eigen::Index place = std::ssize(all);
+    all.push_back(place);
+    if (has_term(main, basis.parameter_name(static_cast<std::size_t>(term)))) {
+      both.push_back(place);
+      kinds.insert({place});
     }
   }
-  return found.empty() ? all : found;
+  kinds.insert(both);
+  kinds.insert(all);
+  kinds.erase(std::vector<Eigen::Index>{});
+  return {kinds.begin(), kinds.end()};
 }
 
 }  // namespace
@@ -74,7 +102,7 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
       prior_(prior_weights(bases, settings.richest)),
       weights_(prior_),
       changing_(changing_terms(model_.basis())),
-      detector_(settings.change) {
+      detector_(settings.change, change_kinds(model_.basis(), changing_)) {
   for (const Basis& basis : bases) {
     filters_.emplace_back(MotionModel(basis, learned), filter);
     places_.push_back(places_of(filters_.back().model(), model_));

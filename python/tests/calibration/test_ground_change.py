@@ -55,6 +55,17 @@ def test_step_is_told_where_slip_is_learned_in_cascade(changing: Log) -> None:
     assert CHANGE < windows.end[found] <= CHANGE + 5.0
 
 
+def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log) -> None:
+    bare = replace(changing, runs=tuple(replace(run, wheels=None) for run in changing.runs))
+    found = {}
+    for name, log in (("with wheels", changing), ("alone", bare)):
+        history = calibrate(log, input_name="command").history
+        assert history is not None
+        ((_, found[name]),) = history.alarms()
+    assert CHANGE < found["with wheels"] <= CHANGE + 5.0
+    assert found["with wheels"] < found["alone"] <= CHANGE + 10.0
+
+
 def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:
     learned = {}
     for detect in (True, False):

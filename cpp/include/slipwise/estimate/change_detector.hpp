@@ -10,14 +10,14 @@ namespace slipwise {
 
 struct ChangeSettings {
   bool detect = true;
-  double threshold = 9.0;  ///< log odds of a change against none beyond which there is an alarm [-]
+  double threshold = 9.5;  ///< log odds of a change against none beyond which there is an alarm [-]
   int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a ground
   int longest = 4;         ///< segments that are tested together, at most
   double fraction = 0.1;   ///< usual size of a change of a term's slip, as a fraction of the driven twist [-]
   double forget = 0.03;    ///< on an alarm, part of the prior variance that the slip parameters get back [-]
   int trial = 20;          ///< segments after an alarm in which the models as they were compete with those that forgot
   int warm_up = 20;        ///< segments before the first test, in which the size of the noise is learned
-  double memory = 100.0;   ///< segments over which the usual likeness of neighbouring residuals is averaged [-]
+  double memory = 100.0;   ///< segments over which the usual size and likeness of residuals are averaged [-]
 };
 
 /// The test of one segment together with those just before it.
@@ -38,11 +38,17 @@ struct ChangeFit {
 /// their usual size, [3 n, changes]. Residuals and changes have heavy tails (derivations.md, section 17).
 ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
 
-/// A generalised likelihood ratio over the last segments, weighed against what is usual on this ground: neighbouring
-/// residuals that are always alike (coloured slip) are no change.
+/// The ways in which a ground may come to differ: each a list of changes that come together.
+using ChangeKinds = std::vector<std::vector<Eigen::Index>>;
+
+/// A Bayesian likelihood ratio over the last segments, averaged over the kinds of change and weighed against what is
+/// usual on this ground: residuals that are always small tell of a change sooner, and neighbouring residuals that are
+/// always alike (coloured slip) are no change.
 class ChangeDetector {
  public:
-  explicit ChangeDetector(const ChangeSettings& settings);
+  /// `kinds` are lists of columns of the `by_change` that `see` is given. Without any, nothing is ever found.
+  /// \throws std::invalid_argument when the settings test no segment, or a kind is empty.
+  ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds);
 
   /// Tests whether the ground changed before this segment or one of the last. `innovation` had covariance `covariance`
   /// under what was learned before; `by_change` is its derivative by changes in units of their usual size. After an
@@ -55,12 +61,19 @@ class ChangeDetector {
     Eigen::Vector3d residual;
     Eigen::Matrix<double, 3, Eigen::Dynamic> by_change;
   };
-  ChangeFit fit_last(int segments, double usual) const;
-  void learn_usual(int segments, const ChangeFit& fit);
+  Whitened whitened(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
+                    const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
+  double test_last(int segments);
+  ChangeFit fit_last(int segments, const std::vector<Eigen::Index>& kind, double usual) const;
+  void learn_usual(double& usual, const ChangeFit& fit) const;
 
   ChangeSettings settings_;
+  ChangeKinds kinds_;
   std::deque<Whitened> recent_;
-  std::vector<double> usual_;  ///< gain over its expectation, by number of segments: 1 where residuals are white
+  std::deque<Eigen::Vector3d>
+      sizes_;              ///< mean squares of whitened residuals, as known before each of the last segments
+  double sized_ = 0.0;     ///< segments that the sizes were learned from
+  Eigen::MatrixXd usual_;  ///< [segments + 1, kinds] gain over its expectation: 1 where residuals are white
   double seen_ = 0.0;
 };
 
