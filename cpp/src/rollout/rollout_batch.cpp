@@ -3,11 +3,14 @@
 #include "slipwise/rollout/rollout_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "slipwise/rollout/gpu.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
 #include "slipwise/rollout/start_drive.hpp"
@@ -149,6 +152,13 @@ struct SentCommands {
   }
 };
 
+/// The first period of commands that no pose depends on, since they are still in the delay at the end.
+template <typename Scalar>
+std::size_t first_unused(const LaneJob<Scalar>& job) {
+  const std::ptrdiff_t unused = std::max({job.shift_v, job.shift_omega, std::ptrdiff_t{0}});
+  return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(job.periods) - unused, std::ptrdiff_t{0}));
+}
+
 /// Moves the block to its place in the batch. What all lanes share is set once.
 template <typename Scalar>
 class BlockOfBatch {
@@ -160,6 +170,7 @@ class BlockOfBatch {
         lanes_(lanes),
         many_(batch.starts.size() > 1),
         each_(many_ || (chain_.responds && std::min(chain_.v.shift, chain_.omega.shift) < 0)) {
+    point_to_rows(rows_.data(), kMostLanes, block_);
     block_.past_count = batch.past.size() / batch.starts.size();
     block_.past_stride = many_ ? block_.past_count : 0;
     const Drives drives = drives_of(0);
@@ -167,6 +178,9 @@ class BlockOfBatch {
       set_lane(lane, batch.starts.front().pose, drives);
     }
   }
+
+  /// Whether some rollouts start differently from others.
+  bool differs() const { return each_; }
 
   const LaneBlock<Scalar>& at(std::size_t block) {
     block_.first = block * lanes_;
@@ -223,8 +237,49 @@ class BlockOfBatch {
   std::size_t lanes_;
   bool many_;  ///< starts
   bool each_;  ///< lane differs
+  alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
   LaneBlock<Scalar> block_{};
 };
+
+/// What went wrong in all rollouts, as bits; each block is computed on the processor, as if it were alone.
+template <typename Scalar>
+unsigned roll_blocks(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
+                     const LaneJob<Scalar>& job, const RolloutOptions& options) {
+  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
+  std::atomic<unsigned> faults = kNoFault;
+  const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
+  share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
+    BlockOfBatch<Scalar> place(program, batch, map, kernel.lanes);
+    unsigned found = kNoFault;
+    for (std::size_t block = first; block < last; ++block) {
+      found |= kernel.roll(job, place.at(block));
+    }
+    faults |= found;
+  });
+  return faults;
+}
+
+/// The same on a GPU.
+template <typename Scalar>
+unsigned roll_on(Gpu& gpu, const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
+                 const LaneJob<Scalar>& job) {
+  BlockOfBatch<Scalar> place(program, batch, map, kMostLanes);
+  const std::size_t starts = place.differs() ? batch.rollouts : 1;
+  std::vector<Scalar> rows(kStartRows * starts);
+  for (std::size_t first = 0; first < starts; first += kMostLanes) {
+    const Scalar* row = place.at(first / kMostLanes).x;  // the first of kStartRows
+    for (std::size_t i = 0; i < kStartRows; ++i, row += kMostLanes) {
+      std::copy_n(row, std::min(kMostLanes, starts - first), &rows[i * starts + first]);
+    }
+  }
+  const std::size_t past = batch.past.size() / batch.starts.size();
+  return gpu.roll<Scalar>({.job = job,
+                           .starts = rows,
+                           .past = batch.past,
+                           .past_count = past,
+                           .past_stride = batch.starts.size() > 1 ? past : 0,
+                           .used = first_unused(job)});
+}
 
 [[noreturn]] void refuse(unsigned fault) {
   if ((fault & kTurnsTooFar) != 0) {
@@ -232,7 +287,7 @@ class BlockOfBatch {
         "a rollout turns thousands of times within one period; use shorter periods, or "
         "commands in rad/s");
   }
-  throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands in m/s and rad/s?");
+  throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands finite, in m/s and rad/s?");
 }
 
 }  // namespace
@@ -241,22 +296,17 @@ template <typename Scalar>
 void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                    const RolloutOutputs<Scalar>& outputs, const RolloutOptions& options) {
   check(batch);
-  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
   const LaneJob<Scalar> job = job_of(program, batch, outputs);
-  std::atomic<unsigned> faults = kNoFault;
-  const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
-  share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
-    BlockOfBatch<Scalar> place(program, batch, outputs.map, kernel.lanes);
-    unsigned found = kNoFault;
-    for (std::size_t block = first; block < last; ++block) {
-      found |= kernel.roll(job, place.at(block));
-    }
-    faults |= found;
-  });
-  const std::ptrdiff_t unused = std::max({job.shift_v, job.shift_omega, std::ptrdiff_t{0}});
-  const auto periods = static_cast<std::ptrdiff_t>(batch.periods);
-  check_commands(batch,
-                 faults == kNoFault ? static_cast<std::size_t>(std::max(periods - unused, std::ptrdiff_t{0})) : 0);
+  const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
+  if (out_of_sight && program.chain().responds && std::min(job.shift_v, job.shift_omega) < 0) {
+    throw std::invalid_argument(
+        "where a drive with a slow part acts before it is told, its commands must lie in the processor's memory");
+  }
+  const unsigned faults = options.gpu != nullptr ? roll_on(*options.gpu, program, batch, outputs.map, job)
+                                                 : roll_blocks(program, batch, outputs.map, job, options);
+  if (!out_of_sight) {
+    check_commands(batch, faults == kNoFault ? first_unused(job) : 0);
+  }
   if (faults != kNoFault) {
     refuse(faults);
   }

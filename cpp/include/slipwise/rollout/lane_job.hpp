@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "slipwise/lie/lane_function.hpp"
 #include "slipwise/rollout/drive_command.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
@@ -81,26 +82,26 @@ struct LaneJob {
   Scalar* cost_lowest;
 };
 
-/// One channel of the drives at the start (start_drive.hpp).
+/// One channel of the drives at the start (start_drive.hpp), a number per lane.
 template <typename Scalar>
 struct LaneStart {
-  alignas(64) Scalar told[kMostLanes];
-  alignas(64) Scalar fast[kMostLanes];
-  alignas(64) Scalar slow[kMostLanes];
+  Scalar* told;
+  Scalar* fast;
+  Scalar* slow;
 };
 
 /// Some neighbouring rollouts and where they start, one a lane.
 template <typename Scalar>
 struct LaneBlock {
-  alignas(64) Scalar x[kMostLanes];
-  alignas(64) Scalar y[kMostLanes];
-  alignas(64) Scalar theta[kMostLanes];
-  alignas(64) Scalar cosine[kMostLanes];
-  alignas(64) Scalar sine[kMostLanes];
+  Scalar* x;
+  Scalar* y;
+  Scalar* theta;
+  Scalar* cosine;
+  Scalar* sine;
   LaneStart<Scalar> v;
   LaneStart<Scalar> omega;
-  alignas(64) Scalar cell_x[kMostLanes];  ///< the start in cells of the map
-  alignas(64) Scalar cell_y[kMostLanes];
+  Scalar* cell_x;  ///< the start in cells of the map
+  Scalar* cell_y;
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first
   std::size_t past_count;    ///< of one start
   std::size_t past_stride;   ///< from one rollout's to the next one's
@@ -108,6 +109,28 @@ struct LaneBlock {
   std::size_t count;
   bool side_by_side;  ///< a period's commands can be read as they lie
 };
+
+/// Rollouts of the block. A single lane always has one, which its compiler must know.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES std::size_t lanes_in(const LaneBlock<Scalar>& block) {
+  return L::kLanes == 1 ? 1 : block.count;
+}
+
+inline constexpr std::size_t kStartRows = 13;  ///< numbers per lane that a block points to
+
+/// Lets a block point to kStartRows rows of numbers, one after the other.
+template <typename Scalar>
+SLIPWISE_LANES void point_to_rows(Scalar* rows, std::size_t length, LaneBlock<Scalar>& block) {
+  block.x = rows;
+  block.y = rows + length;
+  block.theta = rows + 2 * length;
+  block.cosine = rows + 3 * length;
+  block.sine = rows + 4 * length;
+  block.v = {rows + 5 * length, rows + 6 * length, rows + 7 * length};
+  block.omega = {rows + 8 * length, rows + 9 * length, rows + 10 * length};
+  block.cell_x = rows + 11 * length;
+  block.cell_y = rows + 12 * length;
+}
 
 /// What went wrong in a block, as bits.
 inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;

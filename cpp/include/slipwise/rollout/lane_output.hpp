@@ -52,7 +52,7 @@ class OutputLanes {
     alignas(64) Scalar difference[L::kLanes];
     store((path.x - path.x) + (path.y - path.y), difference);
     bool finite = true;
-    for (std::size_t i = 0; i < block_.count; ++i) {
+    for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
       finite &= difference[i] == 0;
     }
     return finite;
@@ -67,20 +67,20 @@ class OutputLanes {
     typename L::Vector whole;
     load(start, whole);
     whole = whole + row;
-    if (block_.count == L::kLanes) {
+    if (lanes_in<L>(block_) == L::kLanes) {
       store(whole, to + at);
       return;
     }
     alignas(64) Scalar values[L::kLanes];
     store(whole, values);
-    for (std::size_t i = 0; i < block_.count; ++i) {
+    for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
       to[at + i] = values[i];
     }
   }
 
   SLIPWISE_LANES void write_costs(const Scalar* costs, Scalar* to) const {
     if (to != nullptr) {
-      for (std::size_t i = 0; i < block_.count; ++i) {
+      for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
         to[block_.first + i] = costs[i];
       }
     }

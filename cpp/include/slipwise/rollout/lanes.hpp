@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-#define SLIPWISE_LANES [[gnu::always_inline]] inline
+#include "slipwise/lie/lane_function.hpp"
 
 namespace slipwise {
 
