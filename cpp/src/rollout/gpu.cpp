@@ -27,11 +27,10 @@ ThreadJob<Scalar> thread_job(const GpuBatch<Scalar>& batch) {
   given.used = batch.used;
   const std::size_t shares = job.part_end * job.product_count * 3;
   if (job.part_end > std::size(given.parts) || shares > std::size(given.shares)) {
-    throw std::invalid_argument("a period of this model is " + std::to_string(job.part_end) + " steps with " +
-                                std::to_string(shares) + " numbers, and a GPU has room for " +
-                                std::to_string(std::size(given.parts)) + " with " +
-                                std::to_string(std::size(given.shares)) +
-                                "; use shorter periods, fewer terms, or the processor");
+    throw std::invalid_argument(
+        "a period of this model is " + std::to_string(job.part_end) + " steps with " + std::to_string(shares) +
+        " numbers, and a GPU has room for " + std::to_string(std::size(given.parts)) + " with " +
+        std::to_string(std::size(given.shares)) + "; use shorter periods, fewer terms, or the processor");
   }
   std::copy_n(job.parts, job.part_end, given.parts);
   std::copy_n(job.shares, shares, given.shares);

@@ -15,6 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
+from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
 from slipwise.prediction import tail_at
 
@@ -54,6 +55,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     dtype: DTypeLike | None = None,
     out: Rollouts | None = None,
     level: str | None = None,
+    device: str = "cpu",
 ) -> Rollouts:
     """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
 
@@ -70,11 +72,15 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         threads: the results are the same bytes for any number.
         dtype: float32 or float64; by default that of the commands.
         out: results of an earlier call of the same shape and dtype, whose arrays are filled again.
-        level: instruction level, one of `_core.instruction_levels()`; by default the best.
+        level: instruction level of the processor, one of `_core.instruction_levels()` ("portable", "avx2",
+            "avx512"); by default the best that it has.
+        device: "cpu", or "cuda" for a GPU, in a build with CUDA (see docs/use-it-in-your-planner.md). Commands
+            and results are copied; threads and level do not matter to it, and a covariance is the processor's.
 
     Raises:
         ModelError: the model has limits of the drive.
-        SettingsError: the batch is empty, a command is not finite, or something does not fit the rest.
+        SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
+            there is no such device; it says why.
     """
     refuse_limits(model.content.limits, "the rollout")
     numbers = checked_commands(commands, dtype)
@@ -88,6 +94,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         "costs": _buffer("costs", wanted, out, (3, rollouts), numbers.dtype),
     }
     starts = begin.in_core(rollouts)
+    gpu = gpu_of(device)
     try:
         program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity)
         _core.rollout_batch(
@@ -100,9 +107,10 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             buffers["costs"],
             threads,
             _core.instruction_levels()[-1] if level is None else level,
+            gpu,
         )
         spread = _covariance(model, numbers, dt, begin, threads) if covariance else None
-    except (ValueError, TypeError) as problem:
+    except (ValueError, TypeError, RuntimeError) as problem:
         raise SettingsError(str(problem)) from problem
     return Rollouts(covariance=spread, **buffers)
 

@@ -25,7 +25,8 @@ struct CommandSource {
 /// Gathers commands one by one: those that do not lie side by side, and those that were sent before the start.
 template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES_APART void gather_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                                       const CommandSource<Scalar>& source, std::ptrdiff_t period, Scalar* gathered) {
+                                          const CommandSource<Scalar>& source, std::ptrdiff_t period,
+                                          Scalar* gathered) {
   const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(block.past_count) + period;
   for (std::size_t i = 0; i < lanes_in<L>(block); ++i) {
     if (period >= 0) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
 #include "slipwise/lie/lane_function.hpp"
 
@@ -40,7 +41,11 @@ struct Lanes {
 
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void load(const Scalar* from, Vector& vector) {
-  std::memcpy(&vector, from, sizeof(Vector));
+  if constexpr (std::is_same_v<Vector, Scalar>) {
+    vector = *from;  // a GPU would copy it byte by byte
+  } else {
+    std::memcpy(&vector, from, sizeof(Vector));
+  }
 }
 template <class Half, typename Scalar>
 SLIPWISE_LANES void load(const Scalar* from, Pair<Half>& pair) {
@@ -50,7 +55,11 @@ SLIPWISE_LANES void load(const Scalar* from, Pair<Half>& pair) {
 
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void store(const Vector& vector, Scalar* to) {
-  std::memcpy(to, &vector, sizeof(Vector));
+  if constexpr (std::is_same_v<Vector, Scalar>) {
+    *to = vector;
+  } else {
+    std::memcpy(to, &vector, sizeof(Vector));
+  }
 }
 template <class Half, typename Scalar>
 SLIPWISE_LANES void store(const Pair<Half>& pair, Scalar* to) {

@@ -43,8 +43,8 @@ SLIPWISE_LANES unsigned find_unused_faults(const ThreadJob<Scalar>& given, std::
   const LaneJob<Scalar>& job = given.job;
   bool finite = true;
   for (std::size_t k = given.used; k < job.periods; ++k) {
-    const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(rollout) * job.rollout_stride +
-                              static_cast<std::ptrdiff_t>(k) * job.period_stride;
+    const std::ptrdiff_t at =
+        static_cast<std::ptrdiff_t>(rollout) * job.rollout_stride + static_cast<std::ptrdiff_t>(k) * job.period_stride;
     finite &= (job.v[at] - job.v[at]) + (job.omega[at] - job.omega[at]) == 0;
   }
   return finite ? kNoFault : kNotFinite;
