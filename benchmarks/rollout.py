@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rollouts of 2048 x 100, 15 slip parameters: steps per second and accuracy beside rivals, on one core and a GPU."""
+"""Rollouts of 2048 x 100, 15 slip parameters: speed and accuracy beside rivals, on one core, and on a GPU."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ PROGRAMS = ("time_rollout", "time_mppi_motion")
 SPEEDS = re.compile(r"thesis-15, no chain\s+(\w+)\s+([\d.]+)")
 LONGEST_CALL = 1.3  # from Python, in times of C++
 GPU_PROGRAM = "time_gpu"
-#: Whole MPPI iterations (sampling, rollouts of a drive without slip, costs) on an RTX 4090, as published by Vlahov et
-#: al. 2024, "MPPI-Generic: A CUDA Library for Stochastic Trajectory Optimization", arXiv:2409.07563. Not run here.
+#: Whole MPPI iterations (sampling, rollouts of a drive without slip, costs) on an RTX 4090, as published by
+#: Vlahov et al. 2024, "MPPI-Generic: A CUDA Library for Stochastic Trajectory Optimization",
+#: arXiv:2409.07563. Not run here.
 MPPI_GENERIC = 4.2
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where rollouts are computed: on the processor, or on a GPU that is opened once, when it is first asked for."""
+"""Where rollouts are computed: on the processor, or on a GPU, which is opened when it is first asked for."""
 
 from __future__ import annotations
 

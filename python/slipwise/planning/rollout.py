@@ -74,8 +74,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         out: results of an earlier call of the same shape and dtype, whose arrays are filled again.
         level: instruction level of the processor, one of `_core.instruction_levels()` ("portable", "avx2",
             "avx512"); by default the best that it has.
-        device: "cpu", or "cuda" for a GPU, in a build with CUDA (see docs/use-it-in-your-planner.md). Commands
-            and results are copied; threads and level do not matter to it, and a covariance is the processor's.
+        device: "cpu", or "cuda" for a GPU in a build with CUDA (docs/use-it-in-your-planner.md). Commands and
+            results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
         ModelError: the model has limits of the drive.
