@@ -131,7 +131,7 @@ void Gpu::bring_commands(LaneJob<Scalar>& job) {
 
 template <typename Scalar>
 unsigned Gpu::roll(const GpuBatch<Scalar>& batch) {
-  const std::lock_guard lock(one_at_a_time_);
+  const std::scoped_lock lock(one_at_a_time_);
   ThreadJob<Scalar> given = thread_job(batch);
   bring_commands(given.job);
   if (batch.starts.size() == kStartRows) {

@@ -11,7 +11,7 @@ namespace {
 
 }  // namespace
 
-std::string why_no_gpu() {
+std::string why_no_gpu() {  // NOLINT(modernize-use-string-view): with CUDA it is composed
   return "this slipwise was built without CUDA; build it with -DSLIPWISE_CUDA=ON, or roll out on the processor";
 }
 

@@ -73,7 +73,11 @@ void* gpu_allocate(std::size_t bytes) {
   return memory;
 }
 
-void gpu_free(void* memory) noexcept { cudaFree(memory); }
+void gpu_free(void* memory) noexcept {
+  if (memory != nullptr) {
+    cudaFree(memory);
+  }
+}
 
 bool lies_on_gpu(const void* pointer) {
   cudaPointerAttributes attributes{};
@@ -82,7 +86,10 @@ bool lies_on_gpu(const void* pointer) {
 }
 
 void gpu_copy(const GpuCopy& copy) {
-  check(cudaMemcpy2D(copy.to, copy.to_pitch, copy.from, copy.from_pitch, copy.width, copy.rows, cudaMemcpyDefault),
+  const bool in_one_piece = copy.rows == 1 || (copy.to_pitch == copy.width && copy.from_pitch == copy.width);
+  check(in_one_piece ? cudaMemcpy(copy.to, copy.from, copy.width * copy.rows, cudaMemcpyDefault)  // of any size
+                     : cudaMemcpy2D(copy.to, copy.to_pitch, copy.from, copy.from_pitch, copy.width, copy.rows,
+                                    cudaMemcpyDefault),
         "copying");
 }
 

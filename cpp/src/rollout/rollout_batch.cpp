@@ -231,13 +231,13 @@ class BlockOfBatch {
     set_channel(block_.omega, drives.omega);
   }
 
+  alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
   const ChainSchedule& chain_;
   const RolloutBatch<Scalar>& batch_;
   const Costmap* map_;
   std::size_t lanes_;
   bool many_;  ///< starts
   bool each_;  ///< lane differs
-  alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
   LaneBlock<Scalar> block_{};
 };
 
