@@ -83,7 +83,7 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
     }
     ++i;
     if (i == job.part_end) {
-      output.write_period(robot.path, period);
+      output.write_piece(robot.path, period);
       ++period;
       if (has_tail && period < job.periods) {
         robot = aside;
@@ -95,7 +95,7 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
       i = job.cycle;
     }
     if (has_tail && i == job.branch) {
-      if (output.wants_periods() || period + 1 == job.periods) {
+      if (output.wants_piece(period) || period + 1 == job.periods) {
         aside = robot;
         i = job.tail;
       } else {
@@ -123,7 +123,7 @@ unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bloc
     return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
   }
   if constexpr (Level::kSingleLoop) {
-    if (job.part_end == 1) {
+    if (job.part_end == 1 && job.pieces == 1) {
       return roll_block_with<L, Chain::None, kQuadratic>(job, block);
     }
   }
