@@ -78,6 +78,11 @@ InstructionLevel level_named(const std::string& name) {
   throw std::invalid_argument("unknown instruction level '" + name + "'; known are portable, avx2, avx512");
 }
 
+/// Without limits the commands pass as they are.
+RolloutSetting setting(double period, double gx, double gy, const CommandLimits* limits) {
+  return {.period = period, .gx = gx, .gy = gy, .limits = limits == nullptr ? CommandLimits{} : *limits};
+}
+
 template <typename Scalar>
 void bind_batch(nb::module_& m) {
   m.def(
@@ -115,11 +120,12 @@ void bind_uncertain(nb::module_& m) {
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             double period, double gx, double gy) {
-            new (self) UncertainModel{model, parameters, {covariance, noise, scale, growth}, {period, gx, gy}};
+             double period, double gx, double gy, const CommandLimits* limits) {
+            new (self)
+                UncertainModel{model, parameters, {covariance, noise, scale, growth}, setting(period, gx, gy, limits)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "period"_a, "gx"_a, "gy"_a,
-          nb::keep_alive<1, 2>());
+          "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
@@ -150,8 +156,10 @@ void bind_rollout(nb::module_& m) {
       .def(
           "__init__",
           [](RolloutProgram* self, const MotionModel& model, const Eigen::VectorXd& parameters, double period,
-             double gx, double gy) { new (self) RolloutProgram(model, parameters, {period, gx, gy}); },
-          "model"_a, "parameters"_a, "period"_a, "gx"_a, "gy"_a)
+             double gx, double gy, const CommandLimits* limits) {
+            new (self) RolloutProgram(model, parameters, setting(period, gx, gy, limits));
+          },
+          "model"_a, "parameters"_a, "period"_a, "gx"_a, "gy"_a, "limits"_a.none())
       .def_prop_ro("period", [](const RolloutProgram& program) { return program.setting().period; });
   nb::class_<StartList>(m, "StartList", "Where rollouts start.")
       .def(

@@ -209,6 +209,11 @@ TEST_CASE("what cannot be rolled out on a GPU is refused and named") {
   const RolloutProgram slow(model, tests::sample_parameters(model, chain), {20.0});
   CHECK_THROWS_WITH_AS(tests::roll(slow, commands.batch(kStart), {.gpu = &gpu}), doctest::Contains("shorter periods"),
                        std::invalid_argument);
+  RolloutSetting setting{.period = kPeriod};
+  setting.limits.speed.top = 0.5;
+  const RolloutProgram limited(model, tests::sample_parameters(model, chain), setting);
+  CHECK_THROWS_WITH_AS(tests::roll(limited, commands.batch(kStart), {.gpu = &gpu}),
+                       doctest::Contains("on the processor only"), std::invalid_argument);
 }
 
 TEST_CASE("without a GPU the reason says what to do") {

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
-from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
@@ -57,7 +56,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     level: str | None = None,
     device: str = "cpu",
 ) -> Rollouts:
-    """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
+    """Roll out `commands` through `model`: limits, command chain, slip of any basis, exact steps.
 
     Args:
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
@@ -78,11 +77,9 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
-        ModelError: the model has limits of the drive.
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
-    refuse_limits(model.content.limits, "the rollout")
     numbers = checked_commands(commands, dtype)
     check_threads(threads)
     begin = Start() if start is None else start
@@ -96,7 +93,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     starts = begin.in_core(rollouts)
     gpu = gpu_of(device)
     try:
-        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity)
+        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity, model.limits)
         _core.rollout_batch(
             program,
             numbers,
@@ -149,11 +146,10 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
-    refuse_limits(model.content.limits, "the rollout")
     scale = np.array(model.content.noise.scale)
     growth = tail_at(model, horizon).growth
     return _core.UncertainModel(
-        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity
+        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity, model.limits
     )
 
 

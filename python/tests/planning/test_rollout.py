@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sample_logs import Drive, simulated_log
-from sample_models import Made, make_model
+from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
@@ -32,8 +32,22 @@ def responding() -> Model:
     return make_model(Made(basis=_core.named_basis("full-linear-6"), values=values, response=True))
 
 
-@pytest.fixture(scope="module", params=["lag and delay", "response"])
+def limited() -> Model:
+    """The same behind a dead-band, top speeds and ramps of the commands and of both sides."""
+    return make_model(
+        Made(
+            basis=_core.named_basis("full-linear-6"),
+            values={"lat.w": 0.05, "ang.w": -0.3},
+            response=True,
+            limits=LIMITS,
+        )
+    )
+
+
+@pytest.fixture(scope="module", params=["lag and delay", "response", "limits"])
 def model(request: pytest.FixtureRequest) -> Model:
+    if request.param == "limits":
+        return limited()
     return responding() if request.param == "response" else learned("auto")
 
 

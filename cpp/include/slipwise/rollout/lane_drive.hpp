@@ -45,9 +45,8 @@ template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t period,
                                   typename L::Vector& command) {
-  const auto last = static_cast<std::ptrdiff_t>(job.periods) - 1;
-  const std::ptrdiff_t at = period < last ? period : last;
-  if (at >= 0 && block.side_by_side) {
+  const std::ptrdiff_t at = period < job.last_row ? period : job.last_row;
+  if (at >= job.first_row && (block.side_by_side || job.first_row < 0)) {
     const Scalar* from = source.commands + at * job.period_stride;
     load(from, command);
     if constexpr (L::kLanes > 1) {

@@ -44,6 +44,24 @@ struct LanePart {
   bool next_v, next_omega;
 };
 
+/// Limits of one lane of the drive (command_limits.hpp) in the kernel's numbers. What is not limited has no dead-band,
+/// the largest top, and rates of zero.
+template <typename Scalar>
+struct RampLimits {
+  Scalar dead_band, top;
+  Scalar acceleration, braking;          ///< over a piece of the period
+  Scalar per_acceleration, per_braking;  ///< one over these
+};
+
+/// Limits of the commands, and of the two sides behind them.
+template <typename Scalar>
+struct DriveRamps {
+  RampLimits<Scalar> speed, yaw_rate, side;
+  Scalar gain_v, half_track;  ///< from a command to its sides; with the gain of the yaw rate
+  Scalar per_track;
+  bool sides;  ///< some limit of the sides
+};
+
 /// A costmap in the kernel's numbers; null cells where none is sampled.
 template <typename Scalar>
 struct LaneMap {
@@ -68,6 +86,13 @@ struct LaneJob {
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
   bool responds;  ///< some channel has a gain or a slow part
+
+  const DriveRamps<Scalar>* limits;  ///< null where the commands pass as they are
+  /// Limited commands are cut into so many pieces each, and stand side by side from this row on, those before the start
+  /// too; these and all that follows count pieces then. Without limits a command is one piece and the first row is 0.
+  std::size_t pieces;
+  std::ptrdiff_t first_row;
+  std::ptrdiff_t last_row;  ///< what it holds goes on
 
   std::size_t rollouts, periods;
   const Scalar* v;
@@ -132,6 +157,23 @@ SLIPWISE_LANES void point_to_rows(Scalar* rows, std::size_t length, LaneBlock<Sc
   block.cell_y = rows + 12 * length;
 }
 
+/// What the ramps of a block's drives hold at the start.
+template <typename Scalar>
+struct RampStart {
+  alignas(64) Scalar speed[kMostLanes];
+  alignas(64) Scalar yaw_rate[kMostLanes];
+  alignas(64) Scalar left[kMostLanes];
+  alignas(64) Scalar right[kMostLanes];
+};
+
+/// Where a block's limited commands go: rows of pieces, as wide as the kernel's lanes.
+template <typename Scalar>
+struct LimitedRows {
+  Scalar* v;
+  Scalar* omega;
+  std::size_t periods;  ///< from the start on, of `pieces` rows each
+};
+
 /// What went wrong in a block, as bits.
 inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;
 
@@ -139,9 +181,15 @@ inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;
 template <typename Scalar>
 using LaneKernel = unsigned (*)(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block);
 
+/// Puts the commands of one block behind the limits; `job` has them as they are given.
+template <typename Scalar>
+using LaneLimiter = void (*)(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, const RampStart<Scalar>& start,
+                             const LimitedRows<Scalar>& rows);
+
 template <typename Scalar>
 struct LaneKernelOfLevel {
   LaneKernel<Scalar> roll;
+  LaneLimiter<Scalar> limit;
   std::size_t lanes;  ///< rollouts per block
 };
 

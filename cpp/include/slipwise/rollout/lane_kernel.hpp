@@ -83,7 +83,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
     }
     ++i;
     if (i == job.part_end) {
-      output.write_period(robot.path, period);
+      output.write_piece(robot.path, period);
       ++period;
       if (has_tail && period < job.periods) {
         robot = aside;
@@ -95,7 +95,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
       i = job.cycle;
     }
     if (has_tail && i == job.branch) {
-      if (output.wants_periods() || period + 1 == job.periods) {
+      if (output.wants_piece(period) || period + 1 == job.periods) {
         aside = robot;
         i = job.tail;
       } else {
@@ -122,7 +122,7 @@ SLIPWISE_LANES Chain chain_of(const LaneJob<Scalar>& job) {
   if (job.lags) {
     return Chain::Lags;
   }
-  return job.part_end == 1 ? Chain::None : Chain::Delays;
+  return job.part_end == 1 && job.pieces == 1 ? Chain::None : Chain::Delays;
 }
 
 template <class Level, bool kQuadratic, typename Scalar>

@@ -127,6 +127,15 @@ SLIPWISE_LANES Pair<Half> larger(const Pair<Half>& a, const Pair<Half>& b) {
 }
 
 template <class Vector>
+SLIPWISE_LANES Vector smaller(const Vector& a, const Vector& b) {
+  return a < b ? a : b;
+}
+template <class Half>
+SLIPWISE_LANES Pair<Half> smaller(const Pair<Half>& a, const Pair<Half>& b) {
+  return {smaller(a.low, b.low), smaller(a.high, b.high)};
+}
+
+template <class Vector>
 SLIPWISE_LANES Vector magnitude(const Vector& a) {
   return a < Vector{} ? -a : a;
 }
