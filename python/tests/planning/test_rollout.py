@@ -123,6 +123,10 @@ def test_a_gpu_gives_the_poses_of_the_processor(
 ) -> None:
     if reason := _core.why_no_gpu():
         pytest.skip(reason)
+    if model.content.limits is not None:
+        with pytest.raises(SettingsError, match="on the processor only"):
+            rollout(model, commands, DT, dtype=dtype, device="cuda")
+        return
     costmap = Costmap(np.arange(80.0).reshape(8, 10), resolution=0.5, origin=(-1.0, -2.0), outside=200.0)
     expected = rollout(model, commands, DT, outputs=("path", "end", "costs"), costmap=costmap)
     found = rollout(
