@@ -12,18 +12,18 @@ ROOT = Path(__file__).resolve().parent.parent
 PRESET = "release"
 
 
-def build(names: list[str]) -> Path:
+def build(names: list[str], preset: str = PRESET) -> Path:
     """Build the benchmarks; return the folder that they are in."""
     environment = os.environ | {"VIRTUAL_ENV": sys.prefix}  # where the Eigen headers and cmake are
     environment["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{environment['PATH']}"
     for command in (
-        ["cmake", "--preset", PRESET],
-        ["cmake", "--build", "--preset", PRESET, "--target", *names],
+        ["cmake", "--preset", preset],
+        ["cmake", "--build", "--preset", preset, "--target", *names],
     ):
         done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise SystemExit(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
-    return ROOT / "build" / PRESET
+    return ROOT / "build" / preset
 
 
 def main() -> int:

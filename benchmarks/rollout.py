@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Rollouts of 2048 x 100, 15 slip parameters: steps per second and accuracy beside rivals, on one core."""
+"""Rollouts of 2048 x 100, 15 slip parameters: speed and accuracy beside rivals, on one core, and on a GPU."""
 
 from __future__ import annotations
 
@@ -33,6 +33,11 @@ ROLLOUTS, PERIODS, DT = 2048, 100, 0.05
 PROGRAMS = ("time_rollout", "time_mppi_motion")
 SPEEDS = re.compile(r"thesis-15, no chain\s+(\w+)\s+([\d.]+)")
 LONGEST_CALL = 1.3  # from Python, in times of C++
+GPU_PROGRAM = "time_gpu"
+#: Whole MPPI iterations (sampling, rollouts of a drive without slip, costs) on an RTX 4090, as published by
+#: Vlahov et al. 2024, "MPPI-Generic: A CUDA Library for Stochastic Trajectory Optimization",
+#: arXiv:2409.07563. Not run here.
+MPPI_GENERIC = 4.2
 
 
 @dataclass(frozen=True)
@@ -122,6 +127,24 @@ def extra_costs(model: Model, drive: NDArray[np.float32], repeats: int) -> dict[
     }
 
 
+def on_gpu(
+    model: Model, drive: NDArray[np.float32], repeats: int, folder: Path | None
+) -> tuple[str, list[Figure]]:
+    """Return what the C++ program measured on a GPU, and the call from Python, copies and all; or why not."""
+    if reason := _core.why_no_gpu():
+        return f"no GPU: {reason}", []
+    folder = folder or build([GPU_PROGRAM], preset="cuda")
+    printed = subprocess.run([str(folder / GPU_PROGRAM)], check=True, capture_output=True, text=True).stdout
+    truth = rollout(model, drive, DT, outputs=("end",), dtype=np.float64).end
+    assert truth is not None
+    ends = rollout(model, drive, DT, outputs=("end",))
+
+    def with_copies() -> Floats:
+        return np.asarray(rollout(model, drive, DT, outputs=("end",), out=ends, device="cuda").end)
+
+    return printed, [figure("slipwise, cuda, with copies", with_copies, truth, 20 * repeats)]
+
+
 def euler_error(model: Model, drive: NDArray[np.float32]) -> float:
     """Return by how much Euler steps without slip miss the last positions [m]."""
     truth = np.asarray(rollout(model, drive, DT, outputs=("end",), dtype=np.float64, start=Start()).end)
@@ -152,7 +175,10 @@ def main() -> int:
     print("\n".join(printed))
     in_cpp = {level: float(speed) for level, speed in SPEEDS.findall(printed[0])}
     model, drive = learned(), commands()
-    figures = contenders(model, drive, repeats)
+    gpu, gpu_figures = on_gpu(model, drive, repeats, arguments.programs)
+    print(gpu)
+    print(f"MPPI-Generic, RTX 4090, as published (arXiv:2409.07563): {MPPI_GENERIC} e9 steps/s\n")
+    figures = contenders(model, drive, repeats) + gpu_figures
     print(f"{'from Python, float but for casadi':44} {'1e9 steps/s':>12} {'largest error [m]':>18}")
     for f in figures:
         print(f"{f.name:44} {f.giga_steps_per_second:12.4f} {f.error:18.2g}")
@@ -169,6 +195,7 @@ def main() -> int:
             "in_cpp": in_cpp,
             "seconds": extra,
             "call_ratio": ratio,
+            "gpu": gpu,
         }
         arguments.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     return int(ratio > LONGEST_CALL)

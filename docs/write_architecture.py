@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGE = ROOT / "ARCHITECTURE.md"
-SOURCES = (".py", ".sh", ".hpp", ".cpp")
+SOURCES = (".py", ".sh", ".hpp", ".cpp", ".cu")
 REGION = re.compile(r"<!-- files: (?P<folders>[^>]+) -->\n.*?<!-- end -->", re.DOTALL)
 LICENCE = "SPDX-License-Identifier"
 #: Folders below which every source file must stand in a table.
@@ -25,7 +25,7 @@ def sentence_of(path: Path) -> str:
         start += 1
     if start < len(lines) and lines[start].startswith('"""'):
         return lines[start].strip('"')
-    mark = "//" if path.suffix in (".hpp", ".cpp") else "#"
+    mark = "//" if path.suffix in (".hpp", ".cpp", ".cu") else "#"
     words: list[str] = []
     for line in lines[start:]:
         if not line.startswith(mark):

@@ -20,6 +20,7 @@ COMMENTS = {
     ".in": "# ",
     ".cpp": "// ",
     ".hpp": "// ",
+    ".cu": "// ",
     "CMakeLists.txt": "# ",
     "Makefile": "# ",
     ".ci/run": "# ",

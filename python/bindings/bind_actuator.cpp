@@ -7,6 +7,7 @@
 #include "bindings.hpp"
 #include "slipwise/actuator/chain_output.hpp"
 #include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_track.hpp"
 
@@ -84,7 +85,15 @@ void bind_actuator(nb::module_& m) {
       .def_ro("side", &CommandLimits::side)
       .def_ro("track", &CommandLimits::track)
       .def_ro("gain_v", &CommandLimits::gain_v)
-      .def_ro("gain_omega", &CommandLimits::gain_omega);
+      .def_ro("gain_omega", &CommandLimits::gain_omega)
+      .def(
+          "settled",
+          [](const CommandLimits& self, const BodyTwist& command) {
+            CommandLimiter limiter(self);
+            limiter.settle(command);
+            return limiter.target();
+          },
+          "command"_a, "What is left of a command that is held for long.");
   m.def("limited_track", &limited_track, "commands"_a, "limits"_a, "longest_piece"_a,
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");
   m.attr("RAMP_PIECE") = kRampPiece;

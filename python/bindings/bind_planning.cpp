@@ -5,6 +5,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
@@ -76,9 +77,13 @@ void bind_trajectory(nb::module_& m) {
       .def(
           "__init__",
           [](TrajectoryPlanner* self, const MotionModel& model, const Eigen::VectorXd& parameters,
-             const DriveLimits& limits, const TrajectorySettings& settings,
-             const DriveStart& start) { new (self) TrajectoryPlanner({model, parameters}, limits, settings, start); },
-          "model"_a, "parameters"_a, "limits"_a, "settings"_a, "start"_a)
+             const DriveLimits& limits, const TrajectorySettings& settings, const DriveStart& start,
+             const CommandLimits* of_drive) {
+            const CommandLimits learned = of_drive == nullptr ? CommandLimits{} : *of_drive;
+            new (self) TrajectoryPlanner({model, parameters, learned}, limits, settings, start);
+          },
+          "model"_a, "parameters"_a, "limits"_a, "settings"_a, "start"_a, "of_drive"_a.none(),
+          "Commands are planned within `limits`; those `of_drive` lie behind the commands.")
       .def("to", &TrajectoryPlanner::to, "goal"_a, "start"_a);
 }
 
@@ -152,11 +157,14 @@ void bind_mppi(nb::module_& m) {
   nb::class_<Mppi>(m, "Mppi", "Model predictive path integral control through learned models.")
       .def(
           "__init__",
-          [](Mppi* self, const std::vector<std::pair<MotionModel, Eigen::VectorXd>>& models,
+          [](Mppi* self,
+             const std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>>>& models,
              const MppiSettings& settings) {
             std::vector<RolloutProgram> programs;
-            for (const auto& [model, parameters] : models) {
-              programs.emplace_back(model, parameters, RolloutSetting{.period = settings.period});
+            for (const auto& [model, parameters, limits] : models) {
+              programs.emplace_back(
+                  model, parameters,
+                  RolloutSetting{.period = settings.period, .limits = limits.value_or(CommandLimits{})});
             }
             new (self) Mppi(std::move(programs), settings);
           },

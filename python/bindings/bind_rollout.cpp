@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "slipwise/rollout/gpu.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 #include "slipwise/rollout/rollout_covariance.hpp"
 #include "slipwise/rollout/sampled_futures.hpp"
@@ -77,13 +78,18 @@ InstructionLevel level_named(const std::string& name) {
   throw std::invalid_argument("unknown instruction level '" + name + "'; known are portable, avx2, avx512");
 }
 
+/// Without limits the commands pass as they are.
+RolloutSetting setting(double period, double gx, double gy, const CommandLimits* limits) {
+  return {.period = period, .gx = gx, .gy = gy, .limits = limits == nullptr ? CommandLimits{} : *limits};
+}
+
 template <typename Scalar>
 void bind_batch(nb::module_& m) {
   m.def(
       "rollout_batch",
       [](const RolloutProgram& program, const Commands<Scalar>& commands, const StartList& starts,
          const Output<Scalar, 3>& path, const Output<Scalar, 2>& end, const Costmap* map,
-         const Output<Scalar, 2>& costs, unsigned threads, const std::string& level) {
+         const Output<Scalar, 2>& costs, unsigned threads, const std::string& level, Gpu* gpu) {
         const RolloutBatch<Scalar> batch = batch_of<Scalar>(commands, starts);
         const std::size_t n = batch.rollouts;
         const std::size_t poses = n * batch.periods;
@@ -100,11 +106,12 @@ void bind_batch(nb::module_& m) {
             .cost_lowest = row_of<Scalar, 2>(costs, 2, n),
         };
         const nb::gil_scoped_release release;
-        rollout_batch(program, batch, outputs, {threads, level_named(level)});
+        rollout_batch(program, batch, outputs, {threads, level_named(level), gpu});
       },
       "program"_a, "commands"_a, "starts"_a, "path"_a.none(), "end"_a.none(), "map"_a.none(), "costs"_a.none(),
-      "threads"_a, "level"_a,
-      "Drives commands [N, K, 2]; fills path [3, K, N], end [3, N] and costs [3, N] (sum, highest, lowest).");
+      "threads"_a, "level"_a, "gpu"_a.none(),
+      "Drives commands [N, K, 2]; fills path [3, K, N], end [3, N] and costs [3, N] (sum, highest, lowest). On the "
+      "processor, with these threads and instructions, where gpu is None.");
 }
 
 void bind_uncertain(nb::module_& m) {
@@ -113,11 +120,12 @@ void bind_uncertain(nb::module_& m) {
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             double period, double gx, double gy) {
-            new (self) UncertainModel{model, parameters, {covariance, noise, scale, growth}, {period, gx, gy}};
+             double period, double gx, double gy, const CommandLimits* limits) {
+            new (self)
+                UncertainModel{model, parameters, {covariance, noise, scale, growth}, setting(period, gx, gy, limits)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "period"_a, "gx"_a, "gy"_a,
-          nb::keep_alive<1, 2>());
+          "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
@@ -148,8 +156,10 @@ void bind_rollout(nb::module_& m) {
       .def(
           "__init__",
           [](RolloutProgram* self, const MotionModel& model, const Eigen::VectorXd& parameters, double period,
-             double gx, double gy) { new (self) RolloutProgram(model, parameters, {period, gx, gy}); },
-          "model"_a, "parameters"_a, "period"_a, "gx"_a, "gy"_a)
+             double gx, double gy, const CommandLimits* limits) {
+            new (self) RolloutProgram(model, parameters, setting(period, gx, gy, limits));
+          },
+          "model"_a, "parameters"_a, "period"_a, "gx"_a, "gy"_a, "limits"_a.none())
       .def_prop_ro("period", [](const RolloutProgram& program) { return program.setting().period; });
   nb::class_<StartList>(m, "StartList", "Where rollouts start.")
       .def(
@@ -177,6 +187,8 @@ void bind_rollout(nb::module_& m) {
         return names;
       },
       "Names of the instruction levels that this processor has, the slowest first.");
+  m.def("why_no_gpu", &why_no_gpu, "Why rollouts cannot run on a GPU here; empty where they can.");
+  nb::class_<Gpu>(m, "Gpu", "A GPU that drives rollouts, with the memory that batches took so far.").def(nb::init<>());
   bind_batch<float>(m);
   bind_batch<double>(m);
   bind_uncertain(m);

@@ -25,6 +25,7 @@ class Made:
     commands: bool = False
     response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
     clock_offset: float | None = None
+    limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by lane
     mount: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
@@ -42,6 +43,21 @@ class Made:
 def named(name: str, **values: float) -> Made:
     """Return a shipped basis with values; dots in names are written as two underscores."""
     return Made(_core.named_basis(name), {key.replace("__", "."): value for key, value in values.items()})
+
+
+LIMITS: Mapping[str, Mapping[str, float]] = {
+    "speed": {"dead_band": 0.1, "top": 1.1, "acceleration": 0.8, "braking": 1.7},
+    "yaw_rate": {"dead_band": 0.06, "top": 0.7, "acceleration": 1.3, "braking": 0.9},
+    "side": {"dead_band": 0.05, "top": 1.2, "acceleration": 0.9, "braking": 1.1},
+}
+
+
+def _limits(lanes: Mapping[str, Mapping[str, float]]) -> dict[str, object]:
+    learned = {
+        lane: {kind: {"value": value, "std": 0.01} for kind, value in lanes.get(lane, {}).items()}
+        for lane in ("speed", "yaw_rate", "side")
+    }
+    return {**learned, "track": 0.6, "track_std": 0.01, "gain_v": 1.1, "gain_omega": 0.9}
 
 
 def make_model(made: Made) -> Model:
@@ -89,6 +105,7 @@ def make_model(made: Made) -> Model:
         "response": made.response,
         "clock_offset": made.clock_offset is not None,
         "mount": made.mount is not None,
+        "limits": None if made.limits is None else _limits(made.limits),
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),
         "noise": {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/segment/path_step.hpp"
 
@@ -138,20 +139,14 @@ class GrowingEnd {
 /// Walks over the moments at which a delayed command begins to act in one of the channels.
 class ManoeuvreWalk {
  public:
-  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, double settling)
-      : chain_(model.chain()),
-        held_(std::move(held)),
-        settling_(settling),
-        v_(speed_response(model.chain()), start.drive.v, {start.told.v, 0.0}, fast_of(start, &BodyTwist::v)),
-        vy_(speed_response(model.chain()), start.drive.vy, {start.told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
-        omega_(turn_response(model.chain()), start.drive.omega, {start.told.omega, ManoeuvreRow::Zero()},
-               fast_of(start, &BodyTwist::omega)),
-        end_(model) {}
+  ManoeuvreWalk(const PlanningModel& model, const HeldCommands& held, const DriveStart& start)
+      : ManoeuvreWalk(model, limited_commands(held, model.limits(), start.told), start,
+                      settled(model.limits(), start.told)) {}
 
   template <bool kSlopes>
   void run() {
-    const auto count = static_cast<double>(held_.commands.size() - 1);
-    const Moment end{count * held_.period.value + settling_, count * held_.period.slope};
+    const auto count = static_cast<double>(held_.end);
+    const Moment end{count * held_.period.value + held_.settling, count * held_.period.slope};
     Moment now{0.0, 0.0};
     while (now.t < end.t) {
       const Moment next_v = acts(next_v_, chain_.delay_v), next_omega = acts(next_omega_, chain_.delay_omega);
@@ -181,6 +176,22 @@ class ManoeuvreWalk {
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
+  /// `told` is what the limits gave before the start.
+  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, const BodyTwist& told)
+      : chain_(model.chain()),
+        held_(std::move(held)),
+        v_(speed_response(model.chain()), start.drive.v, {told.v, 0.0}, fast_of(start, &BodyTwist::v)),
+        vy_(speed_response(model.chain()), start.drive.vy, {told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
+        omega_(turn_response(model.chain()), start.drive.omega, {told.omega, ManoeuvreRow::Zero()},
+               fast_of(start, &BodyTwist::omega)),
+        end_(model) {}
+
+  static BodyTwist settled(const CommandLimits& limits, const BodyTwist& told) {
+    CommandLimiter limiter(limits);
+    limiter.settle(told);
+    return limiter.target();
+  }
+
   static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
   }
@@ -237,7 +248,6 @@ class ManoeuvreWalk {
 
   const CommandChain& chain_;
   HeldCommands held_;
-  double settling_;
   Channel<double> v_, vy_;
   Channel<ManoeuvreRow> omega_;
   std::size_t next_v_ = 0;
@@ -248,8 +258,10 @@ class ManoeuvreWalk {
 
 }  // namespace
 
-PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters)
-    : basis_(model.basis()) {
+PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                             const CommandLimits& limits)
+    : basis_(model.basis()), limits_(limits) {
+  check(limits);
   model.check(parameters);
   alpha_ = parameters.head(model.slip_size());
   chain_ = model.chain(parameters);
@@ -258,7 +270,7 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
 
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                      const DriveStart& start) {
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.run<false>();
   return walk.pose();
 }
@@ -266,7 +278,7 @@ Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, co
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                              const DriveStart& start) {
   ManoeuvrePath path;
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.record(path);
   walk.run<false>();
   path.drive = walk.drive();
@@ -276,7 +288,7 @@ ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& f
 
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const DriveStart& start) {
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start, frame.settling);
+  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.run<true>();
   return {walk.pose(), walk.jacobian()};
 }

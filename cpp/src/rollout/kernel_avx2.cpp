@@ -19,6 +19,7 @@
 #endif
 #define SLIPWISE_HAS_LEVEL
 #include "slipwise/rollout/lane_kernel.hpp"
+#include "slipwise/rollout/lane_limiter.hpp"
 #endif
 
 namespace slipwise {
@@ -34,7 +35,7 @@ struct Level {
 
 template <typename Scalar>
 LaneKernelOfLevel<Scalar> kernel() {
-  return {roll_block<Level, Scalar>, Lanes<Level, Scalar>::kLanes};
+  return {roll_block<Level, Scalar>, limit_block<Level, Scalar>, Lanes<Level, Scalar>::kLanes};
 }
 
 }  // namespace
@@ -47,8 +48,8 @@ LaneKernelOfLevel<Scalar> kernel() {
 LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return kernel<float>(); }
 LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return kernel<double>(); }
 #else
-LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return {nullptr, 0}; }
-LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return {nullptr, 0}; }
+LaneKernelOfLevel<float> avx2_kernel(float /*scalar*/) { return {nullptr, nullptr, 0}; }
+LaneKernelOfLevel<double> avx2_kernel(double /*scalar*/) { return {nullptr, nullptr, 0}; }
 #endif
 
 }  // namespace slipwise

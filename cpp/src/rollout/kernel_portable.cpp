@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "slipwise/rollout/lane_kernel.hpp"
+#include "slipwise/rollout/lane_limiter.hpp"
 
 namespace slipwise {
 namespace {
@@ -19,10 +20,10 @@ struct Level {
 }  // namespace
 
 LaneKernelOfLevel<float> portable_kernel(float /*scalar*/) {
-  return {roll_block<Level, float>, Lanes<Level, float>::kLanes};
+  return {roll_block<Level, float>, limit_block<Level, float>, Lanes<Level, float>::kLanes};
 }
 LaneKernelOfLevel<double> portable_kernel(double /*scalar*/) {
-  return {roll_block<Level, double>, Lanes<Level, double>::kLanes};
+  return {roll_block<Level, double>, limit_block<Level, double>, Lanes<Level, double>::kLanes};
 }
 
 }  // namespace slipwise

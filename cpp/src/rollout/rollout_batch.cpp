@@ -3,12 +3,17 @@
 #include "slipwise/rollout/rollout_batch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "slipwise/rollout/gpu.hpp"
 #include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/limited_commands.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
 #include "slipwise/rollout/start_drive.hpp"
 #include "slipwise/slip/term.hpp"
@@ -115,6 +120,10 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .shift_omega = chain.omega.shift,
           .lags = chain.lags,
           .responds = chain.responds,
+          .limits = program.limited() ? &constants.limits : nullptr,
+          .pieces = program.pieces(),
+          .first_row = 0,
+          .last_row = static_cast<std::ptrdiff_t>(batch.periods) - 1,
           .rollouts = batch.rollouts,
           .periods = batch.periods,
           .v = batch.commands.v,
@@ -149,24 +158,39 @@ struct SentCommands {
   }
 };
 
+/// The first period of commands that no pose depends on, since they are still in the delay at the end.
+template <typename Scalar>
+std::size_t first_unused(const LaneJob<Scalar>& job) {
+  const auto pieces = static_cast<std::ptrdiff_t>(job.pieces);
+  const std::ptrdiff_t unused = (std::max({job.shift_v, job.shift_omega, std::ptrdiff_t{0}}) + pieces - 1) / pieces;
+  return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(job.periods) - unused, std::ptrdiff_t{0}));
+}
+
 /// Moves the block to its place in the batch. What all lanes share is set once.
 template <typename Scalar>
 class BlockOfBatch {
  public:
-  BlockOfBatch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map, std::size_t lanes)
-      : chain_(program.chain()),
+  BlockOfBatch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
+               const LaneKernelOfLevel<Scalar>& kernel, const LaneJob<Scalar>& job)
+      : program_(program),
+        chain_(program.chain()),
         batch_(batch),
         map_(map),
-        lanes_(lanes),
+        lanes_(kernel.lanes),
         many_(batch.starts.size() > 1),
-        each_(many_ || (chain_.responds && std::min(chain_.v.shift, chain_.omega.shift) < 0)) {
+        each_(many_ || (chain_.responds && std::min(chain_.v.shift, chain_.omega.shift) < 0)),
+        commands_(program, kernel, job) {
+    point_to_rows(rows_.data(), kMostLanes, block_);
     block_.past_count = batch.past.size() / batch.starts.size();
     block_.past_stride = many_ ? block_.past_count : 0;
-    const Drives drives = drives_of(0);
-    for (std::size_t lane = 0; lane < kMostLanes; ++lane) {
-      set_lane(lane, batch.starts.front().pose, drives);
-    }
+    set_lanes(0, kMostLanes, 0);
   }
+
+  /// Whether some rollouts start differently from others.
+  bool differs() const { return each_; }
+
+  /// Drives one block; returns its faults.
+  unsigned roll(std::size_t block) { return commands_.roll(at(block)); }
 
   const LaneBlock<Scalar>& at(std::size_t block) {
     block_.first = block * lanes_;
@@ -174,8 +198,7 @@ class BlockOfBatch {
     block_.side_by_side = batch_.commands.rollout_stride == 1 && block_.count == lanes_;
     block_.past = batch_.past.data() + (many_ ? block_.first * block_.past_count : 0);
     for (std::size_t lane = 0; each_ && lane < block_.count; ++lane) {
-      const std::size_t rollout = block_.first + lane;
-      set_lane(lane, batch_.starts[many_ ? rollout : 0].pose, drives_of(rollout));
+      set_lanes(lane, lane + 1, block_.first + lane);
     }
     return block_;
   }
@@ -185,16 +208,54 @@ class BlockOfBatch {
     StartDrive v, omega;
   };
 
-  Drives drives_of(std::size_t rollout) const {
+  std::span<const DriveCommand> past_of(std::size_t rollout) const {
+    return batch_.past.subspan(many_ ? rollout * block_.past_count : 0, block_.past_count);
+  }
+
+  double sent(std::size_t rollout, std::ptrdiff_t i, double DriveCommand::* channel) const {
+    const Scalar* commands = channel == &DriveCommand::v ? batch_.commands.v : batch_.commands.omega;
+    return SentCommands<Scalar>{batch_, rollout, past_of(rollout), commands, channel}(i);
+  }
+
+  /// `command(i, channel)` is what was told in period i of the chain; none before `oldest` differs from that.
+  template <typename Command>
+  Drives drives_of(std::size_t rollout, std::size_t known_before, const Command& command) const {
     const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
-    const auto past = batch_.past.subspan(many_ ? rollout * block_.past_count : 0, block_.past_count);
-    const auto oldest = -static_cast<std::ptrdiff_t>(past.size());
-    const auto channel = [&](const ChannelTiming& timing, const Scalar* commands, double DriveCommand::* member) {
-      const SentCommands<Scalar> sent{batch_, rollout, past, commands, member};
-      return start_drive(chain_, timing, now.*member, oldest, sent);
+    const auto channel = [&](const ChannelTiming& timing, double DriveCommand::* member) {
+      return start_drive(chain_, timing, now.*member, -static_cast<std::ptrdiff_t>(known_before),
+                         [&](std::ptrdiff_t i) { return command(i, member); });
     };
-    return {channel(chain_.v, batch_.commands.v, &DriveCommand::v),
-            channel(chain_.omega, batch_.commands.omega, &DriveCommand::omega)};
+    return {channel(chain_.v, &DriveCommand::v), channel(chain_.omega, &DriveCommand::omega)};
+  }
+
+  Drives drives_behind_limits(std::size_t rollout, LimitedStart start) const {
+    const auto before = static_cast<std::ptrdiff_t>(start.given.size());
+    for (std::ptrdiff_t i = 0; each_ && i <= -std::min(chain_.v.shift, chain_.omega.shift); ++i) {
+      add_pieces(program_, {sent(rollout, i, &DriveCommand::v), sent(rollout, i, &DriveCommand::omega)}, start);
+    }
+    return drives_of(rollout, block_.past_count * program_.pieces(), [&](std::ptrdiff_t i, auto member) {
+      return start.given[static_cast<std::size_t>(std::max(before + i, std::ptrdiff_t{0}))].*member;
+    });
+  }
+
+  /// Lanes from `first` to `last` start as this rollout does.
+  void set_lanes(std::size_t first, std::size_t last, std::size_t rollout) {
+    Drives drives{};
+    if (program_.limited()) {
+      const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
+      const LimitedStart start = limited_start(
+          program_, past_of(rollout), {told_by(chain_.v.response, now.v), told_by(chain_.omega.response, now.omega)});
+      for (std::size_t lane = first; lane < last; ++lane) {
+        commands_.set_start(lane, start);
+      }
+      drives = drives_behind_limits(rollout, start);
+    } else {
+      drives = drives_of(rollout, block_.past_count,
+                         [&](std::ptrdiff_t i, auto member) { return sent(rollout, i, member); });
+    }
+    for (std::size_t lane = first; lane < last; ++lane) {
+      set_lane(lane, batch_.starts[many_ ? rollout : 0].pose, drives);
+    }
   }
 
   void set_lane(std::size_t lane, const Pose2& pose, const Drives& drives) {
@@ -217,14 +278,60 @@ class BlockOfBatch {
     set_channel(block_.omega, drives.omega);
   }
 
+  alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
+  const RolloutProgram& program_;
   const ChainSchedule& chain_;
   const RolloutBatch<Scalar>& batch_;
   const Costmap* map_;
   std::size_t lanes_;
   bool many_;  ///< starts
   bool each_;  ///< lane differs
+  LimitedCommands<Scalar> commands_;
   LaneBlock<Scalar> block_{};
 };
+
+/// What went wrong in all rollouts, as bits; each block is computed on the processor, as if it were alone.
+template <typename Scalar>
+unsigned roll_blocks(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
+                     const LaneJob<Scalar>& job, const RolloutOptions& options) {
+  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
+  std::atomic<unsigned> faults = kNoFault;
+  const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
+  share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
+    BlockOfBatch<Scalar> place(program, batch, map, kernel, job);
+    unsigned found = kNoFault;
+    for (std::size_t block = first; block < last; ++block) {
+      found |= place.roll(block);
+    }
+    faults |= found;
+  });
+  return faults;
+}
+
+/// The same on a GPU.
+template <typename Scalar>
+unsigned roll_on(Gpu& gpu, const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
+                 const LaneJob<Scalar>& job) {
+  if (program.limited()) {
+    throw std::invalid_argument("a drive with limits is rolled out on the processor only; leave out the GPU");
+  }
+  BlockOfBatch<Scalar> place(program, batch, map, {.roll = nullptr, .limit = nullptr, .lanes = kMostLanes}, job);
+  const std::size_t starts = place.differs() ? batch.rollouts : 1;
+  std::vector<Scalar> rows(kStartRows * starts);
+  for (std::size_t first = 0; first < starts; first += kMostLanes) {
+    const Scalar* row = place.at(first / kMostLanes).x;  // the first of kStartRows
+    for (std::size_t i = 0; i < kStartRows; ++i, row += kMostLanes) {
+      std::copy_n(row, std::min(kMostLanes, starts - first), &rows[i * starts + first]);
+    }
+  }
+  const std::size_t past = batch.past.size() / batch.starts.size();
+  return gpu.roll<Scalar>({.job = job,
+                           .starts = rows,
+                           .past = batch.past,
+                           .past_count = past,
+                           .past_stride = batch.starts.size() > 1 ? past : 0,
+                           .used = first_unused(job)});
+}
 
 [[noreturn]] void refuse(unsigned fault) {
   if ((fault & kTurnsTooFar) != 0) {
@@ -232,7 +339,7 @@ class BlockOfBatch {
         "a rollout turns thousands of times within one period; use shorter periods, or "
         "commands in rad/s");
   }
-  throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands in m/s and rad/s?");
+  throw std::invalid_argument("a rollout leaves the range of its numbers; are the commands finite, in m/s and rad/s?");
 }
 
 }  // namespace
@@ -241,22 +348,17 @@ template <typename Scalar>
 void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                    const RolloutOutputs<Scalar>& outputs, const RolloutOptions& options) {
   check(batch);
-  const LaneKernelOfLevel<Scalar> kernel = kernel_of<Scalar>(options.level);
   const LaneJob<Scalar> job = job_of(program, batch, outputs);
-  std::atomic<unsigned> faults = kNoFault;
-  const std::size_t blocks = (batch.rollouts + kernel.lanes - 1) / kernel.lanes;
-  share_out(blocks, options.threads, [&](std::size_t first, std::size_t last) {
-    BlockOfBatch<Scalar> place(program, batch, outputs.map, kernel.lanes);
-    unsigned found = kNoFault;
-    for (std::size_t block = first; block < last; ++block) {
-      found |= kernel.roll(job, place.at(block));
-    }
-    faults |= found;
-  });
-  const std::ptrdiff_t unused = std::max({job.shift_v, job.shift_omega, std::ptrdiff_t{0}});
-  const auto periods = static_cast<std::ptrdiff_t>(batch.periods);
-  check_commands(batch,
-                 faults == kNoFault ? static_cast<std::size_t>(std::max(periods - unused, std::ptrdiff_t{0})) : 0);
+  const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
+  if (out_of_sight && program.chain().responds && std::min(job.shift_v, job.shift_omega) < 0) {
+    throw std::invalid_argument(
+        "where a drive with a slow part acts before it is told, its commands must lie in the processor's memory");
+  }
+  const unsigned faults = options.gpu != nullptr ? roll_on(*options.gpu, program, batch, outputs.map, job)
+                                                 : roll_blocks(program, batch, outputs.map, job, options);
+  if (!out_of_sight) {
+    check_commands(batch, faults == kNoFault ? first_unused(job) : 0);
+  }
   if (faults != kNoFault) {
     refuse(faults);
   }

@@ -2,7 +2,9 @@
 // Compiling a motion model for rollouts.
 #include "slipwise/rollout/rollout_program.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <stdexcept>
 
@@ -49,9 +51,40 @@ LaneLag<Scalar> lane_lag(const ChannelShare& part, const ChannelResponse& respon
       .slow_by_slow = number(part.slow.end_gap)};
 }
 
+/// Pieces of equal length, so that neither they nor what is sent before the start depends on any command.
+std::size_t pieces_of(const RolloutSetting& setting) {
+  check(setting.limits);
+  const bool periods = setting.period > 0.0 && std::isfinite(setting.period);  // else the schedule says what is wrong
+  return periods && limits_rates(setting.limits) ? static_cast<std::size_t>(ramp_pieces(setting.period)) : 1;
+}
+
 template <typename Scalar>
-LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain) {
-  LaneConstants<Scalar> constants;
+RampLimits<Scalar> ramp_limits(const LaneLimits& limits, double piece) {
+  const auto rate = [&](double value) { return std::isfinite(value) ? static_cast<Scalar>(value * piece) : Scalar{}; };
+  const auto per_rate = [&](double value) { return static_cast<Scalar>(1.0 / (value * piece)); };
+  constexpr auto kLargest = static_cast<double>(std::numeric_limits<Scalar>::max());
+  return {.dead_band = static_cast<Scalar>(limits.dead_band),
+          .top = static_cast<Scalar>(std::min(limits.top, kLargest)),
+          .acceleration = rate(limits.acceleration),
+          .braking = rate(limits.braking),
+          .per_acceleration = per_rate(limits.acceleration),
+          .per_braking = per_rate(limits.braking)};
+}
+
+template <typename Scalar>
+DriveRamps<Scalar> drive_ramps(const CommandLimits& limits, double piece) {
+  return {.speed = ramp_limits<Scalar>(limits.speed, piece),
+          .yaw_rate = ramp_limits<Scalar>(limits.yaw_rate, piece),
+          .side = ramp_limits<Scalar>(limits.side, piece),
+          .gain_v = static_cast<Scalar>(limits.gain_v),
+          .half_track = static_cast<Scalar>(0.5 * limits.gain_omega * limits.track),
+          .per_track = static_cast<Scalar>(1.0 / limits.track),
+          .sides = limits_sides(limits)};
+}
+
+template <typename Scalar>
+LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain, const CommandLimits& limits) {
+  LaneConstants<Scalar> constants{.parts = {}, .shares = {}, .limits = drive_ramps<Scalar>(limits, chain.period)};
   std::vector<PeriodPart> parts = chain.lead_in;
   parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
   parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
@@ -77,10 +110,11 @@ RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const 
                                const RolloutSetting& setting)
     : setting_(setting),
       slip_(slip_of(model, parameters, setting)),
-      chain_(schedule_chain(model.chain(parameters), setting.period)),
+      pieces_(pieces_of(setting)),
+      chain_(schedule_chain(model.chain(parameters), setting.period / static_cast<double>(pieces_))),
       quadratic_(find_quadratic(slip_)),
       products_(lane_products(slip_)),
-      float_(lane_constants<float>(slip_, chain_)),
-      double_(lane_constants<double>(slip_, chain_)) {}
+      float_(lane_constants<float>(slip_, chain_, setting.limits)),
+      double_(lane_constants<double>(slip_, chain_, setting.limits)) {}
 
 }  // namespace slipwise

@@ -7,8 +7,8 @@ from importlib.resources import files
 
 from slipwise import _core
 from slipwise.export.c_covariance import covariance, noise, shifts
+from slipwise.export.c_limits import cursor, limits
 from slipwise.export.chain import chain_of
-from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 
 _TEMPLATE = "model_template.h"
@@ -39,9 +39,8 @@ def c_header(model: Model, origin: list[str]) -> str:
         origin: lines of the comment on top.
 
     Raises:
-        ModelError: the command chain has a part that is not known, or limits of the drive.
+        ModelError: the command chain has a part that is not known.
     """
-    refuse_limits(model.content.limits, "the C header")
     model = model.body
     template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
     inputs = "commanded speeds" if model.content.input == "command" else "wheel speeds"
@@ -51,6 +50,8 @@ def c_header(model: Model, origin: list[str]) -> str:
         "CONSTANTS": _constants(model),
         "RANGE": _range(model),
         "LIBRARY": _library(model),
+        "LIMITS": limits(model),
+        "CURSOR": cursor(model),
         "SLIP": "\n".join(f"  {line}" for line in _slip(model)),
         "LEARNED": _learned(model),
         "SHIFTS": shifts(model),

@@ -41,6 +41,7 @@ typedef float slipwise_real;
 @RANGE@
 /* The same model for the C++ library: terms of the slip basis, parts of the chain, and the parameter vector. */
 @LIBRARY@
+@LIMITS@
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */
 #define SLIPWISE_SAME_STEP SLIPWISE_R(1e-6)    /* of a step: a stretch longer by rounding gets no other step */
 #define SLIPWISE_LONGEST_WINDOW SLIPWISE_R(1e5) /* [s] */
@@ -154,54 +155,7 @@ static inline void slipwise_slip(const slipwise_model *model, slipwise_drive dri
 @SLIP@
 }
 
-/* The commands of one channel as the drive sees them: delayed. */
-typedef struct {
-  const slipwise_commands *commands;
-  slipwise_real delay;
-  int next, end;
-} slipwise_cursor;
-
-static inline int slipwise_count_until(const slipwise_commands *commands, slipwise_real t) {
-  int low = 0, high = commands->count;
-  while (low < high) {
-    const int middle = low + (high - low) / 2;
-    if (slipwise_command_at(commands, middle)->t <= t) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low;
-}
-
-static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, slipwise_real delay,
-                                                 slipwise_real start, slipwise_real known_until) {
-  slipwise_cursor cursor;
-  cursor.commands = commands;
-  cursor.delay = delay;
-  cursor.next = slipwise_count_until(commands, start - delay);
-  cursor.end = slipwise_count_until(commands, known_until);
-  if (cursor.end < cursor.next) {
-    cursor.end = cursor.next;
-  }
-  return cursor;
-}
-
-static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) {
-  slipwise_drive held = {0, 0}; /* at rest before the first command */
-  if (cursor->next > 0) {
-    const slipwise_command *command = slipwise_command_at(cursor->commands, cursor->next - 1);
-    held.v = command->v;
-    held.omega = command->omega;
-  }
-  return held;
-}
-
-/* When the channel changes next, or `never`. */
-static inline slipwise_real slipwise_change(const slipwise_cursor *cursor, slipwise_real never) {
-  return cursor->next < cursor->end ? slipwise_command_at(cursor->commands, cursor->next)->t + cursor->delay : never;
-}
-
+@CURSOR@
 /* Moves a lag's output over a step under a held input, exactly; returns the integral of the output. */
 static inline slipwise_real slipwise_lag_step(slipwise_real *output, slipwise_real input, slipwise_real lag,
                                               slipwise_real duration) {
@@ -336,12 +290,8 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
     for (i = 0; next > now && i < parts; ++i) {
       slipwise_step(walk, (next - now) / (slipwise_real)parts, moves);
     }
-    while (walk->speed_input.next < walk->speed_input.end && slipwise_change(&walk->speed_input, next) <= next) {
-      ++walk->speed_input.next;
-    }
-    while (walk->yaw_input.next < walk->yaw_input.end && slipwise_change(&walk->yaw_input, next) <= next) {
-      ++walk->yaw_input.next;
-    }
+    slipwise_catch_up(&walk->speed_input, next);
+    slipwise_catch_up(&walk->yaw_input, next);
     now = next > now ? next : now;
   }
 }

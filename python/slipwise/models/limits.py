@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The limits of a drive in a model: for the core, in words, and for those who cannot use them."""
+"""The limits of a drive in a model: for the core, and in rows of numbers."""
 
 from __future__ import annotations
 
 import math
 
 from slipwise import _core
-from slipwise.errors import ModelError
 from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
 
 LANES = ("speed", "yaw_rate", "side")
@@ -74,17 +73,3 @@ def limit_rows(section: LimitsSection) -> list[tuple[str, float, float, str]]:
     if any(name.startswith("limits.side") for name, *_ in rows):
         rows.append(("limits.track", section.track, section.track_std, "m"))
     return rows
-
-
-def refuse_limits(section: LimitsSection | None, who: str) -> None:
-    """Raise for a model with limits, which `who` would leave out.
-
-    Raises:
-        ModelError: the model has limits.
-    """
-    if section is not None:
-        names = ", ".join(name for name, *_ in limit_rows(section))
-        raise ModelError(
-            f"the model has limits of the drive ({names}), which {who} does not know",
-            advice="learn one without: settings with `[auto] limits = false`",
-        )

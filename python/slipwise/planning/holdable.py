@@ -20,6 +20,8 @@ Floats = NDArray[np.float64]
 class CurvatureMap:
     """Steady driving under held commands on flat ground, [S, C] over speeds and commanded curvatures.
 
+    Dead-band and top speeds of the drive, where learned, are in it.
+
     Commands beyond a limit, and beyond the speeds or yaw rates that the model has seen, are NaN.
     """
 
@@ -64,8 +66,11 @@ def curvature_map(
     for i, v in enumerate(speed.tolist()):
         for j, omega in enumerate((told * v).tolist()):
             if abs(omega) <= fastest + 1e-12:
-                slip = _core.slip_rate(model.motion.basis, alpha, _core.SlipState(v, omega, 0.0, 0.0))
-                along, across, turn = v + slip[0], slip[1], omega + slip[2]
+                drive = _core.BodyTwist(v, 0.0, omega)
+                drive = drive if model.limits is None else model.limits.settled(drive)
+                state = _core.SlipState(drive.v, drive.omega, 0.0, 0.0)
+                slip = _core.slip_rate(model.motion.basis, alpha, state)
+                along, across, turn = drive.v + slip[0], slip[1], drive.omega + slip[2]
                 path = float(np.hypot(along, across))
                 result[:, i, j] = (turn / path if path > 0.0 else np.nan, path, np.arctan2(across, along))
     return CurvatureMap(speed, told, *result)

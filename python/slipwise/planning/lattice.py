@@ -74,8 +74,8 @@ def lattice_primitives(
 ) -> list[Primitive]:
     """Return primitives by their start heading, each from straight driving to straight driving at one speed.
 
-    They have the model's slip. Lag and delay are left out: they shift where a command acts, which is up to
-    the controller that follows the plan.
+    They have the model's slip. Lag, delay and limits of the drive are left out: they shift where a command
+    acts, which is up to the controller that follows the plan.
 
     Raises:
         SettingsError: an option makes no sense.
@@ -158,7 +158,7 @@ def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _c
     motion = _core.MotionModel(model.motion.basis, False, False)
     try:
         return _core.TrajectoryPlanner(
-            motion, model.mean[: motion.slip_size], limits.to_core(), settings, _driving(options.speed)
+            motion, model.mean[: motion.slip_size], limits.to_core(), settings, _driving(options.speed), None
         )
     except ValueError as problem:
         raise SettingsError(str(problem), where="lattice options") from problem

@@ -42,21 +42,29 @@ class Limits:
 def limits_of(model: Model) -> Limits:
     """Return limits within which the model was learned; the curvature is that of full turning at half speed.
 
+    Where the drive has learned limits, the tighter of the two hold; so that its ramps keep up with the
+    commands, the acceleration is no more than it accelerates and brakes with.
+
     Raises:
         SettingsError: the model has never seen the robot drive or turn.
     """
     speed = max(abs(value) for value in model.content.range.speed)
     yaw_rate = max(abs(value) for value in model.content.range.yaw_rate)
+    acceleration = ACCELERATION
     learned = model.limits
     if learned is not None:
-        speed = min(speed, learned.speed.top, learned.side.top)
+        sides = learned.side
+        speed = min(speed, learned.speed.top, sides.top / learned.gain_v)
         yaw_rate = min(yaw_rate, learned.yaw_rate.top)
+        own = (learned.speed.acceleration, learned.speed.braking)
+        acceleration = min(acceleration, *own, sides.acceleration / learned.gain_v, sides.braking / learned.gain_v)
     if speed <= 0.0 or yaw_rate <= 0.0:
         raise SettingsError(
             "the model was learned from a drive without speed or without turning",
             advice="give limits, or calibrate on a drive that has both",
         )
-    return Limits(speed=speed, yaw_rate=yaw_rate, curvature=2.0 * yaw_rate / speed)
+    curvature = 2.0 * yaw_rate / speed
+    return Limits(speed=speed, yaw_rate=yaw_rate, curvature=curvature, acceleration=acceleration)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
-from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
@@ -29,6 +28,7 @@ class Motion:
 
     model: _core.MotionModel
     parameters: Floats
+    limits: _core.CommandLimits | None = None  # of the drive, in front of its delay and lag
 
 
 def plain_motion() -> Motion:
@@ -45,13 +45,11 @@ def vendor_motion(multiplier: float) -> Motion:
 def learned_motions(model: Model, *, samples: int = 0, seed: int = 1) -> list[Motion]:
     """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
 
-    Raises:
-        ModelError: the model has limits of the drive, which the controller's rollouts do not know.
+    All have the limits of the drive that were learned.
     """
-    refuse_limits(model.content.limits, "the controller")
     rng = np.random.Generator(np.random.PCG64(seed))
     drawn = rng.multivariate_normal(model.mean, model.covariance, size=samples, method="eigh")
-    return [Motion(model.motion, parameters) for parameters in (model.mean, *drawn)]
+    return [Motion(model.motion, parameters, model.limits) for parameters in (model.mean, *drawn)]
 
 
 @dataclass(frozen=True)
@@ -138,7 +136,7 @@ class Controller:
         self.track, self.options = track, options
         self._obstacles = obstacles  # keeps the cells
         try:
-            models = [(motion.model, motion.parameters) for motion in motions]
+            models = [(motion.model, motion.parameters, motion.limits) for motion in motions]
             self._core = _core.Mppi(models, options.to_core())
         except (ValueError, TypeError, OverflowError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem

@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
-from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
+from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
 from slipwise.prediction import tail_at
 
@@ -54,8 +54,9 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     dtype: DTypeLike | None = None,
     out: Rollouts | None = None,
     level: str | None = None,
+    device: str = "cpu",
 ) -> Rollouts:
-    """Roll out `commands` through `model`: command chain, slip of any basis, exact steps.
+    """Roll out `commands` through `model`: limits, command chain, slip of any basis, exact steps.
 
     Args:
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
@@ -70,13 +71,15 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         threads: the results are the same bytes for any number.
         dtype: float32 or float64; by default that of the commands.
         out: results of an earlier call of the same shape and dtype, whose arrays are filled again.
-        level: instruction level, one of `_core.instruction_levels()`; by default the best.
+        level: instruction level of the processor, one of `_core.instruction_levels()` ("portable", "avx2",
+            "avx512"); by default the best that it has.
+        device: "cpu", or "cuda" for a GPU in a build with CUDA (docs/use-it-in-your-planner.md). Commands and
+            results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
-        ModelError: the model has limits of the drive.
-        SettingsError: the batch is empty, a command is not finite, or something does not fit the rest.
+        SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
+            there is no such device; it says why.
     """
-    refuse_limits(model.content.limits, "the rollout")
     numbers = checked_commands(commands, dtype)
     check_threads(threads)
     begin = Start() if start is None else start
@@ -88,8 +91,9 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
         "costs": _buffer("costs", wanted, out, (3, rollouts), numbers.dtype),
     }
     starts = begin.in_core(rollouts)
+    gpu = gpu_of(device)
     try:
-        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity)
+        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity, model.limits)
         _core.rollout_batch(
             program,
             numbers,
@@ -100,9 +104,10 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             buffers["costs"],
             threads,
             _core.instruction_levels()[-1] if level is None else level,
+            gpu,
         )
         spread = _covariance(model, numbers, dt, begin, threads) if covariance else None
-    except (ValueError, TypeError) as problem:
+    except (ValueError, TypeError, RuntimeError) as problem:
         raise SettingsError(str(problem)) from problem
     return Rollouts(covariance=spread, **buffers)
 
@@ -141,11 +146,10 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
-    refuse_limits(model.content.limits, "the rollout")
     scale = np.array(model.content.noise.scale)
     growth = tail_at(model, horizon).growth
     return _core.UncertainModel(
-        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity
+        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity, model.limits
     )
 
 

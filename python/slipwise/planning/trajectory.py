@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
-from slipwise.models.limits import refuse_limits
 from slipwise.models.model import Model
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
 from slipwise.prediction import Path, predict
@@ -70,6 +69,9 @@ class Trajectory:
 class Planner:
     """Plans to any goal from states near one start; it keeps a table of manoeuvres made for that start.
 
+    Commands keep within `limits`. What the drive's learned limits make of them is part of the path: goals are
+    reached through dead-band, top speed and ramps.
+
     Args:
         model: a learned model.
         limits: of the commands; by default what the model was learned within.
@@ -77,7 +79,6 @@ class Planner:
         state: what the robot usually does when a plan begins.
 
     Raises:
-        ModelError: the model has limits of the drive.
         SettingsError: limits, options or state contradict each other.
     """
 
@@ -89,12 +90,11 @@ class Planner:
         options: TrajectoryOptions = USUAL,
         state: DriveState = AT_REST,
     ) -> None:
-        refuse_limits(model.content.limits, "the trajectory planner")
         self.limits = limits_of(model) if limits is None else limits
         settings = options.to_core(self.limits)
         try:
             self._core = _core.TrajectoryPlanner(
-                model.motion, model.mean, self.limits.to_core(), settings, state.to_core()
+                model.motion, model.mean, self.limits.to_core(), settings, state.to_core(), model.limits
             )
         except ValueError as problem:
             raise SettingsError(str(problem), where="trajectory options") from problem

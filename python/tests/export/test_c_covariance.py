@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from export.test_c_header import STRICT, commands_of, random_values
-from sample_models import Made, make_model, named
+from sample_models import LIMITS, Made, make_model, named
 
 from slipwise import _core
 from slipwise.export import export_model
@@ -87,6 +87,7 @@ MODELS = {
     ),
     "commands": replace(named("full-linear-6", lon__V=-0.05, ang__w=-0.4), commands=True, clock_offset=0.05),
     "response": replace(named("edd-2", lon__V=-0.05, ang__w=-0.3), response=True),
+    "limits": replace(named("edd-2", lon__V=-0.05, ang__w=-0.3), response=True, limits=LIMITS),
 }
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_models import Made, make_model, named
+from sample_models import LIMITS, Made, make_model, named
 
 from slipwise import _core
 from slipwise.errors import ModelError
@@ -129,7 +129,7 @@ def commands_of(seed: int, *, seconds: float = 12.0) -> Floats:
 
 def expected(model: Model, commands: Floats, window: Window) -> Floats:
     t, v, omega = (np.ascontiguousarray(column) for column in commands.T)
-    track = _core.InputTrack(t, v, np.zeros_like(v), omega)
+    track = model.driven(_core.InputTrack(t, v, np.zeros_like(v), omega))
     drive = window.drive
     segment = _core.Segment(window.start, window.end, _core.Pose2(0.0, 0.0, 0.0), None, window.gx, window.gy)
     if drive is not None:
@@ -191,6 +191,23 @@ def test_header_has_gain_and_slow_part(compiled: Compile, offset: float | None) 
 
 
 @pytest.mark.parametrize("number", ["float", "double"])
+@pytest.mark.parametrize("lanes", ["speed", "yaw_rate", "side", "all"])
+def test_header_puts_commands_behind_limits(compiled: Compile, lanes: str, number: str) -> None:
+    made = replace(named("full-linear-6", lon__V=-0.05, lat__w=0.1, ang__w=-0.4), response=lanes == "all")
+    limits = {lane: kinds for lane, kinds in LIMITS.items() if lanes in (lane, "all")}
+    commands = commands_of(seed=21)
+    windows = [Window(4.0, 9.0), Window(0.0, 5.0), Window(3.0, 8.0, drive=(0.4, -0.3)), Window(5.0, 5.03)]
+    for offset in (None, -0.05):
+        model = make_model(replace(made, commands=True, clock_offset=offset, limits=limits))
+        _, rows = compiled(model, number).run(commands, windows)
+        poses = np.array([expected(model, commands, window) for window in windows])
+        assert not rows[:, 0].any()
+        assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE[number]
+    free = make_model(replace(made, commands=True, clock_offset=offset))
+    assert np.abs(expected(free, commands, windows[0]) - poses[0]).max() > 0.05
+
+
+@pytest.mark.parametrize("number", ["float", "double"])
 def test_header_agrees_with_predict_along_a_path(compiled: Compile, number: str) -> None:
     made = named("odd-even-10", lon__V=-0.08, lat__w=0.07, ang__w=-0.5, ang__V=-0.04, log_lag_v=-2.06)
     model = make_model(replace(made, commands=True))
@@ -240,10 +257,13 @@ def test_wrong_windows_and_commands_get_a_status_and_no_pose(compiled: Compile) 
 
 
 @pytest.mark.parametrize("define", [[], ["-DSLIPWISE_DOUBLE"]], ids=["float", "double"])
-def test_header_is_also_cpp(tmp_path: Path, define: list[str]) -> None:
+@pytest.mark.parametrize("limits", [None, LIMITS], ids=["free", "limited"])
+def test_header_is_also_cpp(
+    tmp_path: Path, define: list[str], limits: dict[str, dict[str, float]] | None
+) -> None:
     if shutil.which("g++") is None:
         pytest.skip("there is no g++")
-    model = make_model(Made(OWN, random_values(OWN, seed=1), commands=True))
+    model = make_model(Made(OWN, random_values(OWN, seed=1), commands=True, limits=limits))
     (tmp_path / "model.h").write_text(export_model(model, "c-header", name="m.yaml").text, encoding="utf-8")
     (tmp_path / "use.cpp").write_text('#include "model.h"\n#include "model.h"\nint main() { return 0; }\n')
     command = ["g++", "-std=c++11", *STRICT, "-Wconversion", "-Wshadow", *define, "use.cpp", "-o", "use"]

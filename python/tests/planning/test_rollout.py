@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from sample_logs import Drive, simulated_log
-from sample_models import Made, make_model
+from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
@@ -32,8 +32,22 @@ def responding() -> Model:
     return make_model(Made(basis=_core.named_basis("full-linear-6"), values=values, response=True))
 
 
-@pytest.fixture(scope="module", params=["lag and delay", "response"])
+def limited() -> Model:
+    """The same behind a dead-band, top speeds and ramps of the commands and of both sides."""
+    return make_model(
+        Made(
+            basis=_core.named_basis("full-linear-6"),
+            values={"lat.w": 0.05, "ang.w": -0.3},
+            response=True,
+            limits=LIMITS,
+        )
+    )
+
+
+@pytest.fixture(scope="module", params=["lag and delay", "response", "limits"])
 def model(request: pytest.FixtureRequest) -> Model:
+    if request.param == "limits":
+        return limited()
     return responding() if request.param == "response" else learned("auto")
 
 
@@ -103,6 +117,39 @@ def test_every_instruction_level_gives_the_same_poses(model: Model, commands: ND
         assert rollout(model, commands, DT, level=level).path == pytest.approx(portable, abs=1e-10)
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_a_gpu_gives_the_poses_of_the_processor(
+    model: Model, commands: NDArray[np.float64], dtype: type[np.floating[Any]]
+) -> None:
+    if reason := _core.why_no_gpu():
+        pytest.skip(reason)
+    if model.content.limits is not None:
+        with pytest.raises(SettingsError, match="on the processor only"):
+            rollout(model, commands, DT, dtype=dtype, device="cuda")
+        return
+    costmap = Costmap(np.arange(80.0).reshape(8, 10), resolution=0.5, origin=(-1.0, -2.0), outside=200.0)
+    expected = rollout(model, commands, DT, outputs=("path", "end", "costs"), costmap=costmap)
+    found = rollout(
+        model, commands, DT, outputs=("path", "end", "costs"), costmap=costmap, dtype=dtype, device="cuda"
+    )
+    tolerance = 1e-9 if dtype is np.float64 else 1e-5
+    assert found.path == pytest.approx(expected.path, abs=tolerance)
+    assert found.end == pytest.approx(expected.end, abs=tolerance)
+    if dtype is np.float64:  # in float a pose at a cell's border may fall to the other side
+        assert found.costs == pytest.approx(expected.costs, abs=tolerance)
+
+
+def test_without_a_gpu_the_error_says_why(model: Model, commands: NDArray[np.float64]) -> None:
+    reason = _core.why_no_gpu()
+    if not reason:
+        pytest.skip("there is a GPU")
+    with pytest.raises(SettingsError, match="device 'cuda'") as caught:
+        rollout(model, commands, DT, device="cuda")
+    assert reason in str(caught.value)
+    with pytest.raises(ValueError, match="on the processor"):
+        _core.Gpu()
+
+
 def test_buffers_are_filled_again(model: Model, commands: NDArray[np.float64]) -> None:
     first = rollout(model, commands, DT)
     again = rollout(model, 0.5 * commands, DT, out=first)
@@ -152,6 +199,7 @@ def test_sampled_futures_scatter_around_the_rollout(model: Model, commands: NDAr
         ({"threads": 0}, "0 threads"),
         ({"dtype": np.int32}, "int32"),
         ({"level": "sse9"}, "unknown instruction level"),
+        ({"device": "tpu"}, "unknown device 'tpu'.*cpu, cuda"),
         ({"outputs": ("poses",)}, "unknown output 'poses'"),
         ({"outputs": ("costs",)}, "costs need a costmap"),
         ({"start": Start(pose=np.zeros((3, 3)))}, "3 starts for 20 rollouts"),

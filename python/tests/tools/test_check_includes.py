@@ -68,6 +68,14 @@ def test_a_header_that_is_neither_ours_nor_standard_nor_eigen_is_refused(tmp_pat
     assert "the core uses the standard library, Eigen" in fault
 
 
+def test_cuda_stands_in_cu_files_alone(tmp_path: Path) -> None:
+    write(tmp_path, "cpp/src/rollout/device.cu", "#include <cuda_runtime.h>", "#include <string>")
+    assert check(tmp_path) == []
+    write(tmp_path, "cpp/src/rollout/device.cpp", "#include <cuda_runtime.h>")
+    (fault,) = check(tmp_path)
+    assert fault.startswith("cpp/src/rollout/device.cpp:2: includes cuda_runtime.h")
+
+
 def test_a_folder_that_is_no_layer_is_refused(tmp_path: Path) -> None:
     write(tmp_path, "cpp/src/extras/one.cpp", "#include <cmath>")
     (fault,) = check(tmp_path)

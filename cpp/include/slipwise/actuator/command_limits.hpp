@@ -37,6 +37,11 @@ bool unlimited(const CommandLimits& limits);
 /// Whether the sides are limited; if not, track and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
+/// Whether some lane ramps.
+bool limits_rates(const CommandLimits& limits);
+/// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top, track or gain not positive.
+void check(const CommandLimits& limits);
+
 /// The commands behind the limits of speed and yaw rate alone, in front of those of the sides.
 CommandLimits channel_limits(const CommandLimits& limits);
 
@@ -48,11 +53,15 @@ SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist);
 
 inline constexpr double kRampPiece = 0.02;  ///< [s]
 
+/// Into how many equal pieces a command that is held for `hold` seconds is cut while its drive ramps.
+int ramp_pieces(double hold, double longest_piece = kRampPiece);
+
 /// The held commands after dead-band, saturation and rate limits; vy passes as it is. The drive starts at rest.
-/// A ramp becomes held pieces of its mean over `longest_piece` [s]. Nothing depends on commands stamped later, so a
-/// piece that a command cuts short keeps the mean of the whole one: its distance errs by no more than
-/// rate * longest_piece^2 / 8.
-/// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top or track is not positive.
+/// A ramp becomes held pieces of its mean, from the command's stamp on. Nothing depends on commands stamped later: the
+/// pieces divide the time that the command before was held, into parts of `longest_piece` [s] at most, so commands at
+/// equal intervals are cut exactly. A piece that a command cuts short keeps the mean of the whole one: its distance
+/// errs by no more than rate * longest_piece^2 / 8.
+/// \throws std::invalid_argument as `check` does, and when the longest piece is not positive.
 InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece = kRampPiece);
 
 }  // namespace slipwise

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "slipwise/lie/lane_function.hpp"
+
 namespace slipwise {
 
 inline constexpr double kLaneTurn = 0.4;        ///< turns up to this one take the plain series [rad]
@@ -16,16 +18,21 @@ namespace lane_series {
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 /// Series in q = f^2 of sin(f)/f and (1 - cos(f))/f^2, exact to rounding for q <= kLaneTurn^2. Those of float are
 /// economised: their q^3 is replaced by the polynomial of second degree that is nearest on that range (Chebyshev).
-inline constexpr double kQ = kLaneTurn * kLaneTurn;
-inline constexpr float kFloatA[] = {1.0F, static_cast<float>(-1.0 / 6 + 9.0 / 16 * kQ * kQ / 5040),
-                                    static_cast<float>(1.0 / 120 - 3.0 / 2 * kQ / 5040)};
-inline constexpr float kFloatB[] = {0.5F, static_cast<float>(-1.0 / 24 + 9.0 / 16 * kQ * kQ / 40320),
-                                    static_cast<float>(1.0 / 720 - 3.0 / 2 * kQ / 40320)};
-inline constexpr double kDoubleA[] = {1.0,           -1.0 / 6,        1.0 / 120,        -1.0 / 5040,
-                                      1.0 / 362880., -1.0 / 39916800, 1.0 / 6227020800.};
-inline constexpr double kDoubleB[] = {1.0 / 2,        -1.0 / 24,         1.0 / 720,         -1.0 / 40320,
-                                      1.0 / 3628800., -1.0 / 479001600., 1.0 / 87178291200.};
-
+template <typename Scalar>
+struct ArcSeries;
+template <>
+struct ArcSeries<float> {
+  static constexpr double kQ = kLaneTurn * kLaneTurn;
+  float a[3] = {1.0F, static_cast<float>(-1.0 / 6 + 9.0 / 16 * kQ * kQ / 5040),
+                static_cast<float>(1.0 / 120 - 3.0 / 2 * kQ / 5040)};
+  float b[3] = {0.5F, static_cast<float>(-1.0 / 24 + 9.0 / 16 * kQ * kQ / 40320),
+                static_cast<float>(1.0 / 720 - 3.0 / 2 * kQ / 40320)};
+};
+template <>
+struct ArcSeries<double> {
+  double a[7] = {1.0, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880., -1.0 / 39916800, 1.0 / 6227020800.};
+  double b[7] = {1.0 / 2, -1.0 / 24, 1.0 / 720, -1.0 / 40320, 1.0 / 3628800., -1.0 / 479001600., 1.0 / 87178291200.};
+};
 // NOLINTEND(modernize-avoid-c-arrays)
 
 /// A whole turn in three parts of few digits, so that multiples of the first two are exact (Cody and Waite 1980), and
@@ -59,18 +66,19 @@ struct LaneArc {
 };
 
 template <typename Scalar, typename Vector>
-[[gnu::always_inline]] inline void lane_arc(const Vector& f, LaneArc<Vector>& arc) {
+SLIPWISE_LANES void lane_arc(const Vector& f, LaneArc<Vector>& arc) {
+  constexpr lane_series::ArcSeries<Scalar> kSeries;
   const Vector q = f * f;
   if constexpr (std::is_same_v<Scalar, float>) {
-    arc.a = lane_series::kFloatA[0] + q * (lane_series::kFloatA[1] + q * lane_series::kFloatA[2]);
-    arc.b = f * (lane_series::kFloatB[0] + q * (lane_series::kFloatB[1] + q * lane_series::kFloatB[2]));
+    arc.a = kSeries.a[0] + q * (kSeries.a[1] + q * kSeries.a[2]);
+    arc.b = f * (kSeries.b[0] + q * (kSeries.b[1] + q * kSeries.b[2]));
   } else {
     constexpr std::size_t kLast = 6;
-    Vector a = Vector{} + lane_series::kDoubleA[kLast];
-    Vector b = Vector{} + lane_series::kDoubleB[kLast];
+    Vector a = Vector{} + kSeries.a[kLast];
+    Vector b = Vector{} + kSeries.b[kLast];
     for (std::size_t i = kLast; i-- > 0;) {
-      a = lane_series::kDoubleA[i] + q * a;
-      b = lane_series::kDoubleB[i] + q * b;
+      a = kSeries.a[i] + q * a;
+      b = kSeries.b[i] + q * b;
     }
     arc.a = a;
     arc.b = f * b;
@@ -79,7 +87,7 @@ template <typename Scalar, typename Vector>
 
 /// The same for turns up to kWidestLaneTurn; lanes of at most kLaneTurn get the same bytes as from `lane_arc`.
 template <typename Scalar, typename Vector>
-[[gnu::always_inline]] inline void wide_lane_arc(const Vector& f, LaneArc<Vector>& arc) {
+SLIPWISE_LANES void wide_lane_arc(const Vector& f, LaneArc<Vector>& arc) {
   lane_arc<Scalar>(f, arc);
   constexpr lane_series::WholeTurn<Scalar> kTurn;
   const Vector whole = (f * kTurn.inverse + kTurn.rounding) - kTurn.rounding;

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/planning/curvature_spline.hpp"
 #include "slipwise/planning/speed_profile.hpp"
 
@@ -33,13 +34,20 @@ struct HeldCommand {
   ManoeuvreRow omega_by = ManoeuvreRow::Zero();
 };
 
-/// `commands` + 1 of them: the last begins where the manoeuvre ends.
+/// Commands from the start on; the last one goes on.
 struct HeldCommands {
   ByLength period;  ///< for which each is held [s]
   std::vector<HeldCommand> commands;
+  std::size_t end = 0;    ///< of these, the one that begins where the manoeuvre ends
+  double settling = 0.0;  ///< time under that one [s]
 };
 
 /// The commands of a manoeuvre: the mean speed of each interval, and the curvature at its middle.
 HeldCommands held_commands(const ManoeuvreFrame& frame, const ManoeuvreVector& parameters);
+
+/// The commands behind limits of the drive, in pieces as limited_track cuts them. Before, `told` was told for long. The
+/// manoeuvre then settles for as long as ramps take at its end, too. Where dead-band or top hold a command, its
+/// derivative is zero; a ramp passes the derivative of what it goes to.
+HeldCommands limited_commands(const HeldCommands& held, const CommandLimits& limits, const BodyTwist& told);
 
 }  // namespace slipwise

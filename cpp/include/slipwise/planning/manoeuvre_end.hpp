@@ -32,17 +32,21 @@ struct ManoeuvrePath {
 /// A motion model as a planner uses it, on flat ground. A clock offset is one of measured poses; plans have none.
 class PlanningModel {
  public:
-  /// \throws std::invalid_argument when the parameters do not fit the model.
-  PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters);
+  /// The limits lie in front of the chain.
+  /// \throws std::invalid_argument when the parameters do not fit the model, or a limit is none.
+  PlanningModel(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                const CommandLimits& limits = {});
 
   const Basis& basis() const { return basis_; }
   const Eigen::VectorXd& alpha() const { return alpha_; }
   const CommandChain& chain() const { return chain_; }
+  const CommandLimits& limits() const { return limits_; }
 
  private:
   Basis basis_;
   Eigen::VectorXd alpha_;
   CommandChain chain_;
+  CommandLimits limits_;
 };
 
 /// Where the robot is when all commands and the settling are over.
@@ -51,7 +55,7 @@ Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, co
 /// The way there.
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                              const DriveStart& start);
-/// Its end with the derivative (derivations.md, section 15).
+/// Its end with the derivative (derivations.md, section 15). Limits that ramp are left out of the derivative.
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const DriveStart& start);
 

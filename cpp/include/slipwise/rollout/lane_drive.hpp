@@ -24,10 +24,11 @@ struct CommandSource {
 
 /// Gathers commands one by one: those that do not lie side by side, and those that were sent before the start.
 template <class L, typename Scalar = L::Scalar>
-[[gnu::noinline]] void gather_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
-                                       const CommandSource<Scalar>& source, std::ptrdiff_t period, Scalar* gathered) {
+SLIPWISE_LANES_APART void gather_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
+                                          const CommandSource<Scalar>& source, std::ptrdiff_t period,
+                                          Scalar* gathered) {
   const std::ptrdiff_t place = static_cast<std::ptrdiff_t>(block.past_count) + period;
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < lanes_in<L>(block); ++i) {
     if (period >= 0) {
       gathered[i] = source.commands[static_cast<std::ptrdiff_t>(i) * job.rollout_stride + period * job.period_stride];
     } else if (block.past_count == 0) {
@@ -44,13 +45,14 @@ template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t period,
                                   typename L::Vector& command) {
-  const auto last = static_cast<std::ptrdiff_t>(job.periods) - 1;
-  const std::ptrdiff_t at = period < last ? period : last;
-  if (at >= 0 && block.side_by_side) {
+  const std::ptrdiff_t at = period < job.last_row ? period : job.last_row;
+  if (at >= job.first_row && (block.side_by_side || job.first_row < 0)) {
     const Scalar* from = source.commands + at * job.period_stride;
     load(from, command);
-    for (std::size_t i = 0; i < L::kLanes; i += kLineBytes / sizeof(Scalar)) {
-      __builtin_prefetch(from + 8 * job.period_stride + i);
+    if constexpr (L::kLanes > 1) {
+      for (std::size_t i = 0; i < L::kLanes; i += kLineBytes / sizeof(Scalar)) {
+        __builtin_prefetch(from + 8 * job.period_stride + i);
+      }
     }
   } else {
     alignas(64) Scalar gathered[L::kLanes] = {};

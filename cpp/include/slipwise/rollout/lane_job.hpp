@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "slipwise/lie/lane_function.hpp"
 #include "slipwise/rollout/drive_command.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
@@ -43,6 +44,24 @@ struct LanePart {
   bool next_v, next_omega;
 };
 
+/// Limits of one lane of the drive (command_limits.hpp) in the kernel's numbers. What is not limited has no dead-band,
+/// the largest top, and rates of zero.
+template <typename Scalar>
+struct RampLimits {
+  Scalar dead_band, top;
+  Scalar acceleration, braking;          ///< over a piece of the period
+  Scalar per_acceleration, per_braking;  ///< one over these
+};
+
+/// Limits of the commands, and of the two sides behind them.
+template <typename Scalar>
+struct DriveRamps {
+  RampLimits<Scalar> speed, yaw_rate, side;
+  Scalar gain_v, half_track;  ///< from a command to its sides; with the gain of the yaw rate
+  Scalar per_track;
+  bool sides;  ///< some limit of the sides
+};
+
 /// A costmap in the kernel's numbers; null cells where none is sampled.
 template <typename Scalar>
 struct LaneMap {
@@ -68,6 +87,13 @@ struct LaneJob {
   bool lags;
   bool responds;  ///< some channel has a gain or a slow part
 
+  const DriveRamps<Scalar>* limits;  ///< null where the commands pass as they are
+  /// Limited commands are cut into so many pieces each, and stand side by side from this row on, those before the start
+  /// too; these and all that follows count pieces then. Without limits a command is one piece and the first row is 0.
+  std::size_t pieces;
+  std::ptrdiff_t first_row;
+  std::ptrdiff_t last_row;  ///< what it holds goes on
+
   std::size_t rollouts, periods;
   const Scalar* v;
   const Scalar* omega;
@@ -81,32 +107,71 @@ struct LaneJob {
   Scalar* cost_lowest;
 };
 
-/// One channel of the drives at the start (start_drive.hpp).
+/// One channel of the drives at the start (start_drive.hpp), a number per lane.
 template <typename Scalar>
 struct LaneStart {
-  alignas(64) Scalar told[kMostLanes];
-  alignas(64) Scalar fast[kMostLanes];
-  alignas(64) Scalar slow[kMostLanes];
+  Scalar* told;
+  Scalar* fast;
+  Scalar* slow;
 };
 
 /// Some neighbouring rollouts and where they start, one a lane.
 template <typename Scalar>
 struct LaneBlock {
-  alignas(64) Scalar x[kMostLanes];
-  alignas(64) Scalar y[kMostLanes];
-  alignas(64) Scalar theta[kMostLanes];
-  alignas(64) Scalar cosine[kMostLanes];
-  alignas(64) Scalar sine[kMostLanes];
+  Scalar* x;
+  Scalar* y;
+  Scalar* theta;
+  Scalar* cosine;
+  Scalar* sine;
   LaneStart<Scalar> v;
   LaneStart<Scalar> omega;
-  alignas(64) Scalar cell_x[kMostLanes];  ///< the start in cells of the map
-  alignas(64) Scalar cell_y[kMostLanes];
+  Scalar* cell_x;  ///< the start in cells of the map
+  Scalar* cell_y;
   const DriveCommand* past;  ///< the commands sent before the start, the oldest first
   std::size_t past_count;    ///< of one start
   std::size_t past_stride;   ///< from one rollout's to the next one's
   std::size_t first;
   std::size_t count;
   bool side_by_side;  ///< a period's commands can be read as they lie
+};
+
+/// Rollouts of the block. A single lane always has one, which its compiler must know.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES std::size_t lanes_in(const LaneBlock<Scalar>& block) {
+  return L::kLanes == 1 ? 1 : block.count;
+}
+
+inline constexpr std::size_t kStartRows = 13;  ///< numbers per lane that a block points to
+
+/// Lets a block point to kStartRows rows of numbers, one after the other.
+template <typename Scalar>
+SLIPWISE_LANES void point_to_rows(Scalar* rows, std::size_t length, LaneBlock<Scalar>& block) {
+  block.x = rows;
+  block.y = rows + length;
+  block.theta = rows + 2 * length;
+  block.cosine = rows + 3 * length;
+  block.sine = rows + 4 * length;
+  block.v = {rows + 5 * length, rows + 6 * length, rows + 7 * length};
+  block.omega = {rows + 8 * length, rows + 9 * length, rows + 10 * length};
+  block.cell_x = rows + 11 * length;
+  block.cell_y = rows + 12 * length;
+}
+
+/// What the ramps of a block's drives hold at the start.
+template <typename Scalar>
+struct RampStart {
+  alignas(64) Scalar speed[kMostLanes];
+  alignas(64) Scalar yaw_rate[kMostLanes];
+  alignas(64) Scalar left[kMostLanes];
+  alignas(64) Scalar right[kMostLanes];
+};
+
+/// Where a block's limited commands go: rows of pieces, as wide as the kernel's lanes.
+template <typename Scalar>
+struct LimitedRows {
+  Scalar* v;
+  Scalar* omega;
+  std::size_t periods;  ///< from the start on, of `pieces` rows each
 };
 
 /// What went wrong in a block, as bits.
@@ -116,9 +181,15 @@ inline constexpr unsigned kNoFault = 0, kNotFinite = 1, kTurnsTooFar = 2;
 template <typename Scalar>
 using LaneKernel = unsigned (*)(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block);
 
+/// Puts the commands of one block behind the limits; `job` has them as they are given.
+template <typename Scalar>
+using LaneLimiter = void (*)(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, const RampStart<Scalar>& start,
+                             const LimitedRows<Scalar>& rows);
+
 template <typename Scalar>
 struct LaneKernelOfLevel {
   LaneKernel<Scalar> roll;
+  LaneLimiter<Scalar> limit;
   std::size_t lanes;  ///< rollouts per block
 };
 

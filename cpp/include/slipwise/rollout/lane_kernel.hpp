@@ -28,7 +28,7 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
   alignas(64) Scalar squared[L::kLanes];
   store(path.widest_squared, squared);
   unsigned faults = kNoFault;
-  for (std::size_t i = 0; i < block.count; ++i) {
+  for (std::size_t i = 0; i < lanes_in<L>(block); ++i) {
     faults |= squared[i] > static_cast<Scalar>(kWidest * kWidest) ? kTurnsTooFar : kNoFault;
   }
   return faults;
@@ -53,7 +53,7 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
 template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
-[[gnu::noinline]] unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
+SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
   const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
@@ -83,7 +83,7 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
     }
     ++i;
     if (i == job.part_end) {
-      output.write_period(robot.path, period);
+      output.write_piece(robot.path, period);
       ++period;
       if (has_tail && period < job.periods) {
         robot = aside;
@@ -95,7 +95,7 @@ template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = 
       i = job.cycle;
     }
     if (has_tail && i == job.branch) {
-      if (output.wants_periods() || period + 1 == job.periods) {
+      if (output.wants_piece(period) || period + 1 == job.periods) {
         aside = robot;
         i = job.tail;
       } else {
@@ -113,19 +113,33 @@ unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bl
   return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kChain, kQuadratic, true>(job, block);
 }
 
+/// What the job needs a kernel for.
+template <typename Scalar>
+SLIPWISE_LANES Chain chain_of(const LaneJob<Scalar>& job) {
+  if (job.responds) {
+    return Chain::Response;
+  }
+  if (job.lags) {
+    return Chain::Lags;
+  }
+  return job.part_end == 1 && job.pieces == 1 ? Chain::None : Chain::Delays;
+}
+
 template <class Level, bool kQuadratic, typename Scalar>
 unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Level, Scalar>;
-  if (job.responds) {
-    return roll_block_with<L, Chain::Response, kQuadratic>(job, block);
-  }
-  if (job.lags) {
-    return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
-  }
-  if constexpr (Level::kSingleLoop) {
-    if (job.part_end == 1) {
-      return roll_block_with<L, Chain::None, kQuadratic>(job, block);
-    }
+  switch (chain_of(job)) {
+    case Chain::Response:
+      return roll_block_with<L, Chain::Response, kQuadratic>(job, block);
+    case Chain::Lags:
+      return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
+    case Chain::None:
+      if constexpr (Level::kSingleLoop) {
+        return roll_block_with<L, Chain::None, kQuadratic>(job, block);
+      }
+      break;
+    case Chain::Delays:
+      break;
   }
   return roll_block_with<L, Chain::Delays, kQuadratic>(job, block);
 }

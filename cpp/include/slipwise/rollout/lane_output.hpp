@@ -15,7 +15,8 @@ class OutputLanes {
  public:
   using Scalar = L::Scalar;
 
-  SLIPWISE_LANES OutputLanes(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) : job_(job), block_(block) {
+  SLIPWISE_LANES OutputLanes(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block)
+      : last_piece_(job.pieces - 1), job_(job), block_(block) {
     for (std::size_t i = 0; i < L::kLanes; ++i) {
       sum_[i] = 0;
       highest_[i] = -__builtin_huge_valf();
@@ -26,6 +27,17 @@ class OutputLanes {
   /// Whether the poses on the way matter, beside the last ones.
   SLIPWISE_LANES bool wants_periods() const {
     return job_.path[0] != nullptr || job_.path[1] != nullptr || job_.path[2] != nullptr || job_.map.cells != nullptr;
+  }
+
+  /// Whether the pose at the end of a piece of a period matters: of the last one.
+  SLIPWISE_LANES bool wants_piece(std::size_t piece) const { return piece == last_piece_ && wants_periods(); }
+
+  SLIPWISE_LANES void write_piece(const PathLanes<L>& path, std::size_t piece) {
+    if (piece == last_piece_) {
+      write_period(path, period_);
+      ++period_;
+      last_piece_ += job_.pieces;
+    }
   }
 
   SLIPWISE_LANES void write_period(const PathLanes<L>& path, std::size_t period) {
@@ -52,7 +64,7 @@ class OutputLanes {
     alignas(64) Scalar difference[L::kLanes];
     store((path.x - path.x) + (path.y - path.y), difference);
     bool finite = true;
-    for (std::size_t i = 0; i < block_.count; ++i) {
+    for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
       finite &= difference[i] == 0;
     }
     return finite;
@@ -67,20 +79,20 @@ class OutputLanes {
     typename L::Vector whole;
     load(start, whole);
     whole = whole + row;
-    if (block_.count == L::kLanes) {
+    if (lanes_in<L>(block_) == L::kLanes) {
       store(whole, to + at);
       return;
     }
     alignas(64) Scalar values[L::kLanes];
     store(whole, values);
-    for (std::size_t i = 0; i < block_.count; ++i) {
+    for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
       to[at + i] = values[i];
     }
   }
 
   SLIPWISE_LANES void write_costs(const Scalar* costs, Scalar* to) const {
     if (to != nullptr) {
-      for (std::size_t i = 0; i < block_.count; ++i) {
+      for (std::size_t i = 0; i < lanes_in<L>(block_); ++i) {
         to[block_.first + i] = costs[i];
       }
     }
@@ -105,6 +117,8 @@ class OutputLanes {
     }
   }
 
+  std::size_t period_ = 0;
+  std::size_t last_piece_;  ///< of the period
   alignas(64) Scalar sum_[L::kLanes];
   alignas(64) Scalar highest_[L::kLanes];
   alignas(64) Scalar lowest_[L::kLanes];

@@ -4,8 +4,9 @@
 
 #include <cstddef>
 #include <cstring>
+#include <type_traits>
 
-#define SLIPWISE_LANES [[gnu::always_inline]] inline
+#include "slipwise/lie/lane_function.hpp"
 
 namespace slipwise {
 
@@ -40,7 +41,11 @@ struct Lanes {
 
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void load(const Scalar* from, Vector& vector) {
-  std::memcpy(&vector, from, sizeof(Vector));
+  if constexpr (std::is_same_v<Vector, Scalar>) {
+    vector = *from;  // a GPU would copy it byte by byte
+  } else {
+    std::memcpy(&vector, from, sizeof(Vector));
+  }
 }
 template <class Half, typename Scalar>
 SLIPWISE_LANES void load(const Scalar* from, Pair<Half>& pair) {
@@ -50,7 +55,11 @@ SLIPWISE_LANES void load(const Scalar* from, Pair<Half>& pair) {
 
 template <class Vector, typename Scalar>
 SLIPWISE_LANES void store(const Vector& vector, Scalar* to) {
-  std::memcpy(to, &vector, sizeof(Vector));
+  if constexpr (std::is_same_v<Vector, Scalar>) {
+    *to = vector;
+  } else {
+    std::memcpy(to, &vector, sizeof(Vector));
+  }
 }
 template <class Half, typename Scalar>
 SLIPWISE_LANES void store(const Pair<Half>& pair, Scalar* to) {
@@ -115,6 +124,15 @@ SLIPWISE_LANES Vector larger(const Vector& a, const Vector& b) {
 template <class Half>
 SLIPWISE_LANES Pair<Half> larger(const Pair<Half>& a, const Pair<Half>& b) {
   return {larger(a.low, b.low), larger(a.high, b.high)};
+}
+
+template <class Vector>
+SLIPWISE_LANES Vector smaller(const Vector& a, const Vector& b) {
+  return a < b ? a : b;
+}
+template <class Half>
+SLIPWISE_LANES Pair<Half> smaller(const Pair<Half>& a, const Pair<Half>& b) {
+  return {smaller(a.low, b.low), smaller(a.high, b.high)};
 }
 
 template <class Vector>

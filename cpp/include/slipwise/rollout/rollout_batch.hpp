@@ -56,14 +56,20 @@ struct RolloutOutputs {
   Scalar* cost_lowest = nullptr;   ///< [rollouts], the lowest: the clearance, where the map holds distances
 };
 
+class Gpu;
+
 struct RolloutOptions {
   unsigned threads = 1;  ///< the results are the same bytes for any number
   InstructionLevel level = best_instruction_level();
+  Gpu* gpu = nullptr;  ///< null: on the processor
 };
 
 /// Drives all commands and fills the outputs. Allocates nothing with one thread. Float and double.
+/// With a GPU, commands, outputs and the map's cells may lie in its memory as well as in the processor's; what lies in
+/// the processor's is copied. All work of the GPU's default stream is done first.
 /// \throws std::invalid_argument when the batch is empty, sizes do not fit each other, a command or start is not
-/// finite, or the processor lacks the instruction level.
+/// finite, the processor lacks the instruction level, or the program is too long for the GPU.
+/// \throws std::runtime_error when the GPU fails.
 template <typename Scalar>
 void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                    const RolloutOutputs<Scalar>& outputs, const RolloutOptions& options = {});

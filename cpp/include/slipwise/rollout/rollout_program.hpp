@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/rollout/chain_schedule.hpp"
 #include "slipwise/rollout/lane_job.hpp"
@@ -15,9 +16,10 @@ namespace slipwise {
 
 /// What stays the same over all rollouts.
 struct RolloutSetting {
-  double period;    ///< time that each command is held [s]
-  double gx = 0.0;  ///< gravity along the robot's x axis, positive downhill [m/s^2]
-  double gy = 0.0;  ///< gravity along its y axis [m/s^2]
+  double period;              ///< time that each command is held [s]
+  double gx = 0.0;            ///< gravity along the robot's x axis, positive downhill [m/s^2]
+  double gy = 0.0;            ///< along its y axis [m/s^2]
+  CommandLimits limits = {};  ///< of the drive, in front of its delay and lag
 };
 
 /// The program in the numbers of a kernel.
@@ -25,18 +27,23 @@ template <typename Scalar>
 struct LaneConstants {
   std::vector<LanePart<Scalar>> parts;  ///< lead-in, cycle, tail
   std::vector<Scalar> shares;
+  DriveRamps<Scalar> limits;
 };
 
 class RolloutProgram {
  public:
   /// \throws std::invalid_argument when the parameters do not fit the model, the period is not positive, the gravity
-  /// not finite, or the basis too large.
+  /// not finite, a limit is none, or the basis too large.
   RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                  const RolloutSetting& setting);
 
   const RolloutSetting& setting() const { return setting_; }
   const SlipProgram& slip() const { return slip_; }
+  /// Its period is one piece of a control period.
   const ChainSchedule& chain() const { return chain_; }
+  bool limited() const { return !unlimited(setting_.limits); }
+  /// Into how many pieces a command is cut, since the drive ramps; 1 where it does not.
+  std::size_t pieces() const { return pieces_; }
 
   const std::optional<LaneQuadratic>& quadratic() const { return quadratic_; }
   const std::vector<LaneProduct>& products() const { return products_; }
@@ -46,6 +53,7 @@ class RolloutProgram {
  private:
   RolloutSetting setting_;
   SlipProgram slip_;
+  std::size_t pieces_;
   ChainSchedule chain_;
   std::optional<LaneQuadratic> quadratic_;
   std::vector<LaneProduct> products_;

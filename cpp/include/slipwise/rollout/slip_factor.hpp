@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "slipwise/lie/lane_function.hpp"
+
 namespace slipwise {
 
 /// `Moving` is 1, and 0 where a robot is parked: gravity is constant over a rollout and goes into a product's shares,
@@ -12,7 +14,7 @@ namespace slipwise {
 enum class SlipFactor : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, Moving };
 inline constexpr std::size_t kSlipFactors = 7;
 
-constexpr unsigned bit(SlipFactor factor) { return 1U << static_cast<unsigned>(factor); }
+SLIPWISE_LANES constexpr unsigned bit(SlipFactor factor) { return 1U << static_cast<unsigned>(factor); }
 
 /// The products that every program starts with: V, omega and 1; the others follow.
 inline constexpr std::size_t kProductV = 0, kProductOmega = 1, kProductOne = 2, kFirstProduct = 3;

@@ -18,6 +18,11 @@ struct StartDrive {
   double slow;  ///< what the slow lag holds
 };
 
+/// The input that would keep a channel as it is.
+inline double told_by(const ChannelResponse& response, double drive) {
+  return response.gain != 0.0 ? drive / response.gain : 0.0;
+}
+
 /// A lag's output at the start, after inputs that began `warm_up` seconds before it. `command(i)` is the one sent at
 /// i * period, of which those before `oldest` equal the oldest.
 template <typename Command>
@@ -41,7 +46,7 @@ template <typename Command>
 StartDrive start_drive(const ChainSchedule& chain, const ChannelTiming& channel, double drive, std::ptrdiff_t oldest,
                        const Command& command) {
   const ChannelResponse& response = channel.response;
-  StartDrive start{.told = response.gain != 0.0 ? drive / response.gain : 0.0, .fast = drive, .slow = 0.0};
+  StartDrive start{.told = told_by(response, drive), .fast = drive, .slow = 0.0};
   if (response.has_slow_part()) {
     const double warm_up = fast_warm_up(chain.v.response, chain.omega.response);
     const auto sent = [&](std::ptrdiff_t i) { return i < 0 && oldest == 0 ? start.told : command(i); };

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits of the drive as they act: what it was told, and what its ramps hold meanwhile (derivations.md, section 4).
+#pragma once
+
+#include <array>
+
+#include "slipwise/actuator/command_limits.hpp"
+
+namespace slipwise {
+
+/// The set speed of one lane, which follows its target as fast as it may.
+class LaneRamp {
+ public:
+  explicit LaneRamp(const LaneLimits& limits) : limits_(limits) {}
+
+  /// What the lane makes of a command that is held for long.
+  double limited(double command) const;
+  void aim(double command);
+  /// Now it is `state`, however that came about.
+  void place(double state) { state_ = state; }
+  double state() const { return state_; }
+  double target() const { return target_; }
+  /// Until it is there; 0 where it goes at once [s].
+  double seconds_to(double target) const;
+  /// The mean over a piece, of which `taken` seconds pass [s].
+  double mean_over(double piece, double taken);
+
+ private:
+  double rate_towards(double goal) const;
+  double follow(double seconds);
+
+  LaneLimits limits_;
+  double state_ = 0.0;
+  double target_ = 0.0;
+};
+
+/// The limits of the commands, and behind them those of both sides. It begins at rest.
+class CommandLimiter {
+ public:
+  explicit CommandLimiter(const CommandLimits& limits);
+
+  /// It was told this for long.
+  void settle(const BodyTwist& command);
+  /// It gives out `given` now, and was told so.
+  void place(const BodyTwist& given);
+  /// It is told this from now on; vy passes as it is.
+  void tell(const BodyTwist& command);
+
+  /// No ramp takes longer; 0 where all are over [s].
+  double seconds_left() const;
+  /// What it gives once all ramps are over.
+  BodyTwist target() const;
+  /// The mean over a piece, of which `taken` seconds pass [s]. The sides follow the mean of the piece.
+  BodyTwist mean_over(double piece, double taken);
+
+  /// What the ramps of speed, yaw rate, left and right side hold [m/s, rad/s, m/s, m/s].
+  std::array<double, 4> state() const { return {speed_.state(), yaw_rate_.state(), left_.state(), right_.state()}; }
+
+ private:
+  BodyTwist joined(double v, double omega, const SideSpeeds& sides) const;
+  SideSpeeds asked_of_sides(double v, double omega) const { return side_speeds(limits_, {v, vy_, omega}); }
+
+  CommandLimits limits_;
+  bool sides_;
+  double vy_ = 0.0;
+  LaneRamp speed_, yaw_rate_, left_, right_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Limits of the drive in lanes: what dead-band, top and ramps leave of the commands of a block, piece by piece.
+#pragma once
+
+#include "slipwise/rollout/lane_drive.hpp"
+#include "slipwise/rollout/lane_job.hpp"
+#include "slipwise/rollout/lanes.hpp"
+
+namespace slipwise {
+
+/// What is slower than the dead-band gives zero, what is faster than the top gives the top.
+template <typename Scalar, class Vector>
+SLIPWISE_LANES Vector aim(const RampLimits<Scalar>& limits, const Vector& command) {
+  const Vector top = Vector{} + limits.top;
+  const Vector passed = magnitude(command) < Vector{} + limits.dead_band ? Vector{} : command;
+  return larger(smaller(passed, top), -top);
+}
+template <typename Scalar, class Half>
+SLIPWISE_LANES Pair<Half> aim(const RampLimits<Scalar>& limits, const Pair<Half>& command) {
+  return {aim(limits, command.low), aim(limits, command.high)};
+}
+
+/// One piece of the ramp towards `target`; `state` moves on, and the mean over the piece is returned. Mirrored so that
+/// it goes up, a ramp is braking until zero and acceleration from there on; times are counted in pieces.
+template <typename Scalar, class Vector>
+SLIPWISE_LANES Vector ramp_piece(const RampLimits<Scalar>& limits, const Vector& target, Vector& state) {
+  const Vector zero = Vector{};
+  const Vector one = zero + static_cast<Scalar>(1);
+  const Vector half = zero + static_cast<Scalar>(0.5);
+  const Vector up = target < state ? -one : one;
+  const Vector from = state * up;
+  const Vector to = target * up;
+  const Vector stop = larger(from, smaller(to, zero));
+  const Vector braking = (stop - from) * limits.per_braking;
+  const Vector braked = braking <= one ? stop : from + limits.braking;
+  const Vector in_braking = smaller(braking, one);
+  const Vector rest = one - in_braking;
+  const Vector goal = braking <= one ? to : braked;
+  const Vector speeding = (goal - braked) * limits.per_acceleration;
+  const Vector end = speeding <= rest ? goal : braked + limits.acceleration * rest;
+  const Vector in_speeding = smaller(speeding, rest);
+  const Vector mean =
+      half * (from + braked) * in_braking + half * (braked + end) * in_speeding + end * (rest - in_speeding);
+  state = end * up;
+  return mean * up;
+}
+template <typename Scalar, class Half>
+SLIPWISE_LANES Pair<Half> ramp_piece(const RampLimits<Scalar>& limits, const Pair<Half>& target, Pair<Half>& state) {
+  return {ramp_piece(limits, target.low, state.low), ramp_piece(limits, target.high, state.high)};
+}
+
+/// The drives of a block: what their ramps hold.
+template <class L>
+struct RampLanes {
+  L::Vector speed, yaw_rate, left, right;
+};
+
+/// The limited commands of one piece, from what speed and yaw rate aim at.
+template <class L, typename Scalar = L::Scalar>
+SLIPWISE_LANES void limit_piece(const DriveRamps<Scalar>& limits, RampLanes<L>& ramps, typename L::Vector& v,
+                                typename L::Vector& omega) {
+  v = ramp_piece(limits.speed, v, ramps.speed);
+  omega = ramp_piece(limits.yaw_rate, omega, ramps.yaw_rate);
+  if (limits.sides) {
+    const typename L::Vector asked = v * limits.gain_v;
+    const typename L::Vector apart = omega * limits.half_track;
+    const typename L::Vector left = ramp_piece(limits.side, aim(limits.side, asked - apart), ramps.left);
+    const typename L::Vector right = ramp_piece(limits.side, aim(limits.side, asked + apart), ramps.right);
+    v = (left + right) * static_cast<Scalar>(0.5);
+    omega = (right - left) * limits.per_track;
+  }
+}
+
+/// Puts the commands of a block behind the limits. A command that is not finite makes its pieces so too.
+template <class Level, typename Scalar>
+void limit_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, const RampStart<Scalar>& start,
+                 const LimitedRows<Scalar>& rows) {
+  using L = Lanes<Level, Scalar>;
+  const DriveRamps<Scalar>& limits = *job.limits;
+  const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
+  const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
+  const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
+  RampLanes<L> ramps;
+  load(start.speed, ramps.speed);
+  load(start.yaw_rate, ramps.yaw_rate);
+  load(start.left, ramps.left);
+  load(start.right, ramps.right);
+  std::size_t row = 0;
+  for (std::size_t period = 0; period < rows.periods; ++period) {
+    typename L::Vector told_v;
+    typename L::Vector told_omega;
+    read_commands<L>(job, block, source_v, static_cast<std::ptrdiff_t>(period), told_v);
+    read_commands<L>(job, block, source_omega, static_cast<std::ptrdiff_t>(period), told_omega);
+    const typename L::Vector aimed_v = aim(limits.speed, told_v);
+    const typename L::Vector aimed_omega = aim(limits.yaw_rate, told_omega);
+    const typename L::Vector nothing = (told_v - told_v) + (told_omega - told_omega);
+    for (std::size_t piece = 0; piece < job.pieces; ++piece, row += L::kLanes) {
+      typename L::Vector v = aimed_v;
+      typename L::Vector omega = aimed_omega;
+      limit_piece<L>(limits, ramps, v, omega);
+      store(v + nothing, rows.v + row);
+      store(omega + nothing, rows.omega + row);
+    }
+  }
+}
+
+}  // namespace slipwise

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The parts of the C header that put commands behind the drive's limits, or let them pass as they are."""
+
+from __future__ import annotations
+
+import math
+from importlib.resources import files
+
+from slipwise import _core
+from slipwise.models import Model
+
+_NONE = _core.LaneLimits(0.0, math.inf, math.inf, math.inf)
+
+
+def limits(model: Model) -> str:
+    """Return the limits as constants, for the header itself and for the C++ library."""
+    of_drive = model.limits or _core.CommandLimits(_NONE, _NONE, _NONE, 1.0, 1.0, 1.0)
+    lanes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
+    lines = ["/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */"]
+    lines += [f"#define SLIPWISE_LIMITS_{name} {_lane(lane)}" for name, lane in lanes.items()]
+    lines += [
+        f"#define SLIPWISE_LIMITS_TRACK SLIPWISE_R({of_drive.track!r})  /* [m] between the sides */",
+        f"#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R({of_drive.gain_v!r})  /* of what is asked of the sides */",
+        f"#define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R({of_drive.gain_omega!r})",
+        f"#define SLIPWISE_LIMITS_SIDES {int(_lane(of_drive.side) != _lane(_NONE))}",
+    ]
+    return "\n".join(lines)
+
+
+def cursor(model: Model) -> str:
+    """Return how the header walks over the commands: with their limits, where there are some."""
+    name = "cursor_template.h" if model.limits is None else "limits_template.h"
+    text = files("slipwise.export").joinpath(name).read_text(encoding="utf-8")
+    return text.replace("@PIECE@", repr(_core.RAMP_PIECE))
+
+
+def _lane(lane: _core.LaneLimits) -> str:
+    values = (lane.dead_band, lane.top, lane.acceleration, lane.braking)
+    return ", ".join("INFINITY" if math.isinf(value) else repr(value) for value in values)

@@ -1,0 +1,221 @@
+/* Limits of one lane, the same for both signs. */
+typedef struct {
+  slipwise_real dead_band, top, acceleration, braking;
+} slipwise_lane;
+
+static const slipwise_lane slipwise_lanes[3] = {
+    {SLIPWISE_LIMITS_SPEED}, {SLIPWISE_LIMITS_YAW_RATE}, {SLIPWISE_LIMITS_SIDE}};
+#define SLIPWISE_RAMP_PIECE SLIPWISE_R(@PIECE@) /* [s] a ramp becomes held pieces of its mean, no longer than this */
+#define SLIPWISE_RAMP_PIECES 2000               /* of one ramp at most, however slow */
+#define SLIPWISE_LONGEST_RAMP SLIPWISE_R(1e6)   /* [s] */
+#define SLIPWISE_NO_TIME SLIPWISE_R(1e-6)       /* [s] commands less apart come together */
+
+/* The set speed of a lane, which follows its target as fast as it may. */
+typedef struct {
+  slipwise_real state, target;
+} slipwise_ramp;
+
+static inline slipwise_real slipwise_limited(const slipwise_lane *lane, slipwise_real command) {
+  const slipwise_real passed = SLIPWISE_MATH(fabs)(command) < lane->dead_band ? SLIPWISE_R(0) : command;
+  return passed > lane->top ? lane->top : passed < -lane->top ? -lane->top : passed;
+}
+
+static inline slipwise_real slipwise_ramp_rate(const slipwise_lane *lane, slipwise_real from, slipwise_real to) {
+  return SLIPWISE_MATH(fabs)(to) < SLIPWISE_MATH(fabs)(from) ? lane->braking : lane->acceleration;
+}
+
+static inline slipwise_real slipwise_ramp_seconds(const slipwise_lane *lane, slipwise_real from, slipwise_real to) {
+  if (from * to < 0) { /* through zero: braking first */
+    return SLIPWISE_MATH(fabs)(from) / lane->braking + SLIPWISE_MATH(fabs)(to) / lane->acceleration;
+  }
+  return SLIPWISE_MATH(fabs)(to - from) / slipwise_ramp_rate(lane, from, to);
+}
+
+/* Follows the target for some seconds; returns the integral. */
+static inline slipwise_real slipwise_ramp_follow(const slipwise_lane *lane, slipwise_ramp *ramp,
+                                                 slipwise_real seconds) {
+  slipwise_real integral = 0;
+  int phase;
+  for (phase = 0; phase < 2 && (ramp->state < ramp->target || ramp->state > ramp->target); ++phase) {
+    const slipwise_real goal = ramp->state * ramp->target < 0 ? SLIPWISE_R(0) : ramp->target;
+    const slipwise_real rate = slipwise_ramp_rate(lane, ramp->state, goal);
+    const slipwise_real needed = SLIPWISE_MATH(fabs)(goal - ramp->state) / rate;
+    const slipwise_real taken = needed < seconds ? needed : seconds;
+    const slipwise_real before = ramp->state;
+    if (needed <= seconds) {
+      ramp->state = goal;
+    } else {
+      ramp->state += goal > before ? rate * seconds : -rate * seconds;
+    }
+    integral += (before + ramp->state) / 2 * taken;
+    seconds -= taken;
+  }
+  return integral + ramp->state * seconds;
+}
+
+/* The mean over a piece, of which `taken` seconds pass. */
+static inline slipwise_real slipwise_ramp_mean(const slipwise_lane *lane, slipwise_ramp *ramp, slipwise_real command,
+                                               slipwise_real piece, slipwise_real taken) {
+  slipwise_ramp whole;
+  ramp->target = slipwise_limited(lane, command);
+  whole = *ramp;
+  slipwise_ramp_follow(lane, ramp, taken);
+  return slipwise_ramp_follow(lane, &whole, piece) / piece;
+}
+
+/* What a twist asks of both sides, and back. */
+static inline void slipwise_to_sides(slipwise_drive twist, slipwise_real sides[2]) {
+  const slipwise_real v = SLIPWISE_LIMITS_GAIN_V * twist.v;
+  const slipwise_real half = SLIPWISE_LIMITS_GAIN_OMEGA * twist.omega * SLIPWISE_LIMITS_TRACK / 2;
+  sides[0] = v - half;
+  sides[1] = v + half;
+}
+
+static inline slipwise_drive slipwise_from_sides(const slipwise_real sides[2]) {
+  slipwise_drive twist;
+  twist.v = (sides[0] + sides[1]) / 2;
+  twist.omega = (sides[1] - sides[0]) / SLIPWISE_LIMITS_TRACK;
+  return twist;
+}
+
+/* The commands of one channel as the drive sees them: limited, piece by piece, and delayed. The drive is at rest before
+ * the oldest command. */
+typedef struct {
+  const slipwise_commands *commands;
+  slipwise_real delay, known_until;
+  slipwise_ramp speed, yaw_rate, side[2];
+  slipwise_drive told, held;
+  slipwise_real change, piece; /* when the next piece begins, as commands are stamped [s]; how long pieces are [s] */
+  int next;                    /* the command that is told next */
+  int pieces;                  /* of the last one, so far */
+} slipwise_cursor;
+
+static inline slipwise_real slipwise_told_next(const slipwise_cursor *cursor) {
+  return cursor->next < cursor->commands->count ? slipwise_command_at(cursor->commands, cursor->next)->t
+                                                : SLIPWISE_R(INFINITY);
+}
+
+/* What is left of the command that is told, once all ramps are over. */
+static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
+  slipwise_drive goal;
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+#if SLIPWISE_LIMITS_SIDES
+  {
+    slipwise_real sides[2];
+    slipwise_to_sides(goal, sides);
+    sides[0] = slipwise_limited(&slipwise_lanes[2], sides[0]);
+    sides[1] = slipwise_limited(&slipwise_lanes[2], sides[1]);
+    goal = slipwise_from_sides(sides);
+  }
+#endif
+  return goal;
+}
+
+/* No ramp takes longer [s]; 0 where all are over. */
+static inline slipwise_real slipwise_seconds_left(const slipwise_cursor *cursor) {
+  slipwise_drive goal;
+  slipwise_real left, other;
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+  left = slipwise_ramp_seconds(&slipwise_lanes[0], cursor->speed.state, goal.v);
+  other = slipwise_ramp_seconds(&slipwise_lanes[1], cursor->yaw_rate.state, goal.omega);
+  left = other > left ? other : left;
+#if SLIPWISE_LIMITS_SIDES
+  {
+    const slipwise_lane *const lane = &slipwise_lanes[2];
+    slipwise_real sides[2], longest;
+    slipwise_to_sides(goal, sides);
+    longest = slipwise_ramp_seconds(lane, cursor->side[0].state, slipwise_limited(lane, sides[0]));
+    other = slipwise_ramp_seconds(lane, cursor->side[1].state, slipwise_limited(lane, sides[1]));
+    left += other > longest ? other : longest;
+  }
+#endif
+  return left;
+}
+
+static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwise_real taken) {
+  slipwise_drive mean;
+  mean.v = slipwise_ramp_mean(&slipwise_lanes[0], &cursor->speed, cursor->told.v, cursor->piece, taken);
+  mean.omega = slipwise_ramp_mean(&slipwise_lanes[1], &cursor->yaw_rate, cursor->told.omega, cursor->piece, taken);
+#if SLIPWISE_LIMITS_SIDES
+  {
+    slipwise_real sides[2];
+    int i;
+    slipwise_to_sides(mean, sides);
+    for (i = 0; i < 2; ++i) {
+      sides[i] = slipwise_ramp_mean(&slipwise_lanes[2], &cursor->side[i], sides[i], cursor->piece, taken);
+    }
+    mean = slipwise_from_sides(sides);
+  }
+#endif
+  return mean;
+}
+
+/* The next command is told. Pieces divide the time that the one before was held. */
+static inline void slipwise_tell(slipwise_cursor *cursor) {
+  const slipwise_command *const command = slipwise_command_at(cursor->commands, cursor->next);
+  slipwise_real hold = SLIPWISE_RAMP_PIECE, parts, ramp;
+  if (cursor->next > 0) {
+    hold = command->t - slipwise_command_at(cursor->commands, cursor->next - 1)->t;
+  }
+  cursor->change = command->t;
+  cursor->told.v = command->v;
+  cursor->told.omega = command->omega;
+  ++cursor->next;
+  parts = SLIPWISE_MATH(ceil)(hold / SLIPWISE_RAMP_PIECE - SLIPWISE_SAME_STEP);
+  cursor->piece = hold / (parts < 1 ? SLIPWISE_R(1) : parts);
+  ramp = slipwise_seconds_left(cursor);
+  ramp = (ramp < SLIPWISE_LONGEST_RAMP ? ramp : SLIPWISE_LONGEST_RAMP) / SLIPWISE_RAMP_PIECES;
+  cursor->piece = ramp > cursor->piece ? ramp : cursor->piece;
+  cursor->pieces = 0;
+}
+
+/* The piece that begins at `change` is held from now on. */
+static inline void slipwise_next_piece(slipwise_cursor *cursor) {
+  slipwise_real left;
+  while (slipwise_told_next(cursor) - cursor->change <= SLIPWISE_NO_TIME) {
+    slipwise_tell(cursor);
+  }
+  left = slipwise_told_next(cursor) - cursor->change;
+  if (slipwise_seconds_left(cursor) > 0 && cursor->pieces <= SLIPWISE_RAMP_PIECES) {
+    const slipwise_real taken = cursor->piece < left ? cursor->piece : left;
+    cursor->held = slipwise_piece_mean(cursor, taken);
+    cursor->change += taken;
+    ++cursor->pieces;
+  } else {
+    cursor->held = slipwise_goal(cursor);
+    cursor->change = slipwise_told_next(cursor);
+  }
+}
+
+static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) { return cursor->held; }
+
+/* When the channel changes next, or `never`. */
+static inline slipwise_real slipwise_change(const slipwise_cursor *cursor, slipwise_real never) {
+  return cursor->change <= cursor->known_until ? cursor->change + cursor->delay : never;
+}
+
+/* Passes the changes until `t`. */
+static inline void slipwise_catch_up(slipwise_cursor *cursor, slipwise_real t) {
+  while (cursor->change <= cursor->known_until && cursor->change + cursor->delay <= t) {
+    slipwise_next_piece(cursor);
+  }
+}
+
+static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, slipwise_real delay,
+                                                 slipwise_real start, slipwise_real known_until) {
+  const slipwise_ramp rest = {0, 0};
+  const slipwise_drive nothing = {0, 0};
+  slipwise_cursor cursor;
+  cursor.commands = commands;
+  cursor.delay = delay;
+  cursor.known_until = known_until;
+  cursor.speed = cursor.yaw_rate = cursor.side[0] = cursor.side[1] = rest;
+  cursor.told = cursor.held = nothing;
+  cursor.piece = SLIPWISE_RAMP_PIECE;
+  cursor.next = cursor.pieces = 0;
+  cursor.change = slipwise_told_next(&cursor);
+  slipwise_catch_up(&cursor, start);
+  return cursor;
+}
