@@ -119,7 +119,7 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .responds = chain.responds,
           .limits = program.limited() ? &constants.limits : nullptr,
           .pieces = program.pieces(),
-          .first_row = 0,
+          .start_row = 0,
           .last_row = static_cast<std::ptrdiff_t>(batch.periods) - 1,
           .rollouts = batch.rollouts,
           .periods = batch.periods,

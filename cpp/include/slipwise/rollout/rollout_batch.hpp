@@ -61,7 +61,7 @@ struct RolloutOptions {
   InstructionLevel level = best_instruction_level();
 };
 
-/// Drives all commands and fills the outputs. Allocates nothing with one thread. Float and double.
+/// Drives all commands and fills the outputs. Allocates nothing with one thread and without limits. Float and double.
 /// \throws std::invalid_argument when the batch is empty, sizes do not fit each other, a command or start is not
 /// finite, or the processor lacks the instruction level.
 template <typename Scalar>
