@@ -79,7 +79,7 @@ typedef float slipwise_real;
 #define SLIPWISE_LIMITS_YAW_RATE 0.0, INFINITY, INFINITY, INFINITY
 #define SLIPWISE_LIMITS_SIDE 0.0, INFINITY, INFINITY, INFINITY
 #define SLIPWISE_LIMITS_TRACK SLIPWISE_R(1.0)  /* [m] between the sides */
-#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R(1.0)  /* of what is asked of the sides */
+#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R(1.0)  /* of what the sides are asked */
 #define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R(1.0)
 #define SLIPWISE_LIMITS_SIDES 0
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */
