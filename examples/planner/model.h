@@ -1,5 +1,5 @@
 /*
- * slipwise 0.1.0, model model.yaml (sha256 d2656633034e22ce), learned by slipwise 0.1.0
+ * slipwise 0.1.0, model model.yaml (sha256 61f72b9a28b9e177), learned by slipwise 0.1.0
  * log: drive.mcap (sha256 b6525c9473f54fc9)
  * learned from 300 s of commands, basis full-linear-6
  * verdict: good. The learned model misses by 0.0649 m and 0.0169 rad after 5 s, where the plain model misses by 1.65 m and 0.733 rad (30 held-out windows).
@@ -74,6 +74,14 @@ typedef float slipwise_real;
 #define SLIPWISE_HAS_DYNAMICS 1
 #define SLIPWISE_HAS_RESPONSE 0
 #define SLIPWISE_HAS_CLOCK_OFFSET 0
+/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */
+#define SLIPWISE_LIMITS_SPEED 0.0, INFINITY, INFINITY, INFINITY
+#define SLIPWISE_LIMITS_YAW_RATE 0.0, INFINITY, INFINITY, INFINITY
+#define SLIPWISE_LIMITS_SIDE 0.0, INFINITY, INFINITY, INFINITY
+#define SLIPWISE_LIMITS_TRACK SLIPWISE_R(1.0)  /* [m] between the sides */
+#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R(1.0)  /* of what the sides are asked */
+#define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R(1.0)
+#define SLIPWISE_LIMITS_SIDES 0
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */
 #define SLIPWISE_SAME_STEP SLIPWISE_R(1e-6)    /* of a step: a stretch longer by rounding gets no other step */
 #define SLIPWISE_LONGEST_WINDOW SLIPWISE_R(1e5) /* [s] */
@@ -253,6 +261,13 @@ static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) {
 /* When the channel changes next, or `never`. */
 static inline slipwise_real slipwise_change(const slipwise_cursor *cursor, slipwise_real never) {
   return cursor->next < cursor->end ? slipwise_command_at(cursor->commands, cursor->next)->t + cursor->delay : never;
+}
+
+/* Passes the changes until `t`. */
+static inline void slipwise_catch_up(slipwise_cursor *cursor, slipwise_real t) {
+  while (cursor->next < cursor->end && slipwise_change(cursor, t) <= t) {
+    ++cursor->next;
+  }
 }
 
 /* Moves a lag's output over a step under a held input, exactly; returns the integral of the output. */
@@ -476,12 +491,8 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
     for (i = 0; next > now && i < parts; ++i) {
       slipwise_step(walk, (next - now) / (slipwise_real)parts, moves);
     }
-    while (walk->speed_input.next < walk->speed_input.end && slipwise_change(&walk->speed_input, next) <= next) {
-      ++walk->speed_input.next;
-    }
-    while (walk->yaw_input.next < walk->yaw_input.end && slipwise_change(&walk->yaw_input, next) <= next) {
-      ++walk->yaw_input.next;
-    }
+    slipwise_catch_up(&walk->speed_input, next);
+    slipwise_catch_up(&walk->yaw_input, next);
     now = next > now ? next : now;
   }
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <slipwise/actuator/command_limits.hpp>
 #include <slipwise/segment/integrate_segment.hpp>
 #include <string>
 #include <vector>
@@ -14,10 +15,19 @@
 /// The model as the library has it.
 slipwise::MotionModel learned_model() {
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
-  const slipwise::ChainParameters chain{.dynamics = SLIPWISE_HAS_DYNAMICS,
-                                        .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
-                                        .response = SLIPWISE_HAS_RESPONSE};
+  const slipwise::ChainParameters chain{
+      .dynamics = SLIPWISE_HAS_DYNAMICS, .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET, .response = SLIPWISE_HAS_RESPONSE};
   return {{"learned", lon, lat, ang}, chain};
+}
+
+/// The drive's learned limits; without any, commands pass as they are.
+slipwise::CommandLimits learned_limits() {
+  return {.speed = {SLIPWISE_LIMITS_SPEED},
+          .yaw_rate = {SLIPWISE_LIMITS_YAW_RATE},
+          .side = {SLIPWISE_LIMITS_SIDE},
+          .track = SLIPWISE_LIMITS_TRACK,
+          .gain_v = SLIPWISE_LIMITS_GAIN_V,
+          .gain_omega = SLIPWISE_LIMITS_GAIN_OMEGA};
 }
 
 int main() {
@@ -30,7 +40,7 @@ int main() {
   for (const double rate : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
     // What the robot was told before still acts, because of lag and delay; each command is held until the next.
     const std::array<double, 2> t{0.0, now}, v{0.3, 1.0}, vy{0.0, 0.0}, omega{0.0, rate};
-    const slipwise::InputTrack commands(t, v, vy, omega);
+    const slipwise::InputTrack commands = slipwise::limited_track({t, v, vy, omega}, learned_limits());
     const auto at = slipwise::linearize_segment(model, parameters, commands, {.start = now, .end = now + ahead});
     const slipwise::Pose2 pose = at.predicted;  // at.by_parameter is its derivative by the parameters
     const double miss = std::hypot(pose.x - goal_x, pose.y - goal_y);

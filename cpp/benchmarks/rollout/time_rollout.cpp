@@ -82,6 +82,7 @@ struct Case {
   ChainParameters learned;
   std::vector<double> chain;
   double operations;  ///< per period in float, as docs/derivations.md counts them; 0: not counted
+  CommandLimits limits = {};
 };
 
 std::vector<Case> cases() {
@@ -89,17 +90,39 @@ std::vector<Case> cases() {
   const double delay = std::log(0.13);
   const double other = std::log(0.07);
   const double slow = std::log(1.5);
-  return {{"thesis-15, no chain", "thesis-15", {}, {}, 34.0},
-          {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
-          {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
-          {"thesis-15, gains and slow parts",
-           "thesis-15",
-           {.dynamics = true, .response = true},
-           {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
-           48.0},
-          {"odd-even-10, no chain", "odd-even-10", {}, {}, 0.0},
-          {"odd-even-10, lag and two delays", "odd-even-10", {.dynamics = true}, {lag, lag, delay, other}, 0.0},
-          {"edd-2, no chain", "edd-2", {}, {}, 0.0}};
+  const LaneLimits ramp{.acceleration = 1.0, .braking = 1.5};
+  return {
+      {"thesis-15, no chain", "thesis-15", {}, {}, 34.0},
+      {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
+      {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
+      {"thesis-15, gains and slow parts",
+       "thesis-15",
+       {.dynamics = true, .response = true},
+       {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
+       48.0},
+      {"thesis-15, no chain, top speeds", "thesis-15", {}, {}, 0.0, {.speed = {.top = 1.2}, .yaw_rate = {.top = 0.4}}},
+      {"thesis-15, no chain, ramps", "thesis-15", {}, {}, 0.0, {.speed = ramp, .yaw_rate = ramp}},
+      {"thesis-15, one delay, ramps",
+       "thesis-15",
+       {.dynamics = true},
+       {lag, lag, delay, delay},
+       0.0,
+       {.speed = ramp, .yaw_rate = ramp}},
+      {"thesis-15, two delays, ramps",
+       "thesis-15",
+       {.dynamics = true},
+       {lag, lag, delay, other},
+       0.0,
+       {.speed = ramp, .yaw_rate = ramp}},
+      {"thesis-15, two delays, all ramps",
+       "thesis-15",
+       {.dynamics = true},
+       {lag, lag, delay, other},
+       0.0,
+       {.speed = ramp, .yaw_rate = ramp, .side = ramp}},
+      {"odd-even-10, no chain", "odd-even-10", {}, {}, 0.0},
+      {"odd-even-10, lag and two delays", "odd-even-10", {.dynamics = true}, {lag, lag, delay, other}, 0.0},
+      {"edd-2, no chain", "edd-2", {}, {}, 0.0}};
 }
 
 template <typename Scalar>
@@ -136,7 +159,7 @@ RolloutProgram program_of(const Case& kind) {
   for (std::size_t i = 0; i < kind.chain.size(); ++i) {
     parameters[model.slip_size() + static_cast<Eigen::Index>(i)] = kind.chain[i];
   }
-  return {model, parameters, {kPeriod}};
+  return {model, parameters, {.period = kPeriod, .limits = kind.limits}};
 }
 
 void report(const Case& kind, InstructionLevel level, double at_most) {

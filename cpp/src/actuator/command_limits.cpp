@@ -61,8 +61,6 @@ void need_positive(const char* name, double value) {
   }
 }
 
-bool ramps(const LaneLimits& limits) { return std::isfinite(limits.acceleration) || std::isfinite(limits.braking); }
-
 }  // namespace
 
 void check(const CommandLimits& limits) {
@@ -80,8 +78,11 @@ bool unlimited(const CommandLimits& limits) {
   return limits.speed == LaneLimits{} && limits.yaw_rate == LaneLimits{} && !limits_sides(limits);
 }
 
+bool limits_rates(const LaneLimits& limits) {
+  return std::isfinite(limits.acceleration) || std::isfinite(limits.braking);
+}
 bool limits_rates(const CommandLimits& limits) {
-  return ramps(limits.speed) || ramps(limits.yaw_rate) || ramps(limits.side);
+  return limits_rates(limits.speed) || limits_rates(limits.yaw_rate) || limits_rates(limits.side);
 }
 
 int ramp_pieces(double hold, double longest_piece) { return lag_parts(hold, longest_piece); }

@@ -87,10 +87,10 @@ HeldCommands limited_commands(const HeldCommands& held, const CommandLimits& lim
   limiter.tell({last.v, 0.0, last.omega});
   const double ramp = std::min(limiter.seconds_left(), kLongestRamp);
   result.settling += ramp;
-  for (double left = ramp; left > 0.0; left -= piece) {
+  const auto after = static_cast<std::size_t>(std::ceil(ramp / piece));
+  for (std::size_t i = 0; i <= after; ++i) {
     add(passed(last, limits));
   }
-  add(passed(last, limits));
   return result;
 }
 

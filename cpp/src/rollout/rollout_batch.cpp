@@ -122,7 +122,7 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .responds = chain.responds,
           .limits = program.limited() ? &constants.limits : nullptr,
           .pieces = program.pieces(),
-          .first_row = 0,
+          .start_row = 0,
           .last_row = static_cast<std::ptrdiff_t>(batch.periods) - 1,
           .rollouts = batch.rollouts,
           .periods = batch.periods,
@@ -190,7 +190,10 @@ class BlockOfBatch {
   bool differs() const { return each_; }
 
   /// Drives one block; returns its faults.
-  unsigned roll(std::size_t block) { return commands_.roll(at(block)); }
+  unsigned roll(std::size_t block) {
+    at(block);
+    return commands_.roll(block_);
+  }
 
   const LaneBlock<Scalar>& at(std::size_t block) {
     block_.first = block * lanes_;

@@ -60,15 +60,18 @@ std::size_t pieces_of(const RolloutSetting& setting) {
 
 template <typename Scalar>
 RampLimits<Scalar> ramp_limits(const LaneLimits& limits, double piece) {
-  const auto rate = [&](double value) { return std::isfinite(value) ? static_cast<Scalar>(value * piece) : Scalar{}; };
-  const auto per_rate = [&](double value) { return static_cast<Scalar>(1.0 / (value * piece)); };
-  constexpr auto kLargest = static_cast<double>(std::numeric_limits<Scalar>::max());
-  return {.dead_band = static_cast<Scalar>(limits.dead_band),
-          .top = static_cast<Scalar>(std::min(limits.top, kLargest)),
-          .acceleration = rate(limits.acceleration),
-          .braking = rate(limits.braking),
-          .per_acceleration = per_rate(limits.acceleration),
-          .per_braking = per_rate(limits.braking)};
+  const auto number = [](double value) {
+    return static_cast<Scalar>(std::min(value, static_cast<double>(std::numeric_limits<Scalar>::max())));
+  };
+  const double acceleration = limits.acceleration * piece;
+  const double braking = limits.braking * piece;
+  return {.dead_band = number(limits.dead_band),
+          .top = number(limits.top),
+          .acceleration = number(acceleration),
+          .braking = number(braking),
+          .per_acceleration = number(1.0 / acceleration),
+          .per_braking = number(1.0 / braking),
+          .ramps = limits_rates(limits)};
 }
 
 template <typename Scalar>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slipwise/actuator/chain_output.hpp"
+#include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 
 namespace slipwise {
@@ -66,6 +67,29 @@ TEST_CASE("a ramp cut short by a command errs in distance by no more than stated
   const CommandLimits limits{.speed = {.acceleration = rate, .braking = rate}};
   const InputTrack limited = limited_track(track({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
   CHECK(std::abs(distance(limited, 0.33) - 0.5 * rate * 0.33 * 0.33) <= rate * piece * piece / 8.0 + 1e-12);
+}
+
+TEST_CASE("commands at equal intervals are cut exactly, from the second on") {
+  const CommandLimits limits{.speed = {.acceleration = 2.0, .braking = 2.0}};
+  std::vector<double> t, v, omega(12, 0.0);
+  for (int k = 0; k < 12; ++k) {
+    t.push_back(0.05 * k);
+    v.push_back(k < 6 ? 5.0 : -5.0);
+  }
+  const InputTrack limited = limited_track(track(t, v, omega), limits);
+  const double reached = distance(limited, 0.55) - distance(limited, 0.05);
+  CHECK(reached == doctest::Approx(0.3 * 0.3 - 0.05 * 0.05 + 0.3 * 0.3 - 0.05 * 0.05).epsilon(1e-12));
+}
+
+TEST_CASE("a drive that was told something for long gives what its limits leave of it") {
+  const CommandLimits limits{.speed = {.top = 0.5, .acceleration = 1.0}, .side = {.top = 0.6}, .track = 0.5};
+  CommandLimiter limiter(limits);
+  limiter.settle({.v = 3.0, .vy = 0.0, .omega = 1.0});
+  CHECK(limiter.seconds_left() == 0.0);
+  CHECK(limiter.target().v == doctest::Approx(0.5 * (0.25 + 0.6)));
+  CHECK(limiter.mean_over(0.1, 0.1).v == limiter.target().v);
+  limiter.place({.v = 0.3, .vy = 0.0, .omega = 0.0});
+  CHECK(limiter.mean_over(0.02, 0.02).v == doctest::Approx(0.3));
 }
 
 TEST_CASE("sides are limited each for itself, behind gains") {

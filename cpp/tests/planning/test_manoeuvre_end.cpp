@@ -7,6 +7,7 @@
 
 #include "finite_difference.hpp"
 #include "sample_manoeuvres.hpp"
+#include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/planning/manoeuvre_end.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
@@ -54,6 +55,36 @@ TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains
       const Pose2 linearized = linearize_manoeuvre(model, frame, sample_parameters(), kStart).pose;
       CHECK((linearized.vector() - pose.vector()).norm() < 1e-12);
     }
+  }
+}
+
+TEST_CASE("behind limits a manoeuvre ends where the integrator says of the limited commands") {
+  const LaneLimits lane{.dead_band = 0.05, .top = 1.0, .acceleration = 0.7, .braking = 0.9};
+  const CommandLimits limits{.speed = lane, .yaw_rate = lane, .side = lane, .track = 0.6};
+  for (const tests::SampleModel& sample : tests::sample_models()) {
+    CAPTURE(sample.name);
+    const ManoeuvreFrame frame = sample_frame(1.0, 0.0);
+    const PlanningModel model(sample.motion, sample.parameters, limits);
+    const HeldCommands held = held_commands(frame, sample_parameters());
+    const HeldCommands limited = limited_commands(held, limits, kStart.told);
+    const double period = held.period.value;
+    std::vector<double> t{-100.0, -period}, v(2, kStart.told.v), omega(2, kStart.told.omega);
+    for (std::size_t k = 0; k < held.commands.size(); ++k) {
+      for (int i = 0; i < ramp_pieces(period); ++i) {  // sent again and again, so that all take the same steps
+        t.push_back((static_cast<double>(k) + i / static_cast<double>(ramp_pieces(period))) * period);
+        v.push_back(held.commands[k].v);
+        omega.push_back(held.commands[k].omega);
+      }
+    }
+    const InputTrack track({t, v, std::vector<double>(t.size(), 0.0), omega});
+    const double end = frame.commands * period + limited.settling;
+    const Segment segment{.start = 0.0, .end = end, .initial = kStart.drive};
+    const InputTrack driven = limited_track(track, limits, limited.period.value);
+    const Pose2 expected = integrate_segment(sample.motion, sample.parameters, driven, segment).poses.back();
+    const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), kStart);
+    CHECK((pose.vector() - expected.vector()).norm() < 1e-5);
+    const PlanningModel free(sample.motion, sample.parameters);
+    CHECK((manoeuvre_pose(free, frame, sample_parameters(), kStart).vector() - expected.vector()).norm() > 1e-2);
   }
 }
 

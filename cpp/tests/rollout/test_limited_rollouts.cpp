@@ -91,8 +91,8 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
           .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
       const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, track, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
-      worst.xy = std::max(
-          worst.xy, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y));
+      worst.xy = std::max(worst.xy,
+                          std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y));
       worst.yaw = std::max(worst.yaw, std::abs(static_cast<double>(paths.theta[i]) - end.theta));
     }
   }
@@ -161,8 +161,7 @@ TEST_CASE("the ramp goes on from what the commands before the start had left it 
 
 TEST_CASE("costs behind limits are those at the ends of the periods") {
   const MotionModel model(Basis("none", {}, {}, {}), {});
-  const RolloutProgram program(model, Eigen::VectorXd(),
-                               {.period = 0.1, .limits = {.speed = {.acceleration = 1.0}}});
+  const RolloutProgram program(model, Eigen::VectorXd(), {.period = 0.1, .limits = {.speed = {.acceleration = 1.0}}});
   const std::vector<float> v(10, 1.0F), omega(10, 0.0F), cells{1.0F, 2.0F, 4.0F, 8.0F, 16.0F};
   const Costmap map{cells, 1, 5, 0.11, 0.0, -0.05, 0.0F};
   const std::vector<RolloutStart> start{{}};

@@ -7,7 +7,7 @@ import math
 from importlib.resources import files
 
 from slipwise import _core
-from slipwise.models import Model
+from slipwise.models.model import Model
 
 _NONE = _core.LaneLimits(0.0, math.inf, math.inf, math.inf)
 
@@ -20,7 +20,7 @@ def limits(model: Model) -> str:
     lines += [f"#define SLIPWISE_LIMITS_{name} {_lane(lane)}" for name, lane in lanes.items()]
     lines += [
         f"#define SLIPWISE_LIMITS_TRACK SLIPWISE_R({of_drive.track!r})  /* [m] between the sides */",
-        f"#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R({of_drive.gain_v!r})  /* of what is asked of the sides */",
+        f"#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R({of_drive.gain_v!r})  /* of what the sides are asked */",
         f"#define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R({of_drive.gain_omega!r})",
         f"#define SLIPWISE_LIMITS_SIDES {int(_lane(of_drive.side) != _lane(_NONE))}",
     ]

@@ -3,8 +3,12 @@ typedef struct {
   slipwise_real dead_band, top, acceleration, braking;
 } slipwise_lane;
 
+#define SLIPWISE_LANE_OF(a, b, c, d) {SLIPWISE_R(a), SLIPWISE_R(b), SLIPWISE_R(c), SLIPWISE_R(d)}
+#define SLIPWISE_LANE(limits) SLIPWISE_LANE_OF(limits)
 static const slipwise_lane slipwise_lanes[3] = {
-    {SLIPWISE_LIMITS_SPEED}, {SLIPWISE_LIMITS_YAW_RATE}, {SLIPWISE_LIMITS_SIDE}};
+    SLIPWISE_LANE(SLIPWISE_LIMITS_SPEED),
+    SLIPWISE_LANE(SLIPWISE_LIMITS_YAW_RATE),
+    SLIPWISE_LANE(SLIPWISE_LIMITS_SIDE)};
 #define SLIPWISE_RAMP_PIECE SLIPWISE_R(@PIECE@) /* [s] a ramp becomes held pieces of its mean, no longer than this */
 #define SLIPWISE_RAMP_PIECES 2000               /* of one ramp at most, however slow */
 #define SLIPWISE_LONGEST_RAMP SLIPWISE_R(1e6)   /* [s] */

@@ -57,7 +57,9 @@ def limits_of(model: Model) -> Limits:
         speed = min(speed, learned.speed.top, sides.top / learned.gain_v)
         yaw_rate = min(yaw_rate, learned.yaw_rate.top)
         own = (learned.speed.acceleration, learned.speed.braking)
-        acceleration = min(acceleration, *own, sides.acceleration / learned.gain_v, sides.braking / learned.gain_v)
+        acceleration = min(
+            acceleration, *own, sides.acceleration / learned.gain_v, sides.braking / learned.gain_v
+        )
     if speed <= 0.0 or yaw_rate <= 0.0:
         raise SettingsError(
             "the model was learned from a drive without speed or without turning",

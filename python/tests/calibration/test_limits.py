@@ -15,14 +15,12 @@ from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.limit_watch import FIRST, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
-from slipwise.errors import ModelError
-from slipwise.export.c_header import c_header
 from slipwise.export.mppi_limits import with_limits
 from slipwise.export.parameter_file import Entry
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
 from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
-from slipwise.planning import rollout
+from slipwise.planning import Controller, Start, Track, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
 from slipwise.simulation import Scenario, dull_drive, simulate, steps_drive
@@ -119,19 +117,28 @@ def test_a_model_with_limits_is_saved_and_predicts_as_before(model: Model, tmp_p
     assert predict(read, [(0.0, 0.05, 0.0)], horizon=5.0).poses[-1, 0] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    "use",
-    [
-        lambda model: rollout(model, np.zeros((1, 2, 2)), 0.1),
-        learned_motions,
-        lambda model: c_header(model, []),
-    ],
-    ids=["rollout", "controller", "header"],
-)
-def test_what_does_not_know_limits_refuses_them(model: Model, use) -> None:
-    with pytest.raises(ModelError, match="limits of the drive") as caught:
-        use(model)
-    assert "[auto] limits = false" in caught.value.advice
+def test_a_model_with_limits_plans_as_it_predicts(model: Model) -> None:
+    t = np.arange(100) * 0.05
+    smooth = np.stack((0.8 + 0.7 * np.sin(1.3 * t), 0.8 * np.sin(2.1 * t)), axis=1)
+    steps = np.where(t[:, None] < 2.5, (1.2, 0.5), (0.3, -0.6))
+    before = np.zeros((60, 2))
+    for commands in (smooth, steps):
+        start = Start(past=before)
+        found = rollout(model, commands[None], 0.05, start=start, covariance=True)
+        assert found.path is not None
+        assert found.covariance is not None
+        rows = np.column_stack((np.arange(-60, 100) * 0.05, np.vstack((before, commands))))
+        path = predict(model, rows, horizon=5.0, start=0.0, initial=(0.0, 0.0))
+        # Where no ramp is left, predictions take longer steps while a lag closes.
+        assert found.path[:, -1, 0] == pytest.approx(path.poses[-1], abs=1e-4)
+        free = Model(model.content.model_copy(update={"limits": None}))
+        apart = predict(free, rows, horizon=5.0, start=0.0, initial=(0.0, 0.0)).poses[-1] - path.poses[-1]
+        assert np.hypot(apart[0], apart[1]) > 0.01
+        futures = sample_futures(model, commands[None], 0.05, samples=200, seed=1, start=start)
+        covariance = found.covariance[:, -1, 0]
+        assert futures[0, :, -1, 0].var() == pytest.approx(covariance[0], rel=0.3)
+    controller = Controller(learned_motions(model), Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8))
+    assert controller.command((0.0, 0.0, 0.0), (0.5, 0.0))[0] > 0.0
 
 
 def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:

@@ -44,6 +44,23 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
     assert lost == pytest.approx(0.9 * written(LATE)["model_delay_vx"], rel=1e-3)
 
 
+def test_learned_limits_replace_what_is_less_strict() -> None:
+    lanes = {
+        "speed": {"dead_band": 0.1, "top": 1.2, "acceleration": 0.8, "braking": 1.7},
+        "yaw_rate": {"top": 5.0, "acceleration": 0.3},
+    }
+    made = replace(named("edd-2"), commands=True, limits=lanes)
+    parameters, gains = written(made, KILTED), (1.1, 0.9)  # of the sides behind the limits
+    free = written(replace(made, limits=None), KILTED)
+    assert parameters["vx_max"] == pytest.approx(gains[0] * 1.2)
+    assert parameters["vx_min"] == pytest.approx(gains[0] * free["vx_min"])
+    assert parameters["wz_max"] == pytest.approx(gains[1] * free["wz_max"])
+    assert parameters["ax_max"] == pytest.approx(gains[0] * 0.8)
+    assert parameters["ax_min"] == pytest.approx(-gains[0] * min(1.7, free["ax_max"]))
+    assert parameters["az_max"] == pytest.approx(gains[1] * 0.3)
+    assert parameters["VelocityDeadbandCritic"]["deadband_velocities"] == [0.1, 0.0, 0.0]
+
+
 def test_gain_and_slow_part_count() -> None:
     made = replace(named("edd-2", ang__w=-0.4), response=True)
     model, parameters = make_model(made), written(made)

@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model
+from sample_models import Made, make_model
 
+from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.planning import (
     LatticeOptions,
@@ -33,6 +35,18 @@ def share() -> float:
     """Return the share of a commanded curvature that this model's slip leaves."""
     values = {parameter.name: parameter.value for parameter in learned_model().content.parameters}
     return (1.0 + values["ang.w"]) / (1.0 + values["lon.V"])
+
+
+def test_the_map_of_held_curvatures_has_dead_band_and_tops() -> None:
+    lanes = {"speed": {"top": 0.8}, "yaw_rate": {"dead_band": 0.1, "top": 0.5}}
+    model = make_model(Made(basis=_core.Basis("none", [], [], []), commands=True, limits=lanes))
+    held = curvature_map(model, limits=LIMITS, speeds=3, curvatures=21)
+    speed = np.broadcast_to(held.speed[:, None], held.held.shape)
+    turn = held.told * speed
+    known = np.isfinite(held.held)
+    left = np.where(np.abs(turn) < 0.1, 0.0, np.clip(turn, -0.5, 0.5))
+    assert held.held[known] == pytest.approx((left / np.minimum(speed, 0.8))[known])
+    assert held.achieved_speed[known] == pytest.approx(np.minimum(speed, 0.8)[known])
 
 
 def test_headings_point_at_grid_points() -> None:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from planning.planning_samples import learned_model, walled_map
-from sample_models import Made, make_model
+from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
@@ -31,11 +31,15 @@ def straight() -> Track:
 
 def test_the_controller_steers_back_to_its_track() -> None:
     slow = make_model(Made(basis=_core.named_basis("edd-2"), values={"ang.w": -0.3}, response=True))
+    limited = make_model(
+        Made(basis=_core.named_basis("edd-2"), values={"ang.w": -0.3}, response=True, limits=LIMITS)
+    )
     for motions in (
         [plain_motion()],
         [vendor_motion(1.5)],
         learned_motions(learned_model(), samples=2),
         learned_motions(slow, samples=2),
+        learned_motions(limited, samples=2),
     ):
         controller = Controller(motions, straight(), options=QUICK)
         left = [controller.command((1.0, 0.8, 0.0), (0.5, 0.0)) for _ in range(3)][-1]

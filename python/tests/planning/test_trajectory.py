@@ -4,10 +4,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model
+from sample_models import LIMITS as LANES
+from sample_models import make_model, named
 
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.planning import (
@@ -19,6 +22,7 @@ from slipwise.planning import (
     trajectory_to,
     uncertain_path,
 )
+from slipwise.planning.limits import ACCELERATION
 
 OPTIONS = TrajectoryOptions(cruise=1.0, longest=8.0)
 
@@ -59,6 +63,18 @@ def test_a_goal_in_another_frame_gives_the_same_commands(planner: Planner) -> No
     assert there.poses[-1] == pytest.approx((8.973, -1.987, math.pi / 2.0 + 0.411), abs=2e-3)
 
 
+def test_goals_are_reached_through_the_limits_of_the_drive() -> None:
+    model = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.3), commands=True, limits=LANES))
+    planner = Planner(
+        model, limits=Limits(speed=1.0, yaw_rate=0.7, curvature=1.0), options=TrajectoryOptions()
+    )
+    free = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.3), commands=True))
+    for goal in ((4.0, 0.0, 0.0), (3.5, 1.0, 0.6), (5.0, -1.5, -0.3), (4.0, 0.5, -0.2)):
+        plan = planner.to(goal)
+        assert uncertain_path(model, plan).poses[-1] == pytest.approx(goal, abs=2e-3)
+        assert abs(uncertain_path(free, plan).poses[-1, 0] - goal[0]) > 5e-3
+
+
 def test_a_moving_robot_goes_on_with_its_curvature() -> None:
     state = DriveState(drive=(0.8, 0.2), told=(0.8, 0.24))
     plan = trajectory_to(learned_model(), (4.0, 0.5, 0.0), limits=LIMITS, options=OPTIONS, state=state)
@@ -71,6 +87,10 @@ def test_limits_follow_from_what_the_model_has_seen() -> None:
     seen = learned_model().content.range
     assert limits.speed == max(map(abs, seen.speed))
     assert limits.yaw_rate == max(map(abs, seen.yaw_rate))
+    assert limits.acceleration == ACCELERATION
+    tight = {"speed": {"top": 0.9, "acceleration": 0.4}, "yaw_rate": {"top": 0.5}}
+    limits = limits_of(make_model(replace(named("edd-2"), commands=True, limits=tight)))
+    assert (limits.speed, limits.yaw_rate, limits.acceleration) == (0.9, 0.5, 0.4)
 
 
 def test_an_unreachable_goal_says_how_near_it_came_and_what_would_help(planner: Planner) -> None:

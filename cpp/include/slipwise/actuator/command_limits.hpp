@@ -37,7 +37,8 @@ bool unlimited(const CommandLimits& limits);
 /// Whether the sides are limited; if not, track and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
-/// Whether some lane ramps.
+/// Whether a lane, or some lane, ramps.
+bool limits_rates(const LaneLimits& limits);
 bool limits_rates(const CommandLimits& limits);
 /// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top, track or gain not positive.
 void check(const CommandLimits& limits);

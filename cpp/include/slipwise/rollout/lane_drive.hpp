@@ -46,7 +46,7 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
                                   const CommandSource<Scalar>& source, std::ptrdiff_t period,
                                   typename L::Vector& command) {
   const std::ptrdiff_t at = period < job.last_row ? period : job.last_row;
-  if (at >= job.first_row && (block.side_by_side || job.first_row < 0)) {
+  if (at >= 0 && block.side_by_side) {
     const Scalar* from = source.commands + at * job.period_stride;
     load(from, command);
     if constexpr (L::kLanes > 1) {
@@ -91,7 +91,7 @@ template <class L, Chain kChain, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t shift,
                                   ChannelLanes<L, kChain>& channel) {
-  channel.next = -shift - 1;
+  channel.next = job.start_row - shift - 1;
   tell(job, block, source, channel);
   load(source.start->fast, channel.fast);
   if constexpr (kChain == Chain::Response) {

@@ -45,12 +45,13 @@ struct LanePart {
 };
 
 /// Limits of one lane of the drive (command_limits.hpp) in the kernel's numbers. What is not limited has no dead-band,
-/// the largest top, and rates of zero.
+/// and the largest top and rates.
 template <typename Scalar>
 struct RampLimits {
   Scalar dead_band, top;
   Scalar acceleration, braking;          ///< over a piece of the period
-  Scalar per_acceleration, per_braking;  ///< one over these
+  Scalar per_acceleration, per_braking;  ///< one over these; zero where they are not limited
+  bool ramps;                            ///< some rate is limited
 };
 
 /// Limits of the commands, and of the two sides behind them.
@@ -88,11 +89,11 @@ struct LaneJob {
   bool responds;  ///< some channel has a gain or a slow part
 
   const DriveRamps<Scalar>* limits;  ///< null where the commands pass as they are
-  /// Limited commands are cut into so many pieces each, and stand side by side from this row on, those before the start
-  /// too; these and all that follows count pieces then. Without limits a command is one piece and the first row is 0.
+  /// Limited commands are cut into so many pieces each and stand side by side, those before the start first; what
+  /// follows counts pieces then. Without limits a command is one piece.
   std::size_t pieces;
-  std::ptrdiff_t first_row;
-  std::ptrdiff_t last_row;  ///< what it holds goes on
+  std::ptrdiff_t start_row;  ///< of the first command or piece from the start on
+  std::ptrdiff_t last_row;   ///< what it holds goes on
 
   std::size_t rollouts, periods;
   const Scalar* v;

@@ -26,23 +26,20 @@ template <typename Scalar, class Vector>
 SLIPWISE_LANES Vector ramp_piece(const RampLimits<Scalar>& limits, const Vector& target, Vector& state) {
   const Vector zero = Vector{};
   const Vector one = zero + static_cast<Scalar>(1);
-  const Vector half = zero + static_cast<Scalar>(0.5);
+  const auto half = static_cast<Scalar>(0.5);
   const Vector up = target < state ? -one : one;
   const Vector from = state * up;
   const Vector to = target * up;
-  const Vector stop = larger(from, smaller(to, zero));
-  const Vector braking = (stop - from) * limits.per_braking;
-  const Vector braked = braking <= one ? stop : from + limits.braking;
-  const Vector in_braking = smaller(braking, one);
-  const Vector rest = one - in_braking;
-  const Vector goal = braking <= one ? to : braked;
-  const Vector speeding = (goal - braked) * limits.per_acceleration;
-  const Vector end = speeding <= rest ? goal : braked + limits.acceleration * rest;
-  const Vector in_speeding = smaller(speeding, rest);
-  const Vector mean =
-      half * (from + braked) * in_braking + half * (braked + end) * in_speeding + end * (rest - in_speeding);
+  const Vector stop = larger(from, smaller(to, zero));  // where braking ends
+  const Vector slower = smaller(stop - from, zero + limits.braking);
+  const Vector in_braking = slower * limits.per_braking;
+  const Vector left = slower < stop - from ? zero : to - stop;
+  const Vector faster = smaller(left, larger(one - in_braking, zero) * limits.acceleration);
+  const Vector in_speeding = faster * limits.per_acceleration;
+  const Vector moved = slower + faster;
+  const Vector end = moved < to - from ? from + moved : to;
   state = end * up;
-  return mean * up;
+  return (end - (faster + slower * half) * in_braking - faster * half * in_speeding) * up;
 }
 template <typename Scalar, class Half>
 SLIPWISE_LANES Pair<Half> ramp_piece(const RampLimits<Scalar>& limits, const Pair<Half>& target, Pair<Half>& state) {
@@ -59,13 +56,21 @@ struct RampLanes {
 template <class L, typename Scalar = L::Scalar>
 SLIPWISE_LANES void limit_piece(const DriveRamps<Scalar>& limits, RampLanes<L>& ramps, typename L::Vector& v,
                                 typename L::Vector& omega) {
-  v = ramp_piece(limits.speed, v, ramps.speed);
-  omega = ramp_piece(limits.yaw_rate, omega, ramps.yaw_rate);
+  if (limits.speed.ramps) {
+    v = ramp_piece(limits.speed, v, ramps.speed);
+  }
+  if (limits.yaw_rate.ramps) {
+    omega = ramp_piece(limits.yaw_rate, omega, ramps.yaw_rate);
+  }
   if (limits.sides) {
     const typename L::Vector asked = v * limits.gain_v;
     const typename L::Vector apart = omega * limits.half_track;
-    const typename L::Vector left = ramp_piece(limits.side, aim(limits.side, asked - apart), ramps.left);
-    const typename L::Vector right = ramp_piece(limits.side, aim(limits.side, asked + apart), ramps.right);
+    typename L::Vector left = aim(limits.side, asked - apart);
+    typename L::Vector right = aim(limits.side, asked + apart);
+    if (limits.side.ramps) {
+      left = ramp_piece(limits.side, left, ramps.left);
+      right = ramp_piece(limits.side, right, ramps.right);
+    }
     v = (left + right) * static_cast<Scalar>(0.5);
     omega = (right - left) * limits.per_track;
   }

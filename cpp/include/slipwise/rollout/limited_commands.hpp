@@ -47,12 +47,12 @@ class LimitedCommands {
     const std::size_t rows = before_ + periods_ * job.pieces;
     v_.resize(rows * kernel.lanes);
     omega_.resize(rows * kernel.lanes);
-    driven_.v = v_.data() + before_ * kernel.lanes;
-    driven_.omega = omega_.data() + before_ * kernel.lanes;
+    driven_.v = v_.data();
+    driven_.omega = omega_.data();
     driven_.rollout_stride = 0;
     driven_.period_stride = static_cast<std::ptrdiff_t>(kernel.lanes);
-    driven_.first_row = -static_cast<std::ptrdiff_t>(before_);
-    driven_.last_row = static_cast<std::ptrdiff_t>(periods_ * job.pieces) - 1;
+    driven_.start_row = static_cast<std::ptrdiff_t>(before_);
+    driven_.last_row = static_cast<std::ptrdiff_t>(rows) - 1;
     driven_.periods = job.periods * job.pieces;
   }
 
@@ -70,10 +70,12 @@ class LimitedCommands {
     }
   }
 
-  unsigned roll(const LaneBlock<Scalar>& block) {
+  /// Drives one block; its commands lie side by side once they are limited.
+  unsigned roll(LaneBlock<Scalar>& block) {
     if (given_.limits != nullptr) {
       const std::size_t first = before_ * kernel_.lanes;
       kernel_.limit(given_, block, start_, {v_.data() + first, omega_.data() + first, periods_});
+      block.side_by_side = true;
     }
     return kernel_.roll(driven_, block);
   }

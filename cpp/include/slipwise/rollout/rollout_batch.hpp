@@ -64,7 +64,7 @@ struct RolloutOptions {
   Gpu* gpu = nullptr;  ///< null: on the processor
 };
 
-/// Drives all commands and fills the outputs. Allocates nothing with one thread. Float and double.
+/// Drives all commands and fills the outputs. Allocates nothing with one thread and without limits. Float and double.
 /// With a GPU, commands, outputs and the map's cells may lie in its memory as well as in the processor's; what lies in
 /// the processor's is copied. All work of the GPU's default stream is done first.
 /// \throws std::invalid_argument when the batch is empty, sizes do not fit each other, a command or start is not
