@@ -124,7 +124,8 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     noise, average, iekf = _core.NoiseSettings(), _core.ModelAverageSettings(), _core.IekfSettings()
     assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.memory:g})" in derivations
     assert f"{noise.largest:g} s_i" in derivations
-    assert f"η = {average.weighing.learning_rate:g}, share α = {average.weighing.share:g}" in derivations
+    weighing = average.weighing
+    assert f"η = {weighing.learning_rate:g}, share α_n = min({weighing.share:g}, 1/n)" in derivations
     assert f"has π = {average.richest:g}" in derivations
     assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
     assert f"by less than {iekf.tolerance:g}" in derivations
