@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward selection of limits by their profiles, then backward elimination.
+// Forward selection of limits by their profiles, then backward elimination; and elimination alone from all at once.
 #include "slipwise/estimate/limit_search.hpp"
 
 #include <algorithm>
@@ -27,9 +27,21 @@ constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.
 constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
 constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
 constexpr double kLagFactor = 0.4;
+constexpr double kHighest = 0.98;  // quantile of speeds that is about a top
+constexpr double kUsual = 0.9;     // quantile of rates
 
 double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
+int count_of(const CommandLimits& limits) {
+  int count = 0;
+  for (const Lane lane : kLanes) {
+    for (const LimitKind kind : kLimitKinds) {
+      count += limits_anything(lane_of(limits, lane), kind) ? 1 : 0;
+    }
+  }
+  return count;
 }
 
 double gain_of(const ScoredDrive& more, const ScoredDrive& less) {
@@ -53,6 +65,17 @@ class Search {
     return best;
   }
 
+  /// Limits that act together may each explain too little to be added alone. So all tops and rates of the commands are
+  /// tried at once, and kept where they, or what is left of them, explain more than what was found one by one.
+  ScoredDrive or_all_at_once(const ScoredDrive& one_by_one, const LimitedDrive& plain) {
+    const ScoredDrive all = refined(with_all(plain), kLongRefinement);
+    if (!gains(all, one_by_one)) {
+      return one_by_one;
+    }
+    const ScoredDrive left = run(all.drive);
+    return gains(left, one_by_one) ? left : one_by_one;
+  }
+
   std::vector<FoundLimit> found(const ScoredDrive& best) const {
     const LimitedDriveFit::Spread spread = fit_.spread(best.drive);
     std::vector<FoundLimit> result;
@@ -72,6 +95,32 @@ class Search {
   }
 
  private:
+  /// Whether `one` explains more than `other` by enough for the limits that it has more.
+  bool gains(const ScoredDrive& one, const ScoredDrive& other) const {
+    const int more = std::max(count_of(one.drive.limits) - count_of(other.drive.limits), 1);
+    return gain_of(one, other) > least_gain_ * more;
+  }
+
+  LimitedDrive with_all(LimitedDrive drive) const {
+    const CommandLimits none = drive.limits;
+    for (const Lane lane : {Lane::Speed, Lane::YawRate}) {
+      const LaneRange range = lane_range(records_, none, lane);
+      if (range.commands.empty() || range.speeds.empty() || range.rates.empty()) {
+        continue;
+      }
+      LaneLimits& limits = lane_of(drive.limits, lane);
+      if (const double top = quantile(range.speeds, kHighest); top > 0.0) {
+        limits.top = top;
+      }
+      if (const double usual = quantile(range.rates, kUsual); usual > 0.0) {
+        limits.acceleration = limits.braking = usual;
+      }
+    }
+    drive.chain.lag_v *= kLagFactor;
+    drive.chain.lag_omega *= kLagFactor;
+    return drive;
+  }
+
   /// Fits what there is, and drops or moves what does not earn its place.
   void settle_on(ScoredDrive& best) const {
     best = polished(best);
@@ -183,7 +232,7 @@ class Search {
           values.push_back(top);
         }
       }
-    } else if (const double usual = quantile(range.rates, 0.9); usual > 0.0) {
+    } else if (const double usual = quantile(range.rates, kUsual); usual > 0.0) {
       for (const double factor : kRateFactors) {
         values.push_back(factor * usual);
       }
@@ -305,7 +354,8 @@ LimitSearch find_limits(std::span<const DriveRecord> records, const PriorSetting
                                 std::to_string(fit.samples()) + "; drive longer");
   }
   Search search(records, fit, settings.least_gain);
-  const ScoredDrive best = search.run(before ? with_gain_at_sides(*before) : plain_drive(fit));
+  const LimitedDrive plain = plain_drive(fit);
+  const ScoredDrive best = search.or_all_at_once(search.run(before ? with_gain_at_sides(*before) : plain), plain);
   LimitSearch result{.drive = best.drive, .found = {}, .track_std = 0.0, .reach = {}};
   if (!unlimited(best.drive.limits)) {
     result.found = search.found(best);

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from slipwise.segments import WindowRules
 NO_SENSOR = WindowRules().sensor
 CHAIN_WINDOW = 1.0  # s; wheel speeds tell a step's response from its start on
 RECENT_CHAIN_WINDOWS = 200  # from which the chain behind newly found limits is learned
+JUDGED, MISSES, MISS = 20, 6, 11.34  # of the last chain windows, so many beyond the 99 % point of chi2 of 3
 
 
 class CascadePass:
@@ -40,6 +42,7 @@ class CascadePass:
         self._slip = CausalPass(self._average, slip_windows, self._see, pace=windows)
         self._chain = self._chain_pass(self._chain_windows)
         self._limited: LimitedDrive | None = None
+        self._missed: deque[bool] = deque(maxlen=JUDGED)
         self._changes: list[_core.ChangeTest] = []
         response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
         self.motion = response.with_mount(average.model.mount)
@@ -53,8 +56,13 @@ class CascadePass:
         drive = self._chain_windows.drive
         runs = tuple(replace(run, track=limited.track(k)) for k, run in enumerate(drive))
         first = max(self._chain.learned - RECENT_CHAIN_WINDOWS, 0)
-        self._limited = limited
+        self._limited, self._missed = limited, deque(maxlen=JUDGED)
         self._chain = self._chain_pass(replace(self._chain_windows, drive=runs), first)
+
+    @property
+    def chain_fails(self) -> bool:
+        """Whether wheel speeds have left what the chain foretells too often of late for it to be true."""
+        return sum(self._missed) >= MISSES
 
     def change(self, i: int) -> _core.ChangeTest:
         """Return the strongest test for a change of ground while window i of the commands passed."""
@@ -64,11 +72,16 @@ class CascadePass:
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self._changes.append(self._average.change)
 
+    def _see_chain(self, _i: int, update: _core.IekfUpdate, _belief: Belief) -> None:
+        self._missed.append(update.nis > MISS)
+
     def _chain_pass(self, windows: WindowSet, first: int = 0) -> CausalPass[_core.IekfUpdate]:
         motion = _core.MotionModel.with_response(_core.Basis("none", [], [], []), False)
         filter_settings = self._settings.filter_settings()
         estimator = _core.FollowingEstimator("iekf", motion, filter_settings, _core.EstimatorSettings())
-        return CausalPass(EstimatorLearner(estimator), windows, pace=self._windows, first=first)
+        return CausalPass(
+            EstimatorLearner(estimator), windows, self._see_chain, pace=self._windows, first=first
+        )
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
         """Put slip and chain into one belief; clock offset and mount are learned with the slip."""

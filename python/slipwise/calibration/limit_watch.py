@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Looks for the limits of the drive in wheel speeds, whenever much more of them is known than last time."""
+"""Looks for the limits of the drive in wheel speeds, as they become many more, or as what was found fails."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ Ints = NDArray[np.int64]
 SPACING = 0.05  # s between the wheel twists looked at
 FIRST = 1000  # twists of a moving robot before the first search
 GROWTH = 3.0  # each search waits for this many times the twists of the last one
+AGAIN = 500  # fresh twists at least before a search because the last one's result fails
 MOST = 1000  # recent twists looked at
 LEAD_IN = 3.0  # s of commands before the first twist of a stretch
 
@@ -39,15 +40,21 @@ class LimitWatch:
         """Every run of `drive` has wheel speeds."""
         self._drive, self._settings = drive, settings
         self._twists = _joined([_twists(k, run, settings) for k, run in enumerate(drive)])
-        self._next = FIRST
+        self._next, self._again = FIRST, 0
         self.search: _core.LimitSearch | None = None
 
-    def look(self, position: int, t: float) -> bool:
-        """Search what was known at `t` [s] of run `position`, if it is time to; return whether it was."""
+    def look(self, position: int, t: float, *, fails: bool = False) -> bool:
+        """Search what was known at `t` [s] of run `position`, if it is time to; return whether it was.
+
+        It is time sooner where what was found `fails` to foretell the wheels. Such searches too become rarer,
+        so that a drive that no limits explain costs no more than the logarithm of its length.
+        """
         count = self._count(position, t)
-        if count < self._next:
+        asked = fails and self.search is not None and count >= self._again
+        if count < self._next and not asked:
             return False
         self._next = int(np.ceil(GROWTH * count))
+        self._again = count + max(AGAIN, count // 2)
         records = self._records(slice(max(count - MOST, 0), count))
         prior = self._settings.filter_settings().prior
         track = self._settings.vehicle.track

@@ -160,7 +160,10 @@ class StructureChoice:
 
     def _look_for_limits(self, i: int) -> None:
         """Once window i is learned, see whether the wheels show other limits than before."""
-        if self._watch is None or not self._watch.look(int(self._windows.position[i]), self._windows.end[i]):
+        if self._watch is None:
+            return
+        fails = self._contenders[-1].passing.chain_fails
+        if not self._watch.look(int(self._windows.position[i]), float(self._windows.end[i]), fails=fails):
             return
         search, cascade = self._watch.search, self._contenders[0]
         together, cascades = self._weights[TOGETHER], self._weights[1:].sum()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,10 +14,11 @@ from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.limit_watch import FIRST, MOST, LimitWatch
+from slipwise.calibration.limit_watch import AGAIN, FIRST, MOST, SPACING, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.export.mppi_limits import with_limits
 from slipwise.export.parameter_file import Entry
+from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
 from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
@@ -29,13 +31,11 @@ SLIP = (-0.06, -0.35)  # lon.V, ang.w
 SECONDS = 180.0
 
 
-def driven(limits: _core.CommandLimits, commands: Inputs, seed: int = 1) -> Log:
-    """A log with commands, wheel speeds behind limits, and poses of a robot that slips."""
-    wheels = wheels_behind(limits, commands, seed)
-    still = wheels_behind(limits, commands, seed)
+def driven(commands: Inputs, wheels: Inputs, seed: int = 1) -> Log:
+    """A log with commands, wheel speeds, and poses of a robot that slips."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     whole = _core.Segment(0.0, float(wheels.t[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    path = _core.integrate_segment(model, np.array(SLIP), track_of(still), whole, _core.Integrator.Exact)
+    path = _core.integrate_segment(model, np.array(SLIP), track_of(wheels), whole, _core.Integrator.Exact)
     noise = np.random.default_rng(seed).normal(0.0, 1.0, (len(path.poses), 3)) * (0.01, 0.01, 0.005)
     x, y, yaw = np.ascontiguousarray((path.poses + noise).T)
     poses = Poses(t=np.array(path.times), x=x, y=y, yaw=yaw, frame=np.zeros(len(x), dtype=np.int64))
@@ -45,7 +45,8 @@ def driven(limits: _core.CommandLimits, commands: Inputs, seed: int = 1) -> Log:
 
 @pytest.fixture(scope="module")
 def log() -> Log:
-    return driven(SIDES, steps_drive(3, SECONDS))
+    commands = steps_drive(3, SECONDS)
+    return driven(commands, wheels_behind(SIDES, commands, 1))
 
 
 @pytest.fixture(scope="module")
@@ -182,3 +183,39 @@ def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
     searched = [watch.look(0, end) for end in windows.end]
     assert sum(searched) == 2  # at FIRST and at three times as many
     assert len(drive[0].wheels) > 3 * MOST >= 3 * FIRST
+
+
+def test_what_fails_is_looked_for_again_but_ever_more_rarely(log: Log) -> None:
+    drive = prepare_drive(log, "command")
+    watch = LimitWatch(drive, Settings())
+    ends = np.arange(0.0, SECONDS, 1.0)
+    at = [end for end in ends.tolist() if watch.look(0, end, fails=True)]
+    gaps = np.diff(at)
+    assert len(at) > 3
+    assert gaps.min() >= AGAIN * SPACING
+    assert gaps[-1] > 1.2 * gaps[0]
+
+
+def test_limits_that_change_are_found_again() -> None:
+    commands, half = steps_drive(3, 2.0 * SECONDS), SECONDS
+    slower = _core.CommandLimits(FREE, FREE, _core.LaneLimits(0.12, 0.8, 0.6, 2.0), TRACK, 1.0, 1.0)
+    first, second = (wheels_behind(limits, commands, 1) for limits in (SIDES, slower))
+    late = commands.t >= half
+    changed = replace(
+        first, v=np.where(late, second.v, first.v), omega=np.where(late, second.omega, first.omega)
+    )
+    learned = calibrate(driven(commands, changed), input_name="command").model.limits
+    assert learned is not None
+    assert learned.side.top == pytest.approx(0.8, rel=0.1)
+
+
+@pytest.mark.parametrize("first", [4, 5])
+def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: Path, first: int) -> None:
+    """Two stretches of a Husky that drives random commands show the same rates of its yaw rate."""
+    log = open_log(real_log_dir / "drive_test" / "husky.csv.gz")
+    drive = prepare_drive(log, "command")[first : first + 2]
+    watch = LimitWatch(drive, Settings())
+    assert watch.look(1, float(drive[1].inputs.t[-1]))
+    found = {(f.lane, f.kind): f.value for f in watch.search.found}
+    assert found[(_core.Lane.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
+    assert found[(_core.Lane.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)
