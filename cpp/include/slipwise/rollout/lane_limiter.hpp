@@ -24,7 +24,7 @@ SLIPWISE_LANES Pair<Half> aim(const RampLimits<Scalar>& limits, const Pair<Half>
 /// it goes up, a ramp is braking until zero and acceleration from there on; times are counted in pieces.
 template <typename Scalar, class Vector>
 SLIPWISE_LANES Vector ramp_piece(const RampLimits<Scalar>& limits, const Vector& target, Vector& state) {
-  const Vector zero = Vector{};
+  const Vector zero{};
   const Vector one = zero + static_cast<Scalar>(1);
   const auto half = static_cast<Scalar>(0.5);
   const Vector up = target < state ? -one : one;

@@ -117,11 +117,11 @@ class OutputLanes {
     }
   }
 
-  std::size_t period_ = 0;
-  std::size_t last_piece_;  ///< of the period
   alignas(64) Scalar sum_[L::kLanes];
   alignas(64) Scalar highest_[L::kLanes];
   alignas(64) Scalar lowest_[L::kLanes];
+  std::size_t period_ = 0;
+  std::size_t last_piece_;  ///< of the period
   const LaneJob<Scalar>& job_;
   const LaneBlock<Scalar>& block_;
 };
