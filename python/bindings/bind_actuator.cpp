@@ -68,7 +68,8 @@ void bind_actuator(nb::module_& m) {
           [](LaneLimits* self, double dead_band, double top, double acceleration, double braking) {
             new (self) LaneLimits{dead_band, top, acceleration, braking};
           },
-          "dead_band"_a, "top"_a, "acceleration"_a, "braking"_a)
+          "dead_band"_a = LaneLimits{}.dead_band, "top"_a = LaneLimits{}.top,
+          "acceleration"_a = LaneLimits{}.acceleration, "braking"_a = LaneLimits{}.braking)
       .def_ro("dead_band", &LaneLimits::dead_band)
       .def_ro("top", &LaneLimits::top)
       .def_ro("acceleration", &LaneLimits::acceleration)
@@ -87,12 +88,7 @@ void bind_actuator(nb::module_& m) {
       .def_ro("gain_v", &CommandLimits::gain_v)
       .def_ro("gain_omega", &CommandLimits::gain_omega)
       .def(
-          "settled",
-          [](const CommandLimits& self, const BodyTwist& command) {
-            CommandLimiter limiter(self);
-            limiter.settle(command);
-            return limiter.target();
-          },
+          "settled", [](const CommandLimits& self, const BodyTwist& command) { return settled(self, command); },
           "command"_a, "What is left of a command that is held for long.");
   m.def("limited_track", &limited_track, "commands"_a, "limits"_a, "longest_piece"_a,
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");

@@ -11,7 +11,7 @@ from slipwise.logs.log import Inputs
 TRACK = 1.3  # m
 CHAIN = _core.CommandChain(0.4, 0.25, 0.16, 0.1, 0.0)
 NOISE = (0.02, 0.03)  # m/s, rad/s of wheel speeds
-FREE = _core.LaneLimits(0.0, np.inf, np.inf, np.inf)
+FREE = _core.LaneLimits()
 SIDES = _core.CommandLimits(FREE, FREE, _core.LaneLimits(0.12, 1.5, 1.2, 2.0), TRACK, 1.0, 1.0)
 CHANNELS = _core.CommandLimits(
     _core.LaneLimits(0.1, 1.4, 1.0, 1.8), _core.LaneLimits(0.08, 1.0, 2.0, 3.0), FREE, TRACK, 1.0, 1.0

@@ -121,4 +121,10 @@ BodyTwist CommandLimiter::joined(double v, double omega, const SideSpeeds& sides
   return {0.5 * (sides.left + sides.right), vy_, (sides.right - sides.left) / limits_.track};
 }
 
+BodyTwist settled(const CommandLimits& limits, const BodyTwist& command) {
+  CommandLimiter limiter(limits);
+  limiter.tell(command);
+  return limiter.target();
+}
+
 }  // namespace slipwise

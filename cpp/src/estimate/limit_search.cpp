@@ -102,9 +102,8 @@ class Search {
   }
 
   LimitedDrive with_all(LimitedDrive drive) const {
-    const CommandLimits none = drive.limits;
     for (const Lane lane : {Lane::Speed, Lane::YawRate}) {
-      const LaneRange range = lane_range(records_, none, lane);
+      const LaneRange range = lane_range(records_, drive.limits, lane);
       if (range.commands.empty() || range.speeds.empty() || range.rates.empty()) {
         continue;
       }

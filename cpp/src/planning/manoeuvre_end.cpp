@@ -186,12 +186,6 @@ class ManoeuvreWalk {
                fast_of(start, &BodyTwist::omega)),
         end_(model) {}
 
-  static BodyTwist settled(const CommandLimits& limits, const BodyTwist& told) {
-    CommandLimiter limiter(limits);
-    limiter.settle(told);
-    return limiter.target();
-  }
-
   static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
   }

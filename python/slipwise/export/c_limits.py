@@ -9,7 +9,7 @@ from importlib.resources import files
 from slipwise import _core
 from slipwise.models.model import Model
 
-_NONE = _core.LaneLimits(0.0, math.inf, math.inf, math.inf)
+_NONE = _core.LaneLimits()
 
 
 def limits(model: Model) -> str:

@@ -19,10 +19,7 @@ class Start:
     """One start for all rollouts, or one each."""
 
     pose: ArrayLike = (0.0, 0.0, 0.0)  # [3] or [N, 3]: x, y [m], yaw [rad]; results are in its frame
-    drive: ArrayLike = (
-        0.0,
-        0.0,
-    )  # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter behind a lag or ramps
+    drive: ArrayLike = (0.0, 0.0)  # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter behind lag, ramps
     past: ArrayLike | None = None  # [P, 2] or [N, P, 2]: commands sent before, one period apart, oldest first
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2 along the robot's x and y axes, positive downhill
 

@@ -66,4 +66,8 @@ class CommandLimiter {
   LaneRamp speed_, yaw_rate_, left_, right_;
 };
 
+/// What is left of a command that is held for long.
+/// \throws std::invalid_argument as `check` does.
+BodyTwist settled(const CommandLimits& limits, const BodyTwist& command);
+
 }  // namespace slipwise
