@@ -43,12 +43,13 @@ class CascadePass:
         self._chain = self._chain_pass(self._chain_windows)
         self._limited: LimitedDrive | None = None
         self._missed: deque[bool] = deque(maxlen=JUDGED)
-        self._changes: list[_core.ChangeTest] = []
+        self.change = _core.ChangeTest()  # the strongest test for a change of ground since the last belief
         response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
         self.motion = response.with_mount(average.model.mount)
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
+        self.change = _core.ChangeTest()
         return self._joined(self._slip.belief(count), self._chain.belief(count), noise_scale)
 
     def restart_behind(self, limited: LimitedDrive) -> None:
@@ -64,13 +65,8 @@ class CascadePass:
         """Whether wheel speeds have left what the chain foretells too often of late for it to be true."""
         return sum(self._missed) >= MISSES
 
-    def change(self, i: int) -> _core.ChangeTest:
-        """Return the strongest test for a change of ground while window i of the commands passed."""
-        tests = self._changes[self._slip.passed(i) : self._slip.passed(i + 1)] or [_core.ChangeTest()]
-        return max(tests, key=lambda test: (test.alarm, test.log_odds))
-
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
-        self._changes.append(self._average.change)
+        self.change = max(self.change, self._average.change, key=lambda test: (test.alarm, test.log_odds))
 
     def _see_chain(self, _i: int, update: _core.IekfUpdate, _belief: Belief) -> None:
         self._missed.append(update.nis > MISS)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import itertools
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,11 +72,11 @@ class WindowSet:
 
         Earlier runs on another clock count whole. Runs whose stamps follow each other are on one clock.
         """
-        clocks = self._clocks()
+        clocks = self._clocks[position]
         counts = np.empty(len(time), dtype=np.int64)
-        for clock in np.unique(clocks[position]).tolist():
-            first, last = np.searchsorted(clocks[self.position], (clock, clock + 1)).tolist()
-            at = clocks[position] == clock
+        for clock in np.unique(clocks).tolist():
+            first, last = np.searchsorted(self._clock_of_each, (clock, clock + 1)).tolist()
+            at = clocks == clock
             counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
         return counts
 
@@ -94,6 +95,12 @@ class WindowSet:
             if self.position[i] == position and self.start[i] > time - RECENT_SECONDS
         ]
 
+    @cached_property
+    def _clock_of_each(self) -> Ints:
+        """Number of each window's clock, [N]."""
+        return self._clocks[self.position]
+
+    @cached_property
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""
         runs = [run.run for run in self.drive]

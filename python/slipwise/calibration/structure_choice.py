@@ -150,7 +150,7 @@ class StructureChoice:
         weights = np.zeros(len(STRUCTURES))
         weights[: len(self._weights)] = self._weights
         self._recorder.weigh(i, weights)
-        change = self._contenders[0].passing.change(i)
+        change = self._contenders[0].passing.change
         beliefs = [contender.believed for contender in self._contenders]
         if len(beliefs) == 1:
             beliefs, nis = [*beliefs, replace(beliefs[0], structure=LIMITS)], nis * 2

@@ -14,8 +14,9 @@ from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.limit_watch import AGAIN, FIRST, MOST, SPACING, LimitWatch
+from slipwise.calibration.limit_watch import AGAIN, FIRST, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
+from slipwise.calibration.recent_twists import SPACING
 from slipwise.export.mppi_limits import with_limits
 from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
@@ -183,6 +184,9 @@ def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
     searched = [watch.look(0, end) for end in windows.end]
     assert sum(searched) == 2  # at FIRST and at three times as many
     assert len(drive[0].wheels) > 3 * MOST >= 3 * FIRST
+    twists, commands = watch.kept
+    assert twists == MOST
+    assert commands < len(drive[0].inputs) / 2
 
 
 def test_what_fails_is_looked_for_again_but_ever_more_rarely(log: Log) -> None:
