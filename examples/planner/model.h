@@ -1,5 +1,5 @@
 /*
- * slipwise 0.1.0, model model.yaml (sha256 61f72b9a28b9e177), learned by slipwise 0.1.0
+ * slipwise 0.1.0, model model.yaml (sha256 455fcadc8eababa8), learned by slipwise 0.1.0
  * log: drive.mcap (sha256 b6525c9473f54fc9)
  * learned from 300 s of commands, basis full-linear-6
  * verdict: good. The learned model misses by 0.0649 m and 0.0169 rad after 5 s, where the plain model misses by 1.65 m and 0.733 rad (30 held-out windows).
@@ -31,11 +31,13 @@
 typedef double slipwise_real;
 #define SLIPWISE_MATH(function) function
 #define SLIPWISE_SMALL_TURN 0.03
+#define SLIPWISE_SMALL_SPAN 0.01
 #define SLIPWISE_DIFFERENCE 1e-3 /* of a standard deviation, for derivatives */
 #else
 typedef float slipwise_real;
 #define SLIPWISE_MATH(function) function##f
 #define SLIPWISE_SMALL_TURN 0.35f
+#define SLIPWISE_SMALL_SPAN 0.2f
 #define SLIPWISE_DIFFERENCE 0.25f
 #endif
 #define SLIPWISE_R(number) ((slipwise_real)(number))
@@ -590,6 +592,16 @@ static const slipwise_real slipwise_roots[SLIPWISE_SLOTS(SLIPWISE_ROOTS)]
     {SLIPWISE_R(-0.00016157852184458767), SLIPWISE_R(-0.000568652099740048), SLIPWISE_R(1.531477146861966e-05), SLIPWISE_R(7.07105277294329e-07), SLIPWISE_R(-1.7146371255337914e-06), SLIPWISE_R(-5.846565389359502e-06), SLIPWISE_R(-0.01738759978533054), SLIPWISE_R(2.9602050703657458e-05), SLIPWISE_R(0.0960215063892384), SLIPWISE_R(-6.0286766929824327e-05)},
     {SLIPWISE_R(-1.9702519652706535e-05), SLIPWISE_R(1.8333499469626986e-05), SLIPWISE_R(2.2124929458652608e-05), SLIPWISE_R(-0.0001591506296562662), SLIPWISE_R(-5.6602363006619594e-05), SLIPWISE_R(0.0012538524399875299), SLIPWISE_R(8.825950485641242e-05), SLIPWISE_R(0.049156997574084094), SLIPWISE_R(-0.00013253697317135445), SLIPWISE_R(-0.21265234042012646)}
 };
+/* Slip parameters that wander about what was learned: which, and the variance that a process of each time constant [s]
+ * gives them. Their mean over a prediction has another normal deviate each. */
+#define SLIPWISE_WANDERING 0
+#define SLIPWISE_WANDER_TIMES 0
+static const int slipwise_wandering[SLIPWISE_SLOTS(SLIPWISE_WANDERING)] = {0};
+static const slipwise_real slipwise_wander_times[SLIPWISE_SLOTS(SLIPWISE_WANDER_TIMES)] = {SLIPWISE_R(0.0)};
+static const slipwise_real slipwise_wander_variance[SLIPWISE_SLOTS(SLIPWISE_WANDERING)]
+                                                   [SLIPWISE_SLOTS(SLIPWISE_WANDER_TIMES)] = {
+    {SLIPWISE_R(0)}
+};
 /* What held-out predictions of these horizons [s] needed: ln of the growth of the covariance, and of the degrees of
  * freedom of the Student t that has it. */
 #define SLIPWISE_TAILS 3
@@ -614,6 +626,19 @@ static inline void slipwise_tail(slipwise_real horizon, slipwise_real *growth, s
   }
 }
 
+/* Standard deviation of the mean of such a parameter over a prediction of this horizon [s]. */
+static inline slipwise_real slipwise_wander_std(int place, slipwise_real horizon) {
+  slipwise_real variance = 0;
+  int i;
+  for (i = 0; i < SLIPWISE_WANDER_TIMES; ++i) {
+    const slipwise_real s = horizon / slipwise_wander_times[i];
+    const slipwise_real mean = s < SLIPWISE_SMALL_SPAN ? 1 - s / 3 * (1 - s / 4 * (1 - s / 5))
+                                                       : 2 / s * (1 + SLIPWISE_MATH(expm1)(-s) / s);
+    variance += mean * slipwise_wander_variance[place][i];
+  }
+  return SLIPWISE_MATH(sqrt)(variance);
+}
+
 /* Adds a a'. */
 static inline void slipwise_add_square(slipwise_real sum[3][3], const slipwise_real a[3]) {
   int i, j;
@@ -624,8 +649,9 @@ static inline void slipwise_add_square(slipwise_real sum[3][3], const slipwise_r
   }
 }
 
-/* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, slip noise,
- * the noise of two measured poses, and growth. It costs 2 * SLIPWISE_ROOTS + 1 predictions. */
+/* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, slip that
+ * wanders about them, slip noise, the noise of two measured poses, and growth. It costs 2 * (SLIPWISE_ROOTS +
+ * SLIPWISE_WANDERING) + 1 predictions. */
 static inline int slipwise_predict_covariance(const slipwise_commands *commands, const slipwise_window *window,
                                               slipwise_pose *pose, slipwise_drive *drive,
                                               slipwise_real covariance[3][3]) {
@@ -639,13 +665,18 @@ static inline int slipwise_predict_covariance(const slipwise_commands *commands,
   if (status != SLIPWISE_OK) {
     return status;
   }
-  for (root = 0; root < SLIPWISE_ROOTS; ++root) { /* derivatives along the roots: central differences */
+  for (root = 0; root < SLIPWISE_ROOTS + SLIPWISE_WANDERING; ++root) { /* derivatives along the roots: central differences */
     slipwise_real change[3] = {0, 0, 0};
     for (side = -1; side <= 1; side += 2) {
       slipwise_walk shifted;
       slipwise_model other;
       for (i = 0; i < SLIPWISE_PARAMETER_COUNT; ++i) {
-        by[i] = (slipwise_real)side * SLIPWISE_DIFFERENCE * slipwise_roots[root][i];
+        by[i] = root < SLIPWISE_ROOTS ? (slipwise_real)side * SLIPWISE_DIFFERENCE * slipwise_roots[root][i] : 0;
+      }
+      if (root >= SLIPWISE_ROOTS) {
+        const int place = root - SLIPWISE_ROOTS;
+        by[slipwise_wandering[place]] = (slipwise_real)side * SLIPWISE_DIFFERENCE *
+                                        slipwise_wander_std(place, window->end - window->start);
       }
       other = slipwise_model_shifted(by);
       slipwise_run(&other, commands, window, 0, &shifted);

@@ -18,10 +18,6 @@ void bind_coloured_slip(nb::module_& m) {
       .def_rw("time_constants", &ColouredSlipSettings::time_constants)
       .def_rw("white", &ColouredSlipSettings::white)
       .def_rw("weighing", &ColouredSlipSettings::weighing);
-  nb::class_<SlipWander>(m, "SlipWander", "One guess of how slip wanders: Gauss-Markov processes of one time constant.")
-      .def_ro("drift", &SlipWander::drift)
-      .def_ro("turn", &SlipWander::turn)
-      .def_ro("time_constant", &SlipWander::time_constant);
   nb::class_<MotionBelief>(m, "MotionBelief", "A model as it is believed before the segments that it is asked about.")
       .def(
           "__init__",
@@ -33,8 +29,10 @@ void bind_coloured_slip(nb::module_& m) {
   nb::class_<ExpectedPose>(m, "ExpectedPose", "Where a segment is expected to end.")
       .def_ro("pose", &ExpectedPose::pose)
       .def_ro("covariance", &ExpectedPose::covariance);
+  nb::class_<SlipNow>(m, "SlipNow", "Where slip is at some moment, under each guess of how it wanders.");
   nb::class_<ColouredSlip>(m, "ColouredSlip", "Slip that wanders about what was learned.")
       .def(nb::init<const ColouredSlipSettings&>(), "settings"_a)
+      .def(nb::init<const WanderLaw&>(), "law"_a)
       .def(nb::init<const ColouredSlip&>(), "other"_a)
       .def(
           "learn",
@@ -42,13 +40,13 @@ void bind_coloured_slip(nb::module_& m) {
              const std::vector<Segment>& segments) { slip.learn(belief, inputs, segments); },
           "belief"_a, "inputs"_a, "segments"_a, "Weighs the candidates by the last segment, foretold from the others.")
       .def(
-          "predict",
+          "now",
           [](const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
-             const std::vector<Segment>& recent,
-             const Segment& segment) { return slip.predict(belief, inputs, recent, segment); },
-          "belief"_a, "inputs"_a, "recent"_a, "segment"_a, "Predicts a segment from what recent ones say of the slip.")
-      .def_prop_ro("candidates", &ColouredSlip::candidates)
-      .def_prop_ro("weights", &ColouredSlip::weights);
+             const std::vector<Segment>& recent) { return slip.now(belief, inputs, recent); },
+          "belief"_a, "inputs"_a, "recent"_a, "What recent segments say of the slip after them.")
+      .def("predict", &ColouredSlip::predict, "belief"_a, "inputs"_a, "now"_a, "segment"_a,
+           "Predicts a segment from where slip is.")
+      .def_prop_ro("law", &ColouredSlip::law);
 }
 
 }  // namespace slipwise::bindings

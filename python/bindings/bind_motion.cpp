@@ -6,6 +6,7 @@
 
 #include "bindings.hpp"
 #include "slipwise/motion/motion_model.hpp"
+#include "slipwise/motion/slip_wander.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -50,6 +51,40 @@ void bind_motion(nb::module_& m) {
       .def(
           "chain", [](const MotionModel& model, const Eigen::VectorXd& parameters) { return model.chain(parameters); },
           "parameters"_a);
+  nb::class_<SlipWander>(m, "SlipWander", "One guess of how slip wanders: Gauss-Markov processes of one time constant.")
+      .def(
+          "__init__",
+          [](SlipWander* self, double drift, double turn, double time_constant) {
+            new (self) SlipWander{drift, turn, time_constant};
+          },
+          "drift"_a, "turn"_a, "time_constant"_a)
+      .def_ro("drift", &SlipWander::drift)
+      .def_ro("turn", &SlipWander::turn)
+      .def_ro("time_constant", &SlipWander::time_constant);
+  nb::class_<WanderLaw>(m, "WanderLaw", "How slip wanders: guesses and how likely each is.")
+      .def(
+          "__init__",
+          [](WanderLaw* self, const std::vector<SlipWander>& candidates, const Eigen::VectorXd& weights) {
+            new (self) WanderLaw{candidates, weights};
+            check_wander(*self);
+          },
+          "candidates"_a, "weights"_a)
+      .def_ro("candidates", &WanderLaw::candidates)
+      .def_ro("weights", &WanderLaw::weights);
+  nb::class_<WanderingTerms>(m, "WanderingTerms", "The slip parameters that may wander.")
+      .def_ro("places", &WanderingTerms::places)
+      .def("variances", &WanderingTerms::variances, "wander"_a, "Under one guess, before anything recent is known.");
+  m.def(
+      "wandering_terms",
+      [](const MotionModel& model, const Eigen::VectorXd& prior_std) { return wandering_terms(model, prior_std); },
+      "model"_a, "prior_std"_a);
+  m.def(
+      "covariance_over",
+      [](const MotionModel& model, const Eigen::MatrixXd& learned, const WanderLaw& law,
+         const Eigen::VectorXd& prior_std,
+         double seconds) { return covariance_over(model, learned, law, prior_std, seconds); },
+      "model"_a, "learned"_a, "law"_a, "prior_std"_a, "seconds"_a,
+      "Covariance of the parameters' mean over some time, in which slip wanders about them.");
 }
 
 }  // namespace slipwise::bindings

@@ -120,12 +120,15 @@ void bind_uncertain(nb::module_& m) {
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             double period, double gx, double gy, const CommandLimits* limits) {
-            new (self)
-                UncertainModel{model, parameters, {covariance, noise, scale, growth}, setting(period, gx, gy, limits)};
+             const WanderLaw& wander, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
+             const CommandLimits* limits) {
+            new (self) UncertainModel{model,
+                                      parameters,
+                                      {covariance, noise, scale, growth, wander, prior_std},
+                                      setting(period, gx, gy, limits)};
           },
-          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "period"_a, "gx"_a, "gy"_a,
-          "limits"_a.none(), nb::keep_alive<1, 2>());
+          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "wander"_a, "prior_std"_a,
+          "period"_a, "gx"_a, "gy"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,17 +28,18 @@ class Path:
 
     t: Floats  # s, in the time of the inputs
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
-    covariance: Floats  # [N, 3, 3] parameters, slip noise and the noise of two measured poses
+    covariance: Floats  # [N, 3, 3] parameters, slip that wanders, slip noise, and two measured poses' noise
     dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
 
 
-def predict(
+def predict(  # noqa: PLR0913  (all but the first two are options)
     model: Model,
     commands: Inputs | ArrayLike,
     *,
     horizon: float,
     start: float | None = None,
     initial: tuple[float, float] | None = None,
+    slip_now: _core.SlipNow | None = None,
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -49,6 +51,8 @@ def predict(
         start: when the prediction starts [s]; by default at the first command.
         initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the
             commands.
+        slip_now: where slip that wanders is at the start, as `slip_seen` says; by default nothing recent is
+            known of it.
 
     Raises:
         SettingsError: the horizon is not positive, the start lies before the first command, or the commands
@@ -65,17 +69,32 @@ def predict(
         raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
     track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
     known = _known_drive(begin, initial)
+    coloured = _core.ColouredSlip(model.wander)
+    now = coloured.now(model.belief, track, []) if slip_now is None else slip_now
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
         if known is not None:
             segment = segment.with_known_drive(*known)
-        at = _core.linearize_segment(model.motion, model.mean, track, segment)
-        poses.append(at.predicted.vector())
-        covariance.append(prediction_covariance(model, at, seconds))
+        expected = coloured.predict(model.belief, track, now, segment)
+        poses.append(expected.pose)
+        covariance.append(expected.covariance * tail_at(model, seconds).growth)
     dof = np.array([tail_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
+
+
+def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) -> _core.SlipNow:
+    """Return what the last measured windows say of the slip now, for a prediction that starts after them.
+
+    Args:
+        model: a learned model.
+        inputs: held inputs of the kind that the model was learned from, since before the first window.
+        windows: between two measured poses, in order of time, as long as those that the model was learned
+            from (`coloured.window` of the model file). Those of the last 30 s tell all there is to tell.
+    """
+    track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
+    return _core.ColouredSlip(model.wander).now(model.belief, track, list(windows))
 
 
 def _known_drive(
@@ -87,13 +106,6 @@ def _known_drive(
     v, omega = initial
     held = _core.InputTrack(*(np.array([value]) for value in (begin - LONGEST_OFFSET, v, 0.0, omega)))
     return held, begin, _core.BodyTwist(v, 0.0, omega)
-
-
-def prediction_covariance(model: Model, at: _core.SegmentLinearization, horizon: float) -> Floats:
-    """Covariance of one predicted pose, grown as held-out predictions of this horizon [s] needed."""
-    scale = np.array(model.content.noise.scale)
-    covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
-    return np.asarray(covariance * tail_at(model, horizon).growth, dtype=np.float64)
 
 
 def tail_at(model: Model, horizon: float) -> Tail:

@@ -30,6 +30,9 @@ class Made:
     fraction: float = 0.05
     psd_motion: float = 1e-3
     psd_time: float = 0.0
+    wander: tuple[float, float, float] | None = (
+        None  # drift, turn [-] and time constant [s] of wandering slip
+    )
     growth: Mapping[float, float] = field(default_factory=dict)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     speed: tuple[float, float] = SPEED
@@ -58,6 +61,13 @@ def _limits(lanes: Mapping[str, Mapping[str, float]]) -> dict[str, object]:
         for lane in ("speed", "yaw_rate", "side")
     }
     return {**learned, "track": 0.6, "track_std": 0.01, "gain_v": 1.1, "gain_omega": 0.9}
+
+
+def _coloured(drift: float, turn: float, time_constant: float) -> dict[str, object]:
+    """The named guess, a slower one, and that slip does not wander."""
+    guesses = ((0.0, 0.0, 1.0, 0.2), (drift, turn, time_constant, 0.5), (0.0, turn, 4.0 * time_constant, 0.3))
+    names = ("drift", "turn", "time_constant", "weight")
+    return {"window": 1.0, "candidates": [dict(zip(names, guess, strict=True)) for guess in guesses]}
 
 
 def make_model(made: Made) -> Model:
@@ -93,7 +103,7 @@ def make_model(made: Made) -> Model:
         for info in motion.parameters
     ]
     content = {
-        "slipwise_model": 2,
+        "slipwise_model": 3,
         "input": "command" if made.commands or made.response else "wheel",
         "slip": {
             "basis": made.basis.name,
@@ -117,6 +127,7 @@ def make_model(made: Made) -> Model:
             "scale": list(made.scale),
             "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
         },
+        "coloured": None if made.wander is None else _coloured(*made.wander),
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {
             "slipwise_version": "0.1.0",

@@ -3,19 +3,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 from sample_logs import Drive, held, simulated_log
+from sample_models import make_model, named
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.plain import plain_forecaster, vendor_forecaster
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
+from slipwise.logs.log import Inputs
 from slipwise.models import Model
 from slipwise.models.schema import Tail
-from slipwise.prediction import predict, tail_at
+from slipwise.prediction import predict, slip_seen, tail_at
 from slipwise.student import MOST_DOF
 
 BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
@@ -56,8 +60,42 @@ def test_prediction_is_the_cores_linearised_segment(model: Model) -> None:
     at = _core.linearize_segment(model.motion, model.mean, track, segment)
     assert path.poses[-1].tobytes() == at.predicted.vector().tobytes()
     scale = np.array(model.content.noise.scale)
-    covariance = _core.prediction_covariance(at, model.covariance, model.noise, scale)
+    covariance = _core.prediction_covariance(at, model.covariance_over(2.0), model.noise, scale)
     assert path.covariance[-1] == pytest.approx(covariance * tail_at(model, 2.0).growth)
+
+
+def test_slip_that_wanders_is_part_of_the_covariance_and_of_a_prediction_that_has_seen_it() -> None:
+    made = replace(
+        named("edd-2", lon__V=-0.05, ang__w=-0.3), wander=(0.2, 0.3, 20.0), fraction=0.0, psd_motion=1e-4
+    )
+    model, without = make_model(made), make_model(replace(made, wander=None))
+    inputs = held(np.arange(0.0, 20.0, 0.5), 1.0, 0.5)
+    moved = replace(made, values={"lon.V": -0.05, "ang.w": -0.15})
+    seen = windows_of(make_model(moved), inputs, 12)
+    start = {"horizon": 2.0, "start": seen[-1].end}
+    plain = predict(without, inputs, **start)
+    usual = predict(model, inputs, **start)
+    followed = predict(model, inputs, **start, slip_now=slip_seen(model, inputs, seen))
+    truth = predict(make_model(moved), inputs, **start)
+    assert usual.poses.tobytes() == plain.poses.tobytes()
+    assert (usual.covariance[-1].diagonal() > 1.2 * plain.covariance[-1].diagonal()).all()
+    assert followed.covariance[-1, 2, 2] < 0.8 * usual.covariance[-1, 2, 2]
+    errors = [abs(path.poses[-1, 2] - truth.poses[-1, 2]) for path in (usual, followed)]
+    assert errors[1] < 0.3 * errors[0]
+    with pytest.raises(ValueError, match="belongs to another model"):
+        predict(without, inputs, **start, slip_now=slip_seen(model, inputs, seen))
+
+
+def windows_of(model: Model, inputs: Inputs, count: int) -> list[_core.Segment]:
+    """Windows of 1 s as a robot of this model would drive them."""
+    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    windows = []
+    for start in range(count):
+        bare = _core.Segment(start, start + 1.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+        path = _core.integrate_segment(model.motion, model.mean, track, bare, _core.Integrator.Exact)
+        end = _core.Pose2(*path.poses[-1].tolist())
+        windows.append(_core.Segment(start, start + 1.0, end, None, 0.0, 0.0))
+    return windows
 
 
 def test_uncertainty_grows_along_the_path(model: Model) -> None:

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "slipwise/rollout/rollout_threads.hpp"
 
@@ -20,32 +21,65 @@ constexpr std::size_t kEntries = 6;
 constexpr std::array<std::array<std::size_t, 2>, kEntries> kPlaces{
     {{{0, 0}}, {{0, 1}}, {{1, 1}}, {{0, 2}}, {{1, 2}}, {{2, 2}}}};
 
-/// Adds d d^T for the derivative d of every pose along one root: central differences of two rollouts.
-void add_direction(const RolloutPaths& ahead, const RolloutPaths& behind, std::span<double> out) {
-  const std::size_t poses = ahead.x.size();
-  for (std::size_t i = 0; i < poses; ++i) {
-    const std::array<double, 3> d{(ahead.x[i] - behind.x[i]) / (2.0 * kStep),
-                                  (ahead.y[i] - behind.y[i]) / (2.0 * kStep),
-                                  (ahead.theta[i] - behind.theta[i]) / (2.0 * kStep)};
-    for (std::size_t e = 0; e < kEntries; ++e) {
-      out[e * poses + i] += d[kPlaces[e][0]] * d[kPlaces[e][1]];
-    }
-  }
-}
+/// What the parameters' errors and slip that wanders do to every pose.
+class ParameterShare {
+ public:
+  ParameterShare(const UncertainModel& model, const RolloutBatch<double>& batch, const RolloutOptions& options,
+                 std::span<double> out)
+      : model_(model), batch_(batch), options_(options), out_(out) {}
 
-void add_parameters(const UncertainModel& model, const RolloutBatch<double>& batch, const RolloutOptions& options,
-                    std::span<double> out) {
-  const Eigen::MatrixXd root = covariance_root(model.uncertainty.covariance);
-  for (Eigen::Index j = 0; j < root.cols(); ++j) {
-    if (root.col(j).isZero(0.0)) {
-      continue;
+  void add_learned() {
+    const Eigen::MatrixXd root = covariance_root(model_.uncertainty.covariance);
+    const std::vector<double> once(batch_.periods, 1.0);
+    for (Eigen::Index j = 0; j < root.cols(); ++j) {
+      if (!root.col(j).isZero(0.0)) {
+        add_direction(root.col(j), once);
+      }
     }
-    const Eigen::VectorXd step = kStep * root.col(j);
-    const RolloutProgram ahead(model.model, model.parameters + step, model.setting);
-    const RolloutProgram behind(model.model, model.parameters - step, model.setting);
-    add_direction(roll_paths(ahead, batch, options), roll_paths(behind, batch, options), out);
   }
-}
+
+  /// Slip that wanders acts on the pose after some time as its mean over that time does.
+  void add_wander() {
+    const WanderingTerms terms = terms_that_wander(model_);
+    for (Eigen::Index i = 0; i < terms.size(); ++i) {
+      const double prior_std = terms.prior_std[i];
+      std::vector<double> variances;  // in units of the prior's
+      for (std::size_t k = 1; k <= batch_.periods && prior_std > 0.0; ++k) {
+        const double seconds = static_cast<double>(k) * model_.setting.period;
+        variances.push_back(usual_variances(model_.uncertainty.wander, terms, seconds)[i] / (prior_std * prior_std));
+      }
+      if (!variances.empty() && variances.front() > 0.0) {
+        const Eigen::Index place = terms.places[static_cast<std::size_t>(i)];
+        add_direction(prior_std * Eigen::VectorXd::Unit(model_.parameters.size(), place), variances);
+      }
+    }
+  }
+
+ private:
+  /// Adds d d^T, times a variance per period, for the derivative d of every pose along one direction of the parameters:
+  /// central differences of two rollouts.
+  void add_direction(const Eigen::VectorXd& direction, std::span<const double> variances) {
+    const RolloutPaths ahead = along(kStep * direction), behind = along(-kStep * direction);
+    const std::size_t poses = ahead.x.size();
+    for (std::size_t i = 0; i < poses; ++i) {
+      const std::array<double, 3> d{(ahead.x[i] - behind.x[i]) / (2.0 * kStep),
+                                    (ahead.y[i] - behind.y[i]) / (2.0 * kStep),
+                                    (ahead.theta[i] - behind.theta[i]) / (2.0 * kStep)};
+      for (std::size_t e = 0; e < kEntries; ++e) {
+        out_[e * poses + i] += variances[i / batch_.rollouts] * d[kPlaces[e][0]] * d[kPlaces[e][1]];
+      }
+    }
+  }
+
+  RolloutPaths along(const Eigen::VectorXd& step) const {
+    return roll_paths({model_.model, model_.parameters + step, model_.setting}, batch_, options_);
+  }
+
+  const UncertainModel& model_;
+  const RolloutBatch<double>& batch_;
+  const RolloutOptions& options_;
+  std::span<double> out_;
+};
 
 /// Noise of one rollout as it goes along (derivations.md, sections 3 and 5): sums carried back to the world's origin.
 class NoiseSums {
@@ -95,7 +129,9 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>&
   const RolloutPaths paths = roll_paths({model.model, model.parameters, model.setting}, batch, options);
   const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
   std::ranges::fill(out, 0.0);
-  add_parameters(model, batch, options, out);
+  ParameterShare share(model, batch, options, out);
+  share.add_learned();
+  share.add_wander();
   const Eigen::Vector3d root = model.uncertainty.scale.cwiseSqrt();
   share_out(batch.rollouts, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {

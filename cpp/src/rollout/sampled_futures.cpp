@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing parameters and slip noise.
+// Drawing parameters, slip that wanders and slip noise.
 #include "slipwise/rollout/sampled_futures.hpp"
 
 #include <array>
@@ -30,9 +30,18 @@ constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the roll
 /// Drives along a path again, with noise added to the tangent of every period.
 class NoisyPath {
  public:
-  NoisyPath(const UncertainModel& model, std::mt19937_64 random) : model_(model), random_(random) {
+  NoisyPath(const UncertainModel& model, const WanderingTerms& terms, std::mt19937_64 random)
+      : model_(model), terms_(terms), random_(random) {
     for (double& part : constant_) {
       part = normal_(random_);
+    }
+    const WanderLaw& law = model.uncertainty.wander;
+    if (terms.size() > 0) {
+      std::discrete_distribution<std::size_t> which(law.weights.begin(), law.weights.end());
+      const SlipWander& wander = law.candidates[which(random_)];
+      kept_ = std::exp(-model.setting.period / wander.time_constant);
+      usual_ = terms.variances(wander).cwiseSqrt();
+      deviation_ = usual_.unaryExpr([&](double std) { return std * normal_(random_); });
     }
   }
 
@@ -44,14 +53,30 @@ class NoisyPath {
       tangent[static_cast<Eigen::Index>(c)] +=
           widened * (std::sqrt(noise.variance[c]) * normal_(random_) + noise.constant[c] * constant_[c]);
     }
+    wander(tangent, drive);
     return compose(pose, exp(tangent));
   }
 
  private:
+  /// Adds the slip that wanders, which holds still over a period (derivations.md, section 18).
+  void wander(Eigen::Vector3d& tangent, const Eigen::Vector3d& drive) {
+    for (Eigen::Index i = 0; i < terms_.size(); ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      const double motion = terms_.of_turn[k] ? drive.z() : drive.x();
+      tangent[static_cast<Eigen::Index>(terms_.channels[k])] +=
+          std::sqrt(model_.uncertainty.growth) * deviation_[i] * motion;
+      deviation_[i] = kept_ * deviation_[i] + std::sqrt(1.0 - kept_ * kept_) * usual_[i] * normal_(random_);
+    }
+  }
+
   const UncertainModel& model_;
+  const WanderingTerms& terms_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   std::array<double, 3> constant_{};
+  double kept_ = 0.0;          ///< of the deviation over a period
+  Eigen::VectorXd usual_;      ///< standard deviations of the terms that wander
+  Eigen::VectorXd deviation_;  ///< of these terms now
 };
 
 }  // namespace
@@ -82,13 +107,14 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
                                 " numbers in x, y and theta each, got " + std::to_string(outputs.x.size()));
   }
   const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
+  const WanderingTerms terms = terms_that_wander(model);
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
       const RolloutProgram program(model.model, parameters.col(static_cast<Eigen::Index>(s)), model.setting);
       const RolloutPaths paths = roll_paths(program, batch, {1, options.level});
       for (std::size_t n = 0; n < batch.rollouts; ++n) {
-        NoisyPath noisy(model, generator(seed, s, n));
+        NoisyPath noisy(model, terms, generator(seed, s, n));
         const Pose2 start = batch.starts[batch.starts.size() > 1 ? n : 0].pose;
         Pose2 before = start, driven = start, pose = start;
         for (std::size_t k = 0; k < batch.periods; ++k) {

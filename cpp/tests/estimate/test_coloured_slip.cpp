@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "simulated_drive.hpp"
+#include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/coloured_slip.hpp"
 
 namespace slipwise {
@@ -49,6 +50,11 @@ std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdi
   return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first + with));
 }
 
+ExpectedPose expected(const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
+                      std::span<const Segment> recent, const Segment& segment) {
+  return slip.predict(belief, inputs, slip.now(belief, inputs, recent), segment);
+}
+
 struct Followed {
   ColouredSlip slip;
   double error = 0.0;        ///< mean squared heading error with what the last segments say
@@ -57,16 +63,16 @@ struct Followed {
 };
 
 Followed follow(const MotionBelief& belief, const InputTrack& inputs, const std::vector<Segment>& segments) {
-  Followed found{.slip = ColouredSlip({})};
+  Followed found{.slip = ColouredSlip(ColouredSlipSettings{})};
   for (std::ptrdiff_t i = 0; i < std::ssize(segments); ++i) {
     const Segment& next = segments[static_cast<std::size_t>(i)];
     if (2 * i >= std::ssize(segments)) {
-      const ExpectedPose expected = found.slip.predict(belief, inputs, before(segments, i, 0), next);
-      const ExpectedPose plain = found.slip.predict(belief, inputs, {}, next);
-      const Eigen::Vector3d error = next.measured.vector() - expected.pose;
+      const ExpectedPose with = expected(found.slip, belief, inputs, before(segments, i, 0), next);
+      const ExpectedPose plain = expected(found.slip, belief, inputs, {}, next);
+      const Eigen::Vector3d error = next.measured.vector() - with.pose;
       found.error += std::pow(error.z(), 2);
       found.plain_error += std::pow(next.measured.theta - plain.pose.z(), 2);
-      found.nis += error.dot(expected.covariance.llt().solve(error)) * 2.0 / static_cast<double>(segments.size());
+      found.nis += error.dot(with.covariance.llt().solve(error)) * 2.0 / static_cast<double>(segments.size());
     }
     found.slip.learn(belief, inputs, before(segments, i, 1));
   }
@@ -84,7 +90,7 @@ TEST_CASE("slip that holds still is not said to wander, and predictions stay as 
   const MotionBelief belief = known_belief(s.model);
   const auto segments = drive(s.model, s.inputs, 300, [](int) { return Eigen::Vector2d(-0.1, -0.3); });
   const Followed found = follow(belief, s.inputs, segments);
-  CHECK(found.slip.weights()[0] > 0.7);
+  CHECK(found.slip.law().weights[0] > 0.7);
   CHECK(found.error < 1.05 * found.plain_error);
   CHECK(found.nis == doctest::Approx(3.0).epsilon(0.2));
 }
@@ -103,8 +109,8 @@ TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted
                               [&](int i) { return Eigen::Vector2d(-0.1, -0.3 + wander[static_cast<std::size_t>(i)]); });
   const Followed found = follow(belief, s.inputs, segments);
   double turning = 0.0;
-  for (std::size_t i = 0; i < found.slip.candidates().size(); ++i) {
-    turning += found.slip.candidates()[i].turn > 0.0 ? found.slip.weights()[static_cast<Eigen::Index>(i)] : 0.0;
+  for (std::size_t i = 0; i < found.slip.law().candidates.size(); ++i) {
+    turning += found.slip.law().candidates[i].turn > 0.0 ? found.slip.law().weights[static_cast<Eigen::Index>(i)] : 0.0;
   }
   CHECK(turning > 0.9);
   CHECK(found.error < 0.6 * found.plain_error);
@@ -116,13 +122,13 @@ TEST_CASE("what was seen is let go with time, and the covariance comes back to w
   const Setting s;
   const MotionBelief belief = known_belief(s.model);
   const auto segments = drive(s.model, s.inputs, 12, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
-  const ColouredSlip slip({.fractions = {0.3}, .time_constants = {20.0}, .white = 1e-6});
+  const ColouredSlip slip(ColouredSlipSettings{.fractions = {0.3}, .time_constants = {20.0}, .white = 1e-6});
   const std::vector<double> start{0.0}, v{1.0}, vy{0.0}, omega{0.5};
   const InputTrack steady(start, v, vy, omega);
   const auto shift = [&](double after) {
     const Segment segment{.start = 13.0 + after, .end = 14.0 + after};
-    const ExpectedPose with = slip.predict(belief, steady, segments, segment);
-    const ExpectedPose without = slip.predict(belief, steady, {}, segment);
+    const ExpectedPose with = expected(slip, belief, steady, segments, segment);
+    const ExpectedPose without = expected(slip, belief, steady, {}, segment);
     return std::pair(std::abs(with.pose.z() - without.pose.z()), with.covariance(2, 2) / without.covariance(2, 2));
   };
   CHECK(shift(0.0).first > 2.0 * shift(20.0).first);
@@ -136,16 +142,43 @@ TEST_CASE("a model without linear terms is predicted as it is") {
   const MotionBelief belief{
       plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise, Eigen::Vector3d::Ones()};
   const auto segments = drive(s.model, s.inputs, 13, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
-  ColouredSlip slip({});
+  ColouredSlip slip(ColouredSlipSettings{});
   slip.learn(belief, s.inputs, segments);
   const auto at = linearize_segment(plain, Eigen::VectorXd(0), s.inputs, segments.back());
-  CHECK(slip.predict(belief, s.inputs, before(segments, 12, 0), segments.back()).pose == at.predicted.vector());
+  CHECK(expected(slip, belief, s.inputs, before(segments, 12, 0), segments.back()).pose == at.predicted.vector());
+}
+
+TEST_CASE("a law that is read back predicts to the last bit as the one learned, and what is usual is its covariance") {
+  const Setting s;
+  const MotionBelief belief = known_belief(s.model);
+  const auto segments = drive(s.model, s.inputs, 40, [](int i) { return Eigen::Vector2d(-0.1, i < 20 ? -0.3 : -0.2); });
+  ColouredSlip slip(ColouredSlipSettings{});
+  for (std::ptrdiff_t i = 0; i < 39; ++i) {
+    slip.learn(belief, s.inputs, before(segments, i, 1));
+  }
+  const ColouredSlip read(slip.law());
+  for (const auto& recent : {before(segments, 39, 0), std::span<const Segment>{}}) {
+    const ExpectedPose one = expected(slip, belief, s.inputs, recent, segments.back());
+    const ExpectedPose other = expected(read, belief, s.inputs, recent, segments.back());
+    CHECK(one.pose == other.pose);
+    CHECK(one.covariance == other.covariance);
+  }
+  const auto at = linearize_segment(s.model, belief.estimate.mean, s.inputs, segments.back());
+  const Eigen::MatrixXd over = covariance_over(s.model, belief.estimate.covariance, slip.law(), belief.prior_std, 1.0);
+  const Eigen::Matrix3d stated = prediction_covariance(at, over, belief.shape, belief.noise_scale);
+  const ExpectedPose usual = expected(read, belief, s.inputs, {}, segments.back());
+  CHECK((usual.covariance - stated).norm() < 1e-12 * stated.norm());
+  CHECK(usual.pose == at.predicted.vector());
+  CHECK_THROWS_AS(read.predict(belief, s.inputs, {}, segments.back()), std::invalid_argument);
 }
 
 TEST_CASE("sizes that are no sizes are refused") {
-  CHECK_THROWS_AS(ColouredSlip({.fractions = {0.1, 0.0}}), std::invalid_argument);
-  CHECK_THROWS_AS(ColouredSlip({.time_constants = {std::numeric_limits<double>::quiet_NaN()}}), std::invalid_argument);
-  CHECK_THROWS_AS(ColouredSlip({.fractions = {}}), std::invalid_argument);
+  CHECK_THROWS_AS(ColouredSlip(ColouredSlipSettings{.fractions = {0.1, 0.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(ColouredSlip(ColouredSlipSettings{.time_constants = {std::numeric_limits<double>::quiet_NaN()}}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(ColouredSlip(ColouredSlipSettings{.fractions = {}}), std::invalid_argument);
+  const SlipWander one{0.1, 0.0, 5.0};
+  CHECK_THROWS_AS(ColouredSlip(WanderLaw{{one}, Eigen::VectorXd::Constant(1, 0.5)}), std::invalid_argument);
 }
 
 }  // namespace

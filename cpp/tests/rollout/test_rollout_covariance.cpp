@@ -27,8 +27,15 @@ UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& 
           {.covariance = covariance,
            .noise = {.psd_time = {1e-4, 2e-4, 1e-4}, .psd_motion = {2e-4, 1e-4, 3e-4}, .fraction = {0.01, 0.02, 0.01}},
            .scale = {1.5, 0.7, 2.0},
-           .growth = 1.2},
+           .growth = 1.2,
+           .wander = {{{0.0, 0.0, 1.0}, {0.1, 0.3, 0.8}, {0.3, 0.0, 20.0}}, Eigen::Vector3d(0.2, 0.5, 0.3)},
+           .prior_std = Eigen::VectorXd::Constant(model.size(), 0.2)},
           {kPeriod}};
+}
+
+Eigen::MatrixXd covariance_at(const UncertainModel& model, double seconds) {
+  const ModelUncertainty& known = model.uncertainty;
+  return covariance_over(model.model, known.covariance, known.wander, known.prior_std, seconds);
 }
 
 Eigen::Matrix3d matrix_at(const std::vector<double>& entries, std::size_t poses, std::size_t i) {
@@ -53,7 +60,7 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
         const auto at = linearize_segment(model, uncertain.parameters, commands.track(n, past), segment);
         const Eigen::Matrix3d root = uncertain.uncertainty.scale.cwiseSqrt().asDiagonal();
         const Eigen::Matrix3d from_parameters =
-            at.by_parameter * uncertain.uncertainty.covariance * at.by_parameter.transpose();
+            at.by_parameter * covariance_at(uncertain, segment.end) * at.by_parameter.transpose();
         const Eigen::Matrix3d from_noise = root * slip_covariance(at.path, uncertain.uncertainty.noise) * root;
         const Eigen::Matrix3d expected = 1.2 * (from_parameters + from_noise);
         const Eigen::Matrix3d found = matrix_at(entries, 4 * 60, 59 * 4 + n);
@@ -75,7 +82,8 @@ TEST_CASE("without noise the parameters' share is exact to the difference's step
   for (std::size_t n = 0; n < 3; ++n) {
     const auto at =
         linearize_segment(model, uncertain.parameters, commands.track(n, {}), {.start = 0.0, .end = 40 * kPeriod});
-    const Eigen::Matrix3d expected = at.by_parameter * uncertain.uncertainty.covariance * at.by_parameter.transpose();
+    const Eigen::Matrix3d expected =
+        at.by_parameter * covariance_at(uncertain, 40 * kPeriod) * at.by_parameter.transpose();
     CHECK((matrix_at(entries, 3 * 40, 39 * 3 + n) - expected).norm() < 1e-6 * expected.norm());
   }
 }
@@ -124,6 +132,12 @@ TEST_CASE("an uncertainty that does not fit is refused") {
   std::vector<double> entries(6 * 6), few(5);
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), few), std::invalid_argument);
   CHECK_THROWS_AS(sample_futures(uncertain, commands.batch(kOrigin), 1, {few, few, few}), std::invalid_argument);
+  uncertain.uncertainty.prior_std.resize(0);
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
+  uncertain.uncertainty.wander.weights[0] = 2.0;
+  CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
+  uncertain.uncertainty.wander = {};
+  CHECK_NOTHROW(rollout_covariance(uncertain, commands.batch(kOrigin), entries));
   uncertain.uncertainty.scale[0] = -1.0;
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
   uncertain.uncertainty.covariance = Eigen::Matrix3d::Identity();

@@ -147,6 +147,7 @@ def _content(
         parameters=_parameters(learned.belief),
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
+        coloured=_coloured(learned.belief, windows.length),
         range=_range(windows.drive),
         weights=dict(zip(bases, map(float, learned.belief.weights), strict=False)),
         provenance=schema.Provenance(
@@ -197,6 +198,19 @@ def _noise(learned: _Learned, settings: Settings) -> schema.Noise:
         scale=learned.belief.noise_scale.tolist(),
         tails=learned.tails,
     )
+
+
+def _coloured(belief: Belief, window: float) -> schema.Coloured | None:
+    if belief.coloured is None:
+        return None
+    law = belief.coloured.law
+    candidates = [
+        schema.Wander(
+            drift=wander.drift, turn=wander.turn, time_constant=wander.time_constant, weight=float(weight)
+        )
+        for wander, weight in zip(law.candidates, law.weights, strict=True)
+    ]
+    return schema.Coloured(window=window, candidates=candidates)
 
 
 def _range(drive: tuple[DriveRun, ...]) -> schema.Range:

@@ -33,6 +33,7 @@ class Forecaster:
     noise: _core.MotionNoise
     belief: Callable[[int], Belief]  # asked for in the order learned: the number of windows never decreases
     starts_from_wheels: bool  # the drive's measured twist at the start is used
+    follows: bool = True  # slip that wanders is followed through the last windows before the start
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
@@ -53,6 +54,7 @@ class _Draft:
     in_sample_counts: Ints
     pose: Floats
     covariance: Floats
+    usual: Floats  # squared length of the error where nothing recent is known of slip that wanders
     in_sample: Floats
     structure: Ints  # that predicted: the errors of each are a population of their own
 
@@ -90,6 +92,7 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
         in_sample_counts,
         np.empty((size, 3)),
         np.empty((size, 3, 3)),
+        np.empty(size),
         np.empty((size, 3)),
         np.zeros(size, dtype=np.int64),
     )
@@ -100,21 +103,29 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
     targets, position = draft.targets, int(draft.targets.position[i])
     track = targets.track(i, belief.limited)
     draft.structure[i] = belief.structure
-    if belief.coloured is None:
+    if belief.coloured is None or not forecaster.follows:
         draft.recent[i] = 0
+    if belief.coloured is None:
         at = _core.linearize_segment(belief.motion, belief.mean, track, targets.segments[i])
         draft.pose[i] = at.predicted.vector()
         draft.covariance[i] = _core.prediction_covariance(
             at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
         )
+        draft.usual[i] = _squared(targets, i, draft.pose[i], draft.covariance[i])
         return
-    expected = belief.coloured.predict(
-        motion_belief(belief, forecaster.noise),
-        track,
-        learned.recent(int(draft.recent[i]), position, float(targets.start[i])),
-        targets.segments[i],
+    known = motion_belief(belief, forecaster.noise)
+    recent = learned.recent(int(draft.recent[i]), position, float(targets.start[i]))
+    followed, usual = (
+        belief.coloured.predict(known, track, belief.coloured.now(known, track, seen), targets.segments[i])
+        for seen in (recent, [])
     )
-    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
+    draft.pose[i], draft.covariance[i] = followed.pose, followed.covariance
+    draft.usual[i] = _squared(targets, i, usual.pose, usual.covariance)
+
+
+def _squared(targets: WindowSet, i: int, pose: Floats, covariance: Floats) -> float:
+    error = residual(targets.measured[i : i + 1], pose[None])
+    return float(normalised_squared(error, covariance[None])[0])
 
 
 def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
@@ -145,6 +156,7 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         covariance=draft.covariance * tails.growth[:, None, None],
         growth=tails.growth,
         dof=tails.dof,
+        usual_nis=draft.usual,
         structure=draft.structure,
         measured=targets.measured,
         learned_until=_learned_until(
@@ -166,8 +178,11 @@ def _tails_of_each(known: Ints, squared: Floats, structure: Ints) -> Tails:
 
 
 def final_tail(predictions: Predictions, structure: int) -> Tail:
-    """Growth and degrees of freedom at this horizon from all held-out windows of the structure kept."""
-    squared = predictions.stated_nis[predictions.structure == structure]
+    """Growth and degrees of freedom at this horizon from all held-out windows of the structure kept.
+
+    They go with a model file, which does not know where slip that wanders is.
+    """
+    squared = predictions.usual_nis[predictions.structure == structure]
     tails = learn_tails(np.array([len(squared)]), squared)
     return Tail(growth=float(tails.growth[0]), dof=float(tails.dof[0]))
 

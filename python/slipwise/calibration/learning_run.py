@@ -71,7 +71,9 @@ def _averaging(
         return passing.limits if isinstance(passing, StructureChoice) else None
 
     belief = coloured.belief if settings.coloured.learn else passing.belief
-    return LearningRun(belief, passing.finish, history, limits, bases, learner.dynamics, causal=True)
+    return LearningRun(
+        belief, lambda: belief(len(windows)), history, limits, bases, learner.dynamics, causal=True
+    )
 
 
 def _estimating(

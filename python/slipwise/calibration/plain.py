@@ -38,16 +38,21 @@ def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
 
 
 def model_forecaster(model: Model, drive: tuple[DriveRun, ...]) -> Forecaster:
-    """`model`: a model file as it is, for the runs of `drive`."""
-    size = len(model.mean)
-    noise = np.array(model.content.noise.scale)
+    """`model`: a model file as it is, for the runs of `drive`; where slip is now is not asked for."""
     belief = Belief(
-        model.motion, model.mean, model.covariance, noise, np.ones(size), np.ones(size), np.ones(1)
+        model.motion,
+        model.mean,
+        model.covariance,
+        np.array(model.content.noise.scale),
+        model.prior_std,
+        np.ones(len(model.mean)),
+        np.ones(1),
+        coloured=_core.ColouredSlip(model.wander),
     )
     if model.limits is not None:
         tracks = tuple(run.track for run in drive)
         belief = replace(belief, limited=LimitedDrive(tracks, model.limits))
-    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics)
+    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics, follows=False)
 
 
 def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:

@@ -27,6 +27,7 @@ class Predictions:
     covariance: Floats  # [N, 3, 3] of a Student t, growth included
     growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
     dof: Floats  # [N] degrees of freedom of the t, from the same windows; few are heavy tails
+    usual_nis: Floats  # [N] as `stated_nis`, had nothing recent been known of slip that wanders
     structure: Ints  # [N] of STRUCTURES, that predicted
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used

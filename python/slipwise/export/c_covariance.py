@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from importlib.resources import files
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import ModelError
@@ -77,20 +79,49 @@ def noise(model: Model) -> str:
 
 
 def covariance(model: Model) -> str:
-    """Return the roots of the parameters' covariance and the tails, and the prediction that uses them."""
+    """Return the roots of the parameters' covariance, how slip wanders, the tails, and what uses them."""
     rows = _roots(model)
     seconds = sorted(model.content.noise.tails) or [0.0]
     at = [(s, tail_at(model, s)) for s in seconds]
     tails = [(s, math.log(tail.growth), math.log(tail.dof)) for s, tail in at]
-    text = [f"    {{{_numbers(row)}}}" for row in rows] or ["    {SLIPWISE_R(0)}"]
+    wander = _wandering(model)
     return _filled(
         "covariance_template.h",
         {
             "ROOT_COUNT": str(len(rows)),
-            "ROOTS": ",\n".join(text),
+            "ROOTS": _rows(rows),
+            "WANDERING_COUNT": str(len(wander.places)),
+            "WANDERING": ", ".join(map(str, wander.places)) or "0",
+            "TIME_COUNT": str(len(wander.times)),
+            "TIMES": _numbers(wander.times) or _numbers([0.0]),
+            "VARIANCES": _rows(wander.variances.T.tolist()),
             "TAIL_COUNT": str(len(tails)),
             "TAILS": ", ".join(f"{{{_numbers(row)}}}" for row in tails),
         },
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Wandering:
+    """Slip parameters that wander, and how far by each time constant."""
+
+    places: list[int]
+    times: list[float]  # s
+    variances: NDArray[np.float64]  # [times, places]
+
+
+def _wandering(model: Model) -> _Wandering:
+    terms = _core.wandering_terms(model.motion, model.prior_std)
+    law = model.wander
+    times = sorted({wander.time_constant for wander in law.candidates})
+    variances = np.zeros((len(times), len(terms.places)))
+    for wander, weight in zip(law.candidates, law.weights, strict=True):
+        variances[times.index(wander.time_constant)] += weight * terms.variances(wander)
+    wanders, lasts = variances.any(axis=0), variances.any(axis=1)
+    return _Wandering(
+        np.array(terms.places, dtype=np.int64)[wanders].tolist(),
+        np.array(times)[lasts].tolist(),
+        variances[np.ix_(lasts, wanders)],
     )
 
 
@@ -101,6 +132,11 @@ def _roots(model: Model) -> list[list[float]]:
     values, vectors = np.linalg.eigh(model.covariance)
     rows = (vectors * np.sqrt(values.clip(0.0))).T
     return [row for row in rows.tolist() if any(row)]
+
+
+def _rows(rows: Sequence[Iterable[float]]) -> str:
+    """Return the rows of an array in C; none become one that is not used."""
+    return ",\n".join(f"    {{{_numbers(row)}}}" for row in rows) or "    {SLIPWISE_R(0)}"
 
 
 def _numbers(values: Iterable[float]) -> str:

@@ -25,11 +25,13 @@
 typedef double slipwise_real;
 #define SLIPWISE_MATH(function) function
 #define SLIPWISE_SMALL_TURN 0.03
+#define SLIPWISE_SMALL_SPAN 0.01
 #define SLIPWISE_DIFFERENCE 1e-3 /* of a standard deviation, for derivatives */
 #else
 typedef float slipwise_real;
 #define SLIPWISE_MATH(function) function##f
 #define SLIPWISE_SMALL_TURN 0.35f
+#define SLIPWISE_SMALL_SPAN 0.2f
 #define SLIPWISE_DIFFERENCE 0.25f
 #endif
 #define SLIPWISE_R(number) ((slipwise_real)(number))

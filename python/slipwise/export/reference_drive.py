@@ -53,22 +53,24 @@ def motion_covariance(model: Model, drive: tuple[float, float], seconds: float) 
     """
     model, noise = model.body, model.noise
     slip_only = _core.MotionNoise(noise.psd_time, noise.psd_motion, noise.fraction, 0.0, 0.0)
-    covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance)
+    covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance_over(seconds))
     return np.asarray(covariance * tail_at(model, seconds).growth, dtype=np.float64)
 
 
 def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Floats:
     """Return white noise of the slip rates [3] (m^2/s, m^2/s, rad^2/s) that is as large after `seconds`.
 
-    What is white already keeps its density. What lasts, the constant slip and the parameters' error, has a
-    variance of c t^2, and counts as density c * seconds.
+    What is white already keeps its density. What lasts, the constant slip, the parameters' error and the slip
+    that wanders about them, has a variance of c t^2 over that time, and counts as density c * seconds.
     """
     model, noise = model.body, model.noise
     white = _core.MotionNoise(noise.psd_time, noise.psd_motion, _NO_NOISE, 0.0, 0.0)
     lasting = _core.MotionNoise(_NO_NOISE, _NO_NOISE, noise.fraction, 0.0, 0.0)
     at = _settled(model, drive, _BRIEF)
     density = np.diag(_spread(model, at, white, np.zeros_like(model.covariance))) / _BRIEF
-    density = density + np.diag(_spread(model, at, lasting, model.covariance)) / _BRIEF**2 * seconds
+    density = (
+        density + np.diag(_spread(model, at, lasting, model.covariance_over(seconds))) / _BRIEF**2 * seconds
+    )
     return np.asarray(density * tail_at(model, seconds).growth, dtype=np.float64)
 
 

@@ -16,7 +16,7 @@ from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.models.limits import core_limits
-from slipwise.models.schema import SCHEMA_VERSION, ModelFile
+from slipwise.models.schema import READ_VERSIONS, SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
 
 MOUNT_PARAMETERS = 3  # the last ones, where there are any
@@ -117,6 +117,36 @@ class Model:
             noise.psd_time, noise.psd_motion, noise.fraction, noise.pose_std_xy, noise.pose_std_yaw
         )
 
+    @property
+    def prior_std(self) -> NDArray[np.float64]:
+        """Standard deviations of the parameters before the log, [parameters]."""
+        return np.array([parameter.prior_std for parameter in self.content.parameters], dtype=np.float64)
+
+    @cached_property
+    def belief(self) -> _core.MotionBelief:
+        """What the core predicts from: parameters, how sure they are, and the noise."""
+        estimate = _core.Estimate(self.mean, self.covariance)
+        scale = np.array(self.content.noise.scale)
+        return _core.MotionBelief(self.motion, estimate, self.prior_std, self.noise, scale)
+
+    @cached_property
+    def wander(self) -> _core.WanderLaw:
+        """How slip wanders about the parameters; without any candidate where that was not learned."""
+        coloured = self.content.coloured
+        candidates = [] if coloured is None else coloured.candidates
+        return _core.WanderLaw(
+            [_core.SlipWander(each.drift, each.turn, each.time_constant) for each in candidates],
+            np.array([each.weight for each in candidates], dtype=np.float64),
+        )
+
+    def covariance_over(self, seconds: float) -> NDArray[np.float64]:
+        """Covariance of the parameters' mean over `seconds`, slip that wanders included.
+
+        Nothing recent is known of that slip (derivations.md, section 18). [parameters, parameters].
+        """
+        covariance = _core.covariance_over(self.motion, self.covariance, self.wander, self.prior_std, seconds)
+        return np.asarray(covariance, dtype=np.float64)
+
     def save(self, path: str | Path) -> Path:
         """Write the model file, whole or not at all; return its path.
 
@@ -164,14 +194,15 @@ def load_model(path: str | Path) -> Model:
     source = Path(path)
     content = read_yaml(source)
     version = content.get("slipwise_model")
-    if isinstance(version, bool) or version != SCHEMA_VERSION:
+    if isinstance(version, bool) or version not in READ_VERSIONS:
+        known = " and ".join(map(str, READ_VERSIONS))
         raise ModelError(
-            f"the file has schema version {version!r}, this slipwise reads {SCHEMA_VERSION}",
+            f"the file has schema version {version!r}, this slipwise reads {known}",
             where=str(source),
             advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
         )
     try:
-        return Model(ModelFile.model_validate(content))
+        return Model(ModelFile.model_validate(content | {"slipwise_model": SCHEMA_VERSION}))
     except ValidationError as problem:
         first = problem.errors()[0]
         key = ".".join(str(part) for part in first["loc"])

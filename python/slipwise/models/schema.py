@@ -9,7 +9,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from slipwise.student import LEAST_DOF, MOST_DOF
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
+READ_VERSIONS = (2, SCHEMA_VERSION)  # 2 lacks how slip wanders
 
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
@@ -71,6 +72,29 @@ class Noise(_Section):
     pose_std_yaw: NotNegative  # [rad]
     scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
     tails: dict[NotNegative, Tail] = {}  # by horizon [s]
+
+
+class Wander(_Section):
+    """One guess of how slip wanders: first-order Gauss-Markov processes of one time constant."""
+
+    drift: NotNegative  # of the forward and sideways terms, as a fraction of their prior std [-]
+    turn: NotNegative  # of the angular terms [-]
+    time_constant: Positive  # [s]
+    weight: NotNegative  # how likely this guess is; all together 1
+
+
+class Coloured(_Section):
+    """How slip wanders about the parameters, beside the noise."""
+
+    window: Positive  # length of the windows that say how [s]
+    candidates: Annotated[list[Wander], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _weights_are_shares(self) -> Coloured:
+        total = sum(candidate.weight for candidate in self.candidates)
+        if abs(total - 1.0) > 1e-6:
+            raise ValueError(f"the weights of the candidates must sum to 1, not {total:.6g}")
+        return self
 
 
 class Range(_Section):
@@ -160,7 +184,7 @@ class LimitsSection(_Section):
 class ModelFile(_Section):
     """Everything that crosses from learning to using."""
 
-    slipwise_model: Literal[2]
+    slipwise_model: Literal[3]
     input: InputName
     slip: Slip
     dynamics: bool  # lag and delay are parameters
@@ -171,6 +195,7 @@ class ModelFile(_Section):
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
+    coloured: Coloured | None = None  # slip that wanders about the parameters; None: it was not looked for
     range: Range
     weights: dict[str, NotNegative] = {}
     provenance: Provenance

@@ -148,9 +148,8 @@ def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: fl
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
     scale = np.array(model.content.noise.scale)
     growth = tail_at(model, horizon).growth
-    return _core.UncertainModel(
-        model.motion, model.mean, model.covariance, model.noise, scale, growth, dt, *gravity, model.limits
-    )
+    spread = (model.covariance, model.noise, scale, growth, model.wander, model.prior_std)
+    return _core.UncertainModel(model.motion, model.mean, *spread, dt, *gravity, model.limits)
 
 
 def _covariance(

@@ -32,7 +32,7 @@ def coloured_pass(windows: WindowSet) -> ColouredPass:
 def weights(passing: ColouredPass, count: int) -> np.ndarray:
     coloured = passing.belief(count).coloured
     assert coloured is not None
-    return np.array(coloured.weights)
+    return np.array(coloured.law.weights)
 
 
 def test_weights_are_those_of_the_windows_that_have_passed(windows: WindowSet) -> None:
@@ -51,9 +51,9 @@ def test_a_belief_keeps_what_it_knew_when_more_is_learned(windows: WindowSet) ->
     passing = coloured_pass(windows)
     coloured = passing.belief(10).coloured
     assert coloured is not None
-    before = np.array(coloured.weights)
+    before = np.array(coloured.law.weights)
     passing.belief(50)
-    np.testing.assert_array_equal(np.array(coloured.weights), before)
+    np.testing.assert_array_equal(np.array(coloured.law.weights), before)
 
 
 def test_recent_windows_are_few_of_the_same_run_and_young(windows: WindowSet) -> None:
@@ -75,7 +75,7 @@ def test_settings_say_whether_and_what_is_tried(windows: WindowSet) -> None:
     one = with_coloured(fractions=[0.2], time_constants=[7.0])
     coloured = start_learning(one, "wheel", windows).belief(10).coloured
     assert coloured is not None
-    assert [(c.drift, c.turn, c.time_constant) for c in coloured.candidates[1:]] == [
+    assert [(c.drift, c.turn, c.time_constant) for c in coloured.law.candidates[1:]] == [
         (0.0, 0.2, 7.0),
         (0.2, 0.0, 7.0),
         (0.2, 0.2, 7.0),

@@ -32,6 +32,7 @@ def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) 
         covariance=covariance,
         growth=np.ones(size),
         dof=np.full(size, MOST_DOF),
+        usual_nis=np.full(size, 3.0),
         measured=measured,
         learned_until=t,
         structure=np.zeros(size, np.int64),

@@ -74,6 +74,18 @@ def test_model_without_parameters_makes_the_round_trip(tmp_path: Path) -> None:
     assert again.covariance.shape == (0, 0)
 
 
+def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
+    content: Content, tmp_path: Path
+) -> None:
+    older = {key: value for key, value in content.items() if key != "coloured"} | {"slipwise_model": 2}
+    model = load_model(saved(older, tmp_path / "m.yaml"))
+    assert model.content.coloured is None
+    assert model.covariance_over(1.0).tobytes() == model.covariance.tobytes()
+    again = load_model(model.save(tmp_path / "m.yaml"))
+    assert again.content == model.content
+    assert again.content.slipwise_model == 3
+
+
 def set_key(path: str, value: object) -> Callable[[Content], None]:
     def change(content: Content) -> None:
         target: Any = content
@@ -88,11 +100,21 @@ def set_key(path: str, value: object) -> Callable[[Content], None]:
 WRONG = {
     "unknown key": (set_key("colour", "red"), "colour: Extra inputs are not permitted"),
     "unknown key in depth": (set_key("noise.colour", 1.0), r"noise\.colour: Extra inputs"),
-    "newer schema": (set_key("slipwise_model", 3), "schema version 3, this slipwise reads 2"),
-    "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2"),
+    "newer schema": (set_key("slipwise_model", 4), "schema version 4, this slipwise reads 2 and 3"),
+    "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2 and 3"),
     "no schema": (set_key("slipwise_model", None), "schema version None"),
     "schema is a flag": (set_key("slipwise_model", True), "schema version True"),
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),
+    "slip wanders without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
+    "weights of more than all": (set_key("coloured.candidates.0.weight", 1.5), "coloured: .*sum to 1"),
+    "wander of negative size": (
+        set_key("coloured.candidates.1.turn", -0.1),
+        r"coloured\.candidates\.1\.turn",
+    ),
+    "wander of no time": (
+        set_key("coloured.candidates.1.time_constant", 0.0),
+        r"candidates\.1\.time_constant",
+    ),
     "unknown input": (set_key("input", "joystick"), "input: Input should be"),
     "value is not a number": (set_key("parameters.1.value", float("nan")), r"parameters\.1\.value"),
     "value is infinite": (set_key("parameters.1.value", float("inf")), r"parameters\.1\.value"),

@@ -84,7 +84,7 @@ def _run(place: int, name: str) -> Run:
 def _calibration(runs: int) -> Calibration:
     content = ModelFile.model_validate(
         {
-            "slipwise_model": 2,
+            "slipwise_model": 3,
             "input": "command",
             "slip": {"basis": "edd-2", "lon": ["V"], "lat": [], "ang": ["w"]},
             "dynamics": False,
@@ -194,6 +194,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         covariance=np.array(covariances),
         growth=np.ones(len(rows)),
         dof=np.full(len(rows), 5.0),
+        usual_nis=np.full(len(rows), 3.0),
         measured=measured,
         learned_until=t_start,
         structure=np.zeros(len(rows), np.int64),

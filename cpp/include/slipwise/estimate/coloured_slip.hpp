@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "slipwise/estimate/estimate.hpp"
+#include "slipwise/estimate/slip_deviation.hpp"
 #include "slipwise/estimate/weighing.hpp"
 #include "slipwise/motion/motion_noise.hpp"
+#include "slipwise/motion/slip_wander.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -19,13 +21,6 @@ struct ColouredSlipSettings {
   std::vector<double> time_constants = {5.0, 20.0};  ///< candidates [s]
   double white = 0.5;                                ///< weight beforehand of slip that does not wander [-]
   WeighingSettings weighing{.learning_rate = 1.0, .share = 0.01};
-};
-
-/// One guess of how slip wanders: first-order Gauss-Markov processes of one time constant.
-struct SlipWander {
-  double drift;          ///< of the forward and sideways terms, as a fraction of their prior std [-]
-  double turn;           ///< of the angular terms [-]
-  double time_constant;  ///< [s]
 };
 
 /// A model as it is believed before the segments that it is asked about.
@@ -43,6 +38,11 @@ struct ExpectedPose {
   Eigen::Matrix3d covariance;
 };
 
+/// Where slip is at some moment, under each candidate; empty where no term wanders.
+struct SlipNow {
+  std::vector<SlipDeviation> of_candidates;
+};
+
 /// Adds to the shares of V and w in the slip rates a deviation that decays, follows it through the last segments, and
 /// carries it into a prediction. How far and how slowly slip wanders is weighed among candidates by what they foretell;
 /// the first candidate is that it does not (derivations.md, section 18).
@@ -50,22 +50,26 @@ class ColouredSlip {
  public:
   /// \throws std::invalid_argument when a fraction or a time constant is not positive and finite.
   explicit ColouredSlip(const ColouredSlipSettings& settings);
+  /// As it was learned before, to predict with.
+  /// \throws std::invalid_argument when the law's numbers contradict each other.
+  explicit ColouredSlip(WanderLaw law);
 
   /// Weighs the candidates by the last of `segments`, foretold from those before it. All in the order of time.
   void learn(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> segments);
-  /// Predicts `segment` from what `recent` segments, all ended by its start, say of the slip now.
-  ExpectedPose predict(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent,
+  /// What `recent` segments, in the order of time, say of the slip after them; without any, what is usual.
+  SlipNow now(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent) const;
+  /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.
+  /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
+  ExpectedPose predict(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now,
                        const Segment& segment) const;
 
-  const std::vector<SlipWander>& candidates() const { return candidates_; }
-  const Eigen::VectorXd& weights() const { return weights_; }
+  const WanderLaw& law() const { return law_; }
 
  private:
-  std::vector<SlipWander> candidates_;
+  WanderLaw law_;
   WeighingSettings weighing_;
   Eigen::VectorXd prior_;  ///< weights beforehand
-  Eigen::VectorXd weights_;
-  std::size_t seen_ = 0;  ///< segments weighed by
+  std::size_t seen_ = 0;   ///< segments weighed by
 };
 
 }  // namespace slipwise

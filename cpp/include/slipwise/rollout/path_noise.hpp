@@ -9,6 +9,7 @@
 
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/motion_noise.hpp"
+#include "slipwise/motion/slip_wander.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 
 namespace slipwise {
@@ -19,6 +20,8 @@ struct ModelUncertainty {
   MotionNoise noise;           ///< its pose noise is not used: a rollout starts where it is told to
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< learned factor of the variances of (x, y, theta)
   double growth = 1.0;                              ///< factor of all variances at the horizon in question
+  WanderLaw wander{};                               ///< of slip about the parameters
+  Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip wanders
 };
 
 /// A model with its parameters, how uncertain it is, and what stays the same over all rollouts.
@@ -32,6 +35,9 @@ struct UncertainModel {
 /// \throws std::invalid_argument when the covariance does not fit the parameters, or a number is negative or not
 /// finite.
 void check_uncertainty(const UncertainModel& model);
+
+/// The terms that wander; none without a law.
+WanderingTerms terms_that_wander(const UncertainModel& model);
 
 /// The model that only drives: no slip, the same chain. Its paths say how far the drive moves.
 RolloutProgram drive_alone(const UncertainModel& model);

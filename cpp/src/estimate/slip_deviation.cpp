@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small Kalman filter over the deviation of slip from what was learned (derivations.md, section 18).
+#include "slipwise/estimate/slip_deviation.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+namespace slipwise {
+namespace {
+
+constexpr double kGate = 16.266;  // 99.9 % of a chi-square of three degrees of freedom
+
+}  // namespace
+
+SlipDeviation::SlipDeviation(const SlipWander& wander, const WanderingTerms& terms)
+    : time_constant_(wander.time_constant), mean_(State::Zero(terms.size())) {
+  usual_ = terms.variances(wander).asDiagonal();
+  covariance_ = usual_;
+}
+
+void SlipDeviation::follow(const SeenSlip& seen) {
+  decay_to((seen.start + seen.end) / 2.0);
+  const SeenSlip::ByDeviation& h = seen.by_deviation;
+  const Eigen::Vector3d innovation = seen.innovation - h * mean_;
+  const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + seen.noise;
+  const double nis = innovation.dot(expected.llt().solve(innovation));
+  const Eigen::Matrix3d doubted = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
+  const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMostWandering, 3> gain =
+      doubted.llt().solve(h * covariance_).transpose();
+  mean_ += gain * innovation;
+  covariance_ -= gain * h * covariance_;
+  covariance_ = (covariance_ + covariance_.transpose()).eval() / 2.0;
+}
+
+std::pair<SlipDeviation::State, SlipDeviation::StateMatrix> SlipDeviation::mean_over(double start, double end) const {
+  const double spans = (end - start) / time_constant_;
+  const double kept = std::exp(-std::max(0.0, start - t_) / time_constant_) * kept_over(spans);
+  return {kept * mean_, kept * kept * (covariance_ - usual_) + variance_over(spans) * usual_};
+}
+
+void SlipDeviation::decay_to(double t) {
+  const double kept = known_ ? std::exp(-(t - t_) / time_constant_) : 0.0;
+  mean_ *= kept;
+  covariance_ = kept * kept * covariance_ + (1.0 - kept * kept) * usual_;
+  t_ = t;
+  known_ = true;
+}
+
+}  // namespace slipwise
