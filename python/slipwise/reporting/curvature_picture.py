@@ -1,20 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map of curvatures that a robot really holds as PNG, drawn by Matplotlib, which is loaded only here."""
+"""The map of curvatures that a robot really holds as PNG."""
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from slipwise.errors import SlipwiseError
-from slipwise.files import write_whole
+from slipwise.reporting.png_picture import drawing_part, write_png
 
 if TYPE_CHECKING:
     from slipwise.planning import CurvatureMap
 
 SIZE = (8.0, 5.0)  # inches
-DPI = 150
 
 
 def write_curvature_picture(path: Path, held: CurvatureMap, title: str) -> Path:
@@ -24,15 +21,7 @@ def write_curvature_picture(path: Path, held: CurvatureMap, title: str) -> Path:
         SlipwiseError: Matplotlib is not installed.
         OutputError: the file cannot be written.
     """
-    try:
-        figures = importlib.import_module("matplotlib.figure")
-    except ImportError as error:
-        raise SlipwiseError(
-            "pictures need Matplotlib, which is not installed",
-            where=str(error),
-            advice='pip install "slipwise[plot]", or leave the picture out by --no-picture',
-        ) from error
-    figure = figures.Figure(figsize=SIZE, layout="constrained")
+    figure = drawing_part("figure").Figure(figsize=SIZE, layout="constrained")
     axes: Any = figure.add_subplot()
     widest = abs(held.told).max()
     drawn = axes.pcolormesh(held.told, held.speed, held.held, cmap="RdBu", vmin=-widest, vmax=widest)
@@ -40,7 +29,4 @@ def write_curvature_picture(path: Path, held: CurvatureMap, title: str) -> Path:
     axes.clabel(lines, fmt="%.2g")
     figure.colorbar(drawn, ax=axes, label="curvature that is held [1/m]")
     axes.set(xlabel="commanded curvature [1/m]", ylabel="commanded speed [m/s]", title=title)
-    write_whole(
-        path, lambda target: figure.savefig(target, format="png", dpi=DPI, metadata={"Software": None})
-    )
-    return path
+    return write_png(path, figure)

@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of a plan as PNG, drawn by Matplotlib, which is loaded only here."""
+"""The picture of a plan as PNG."""
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 from typing import Any
 
-from slipwise.errors import SlipwiseError
-from slipwise.files import write_whole
 from slipwise.reporting.plan_drawing import (
     GOAL,
     OCCUPIED,
@@ -20,9 +17,9 @@ from slipwise.reporting.plan_drawing import (
     extent,
     outline,
 )
+from slipwise.reporting.png_picture import drawing_part, write_png
 
 WIDTH = 9.0  # inches
-DPI = 150
 
 
 def write_plan_picture(path: Path, plan: Plan) -> Path:
@@ -32,16 +29,7 @@ def write_plan_picture(path: Path, plan: Plan) -> Path:
         SlipwiseError: Matplotlib is not installed.
         OutputError: the file cannot be written.
     """
-    try:
-        figures = importlib.import_module("matplotlib.figure")
-        patches = importlib.import_module("matplotlib.patches")
-        colours = importlib.import_module("matplotlib.colors")
-    except ImportError as error:
-        raise SlipwiseError(
-            "pictures need Matplotlib, which is not installed",
-            where=str(error),
-            advice='pip install "slipwise[plot]"',
-        ) from error
+    figures, patches, colours = map(drawing_part, ("figure", "patches", "colors"))
     left, right, bottom, top = extent(plan)
     height = WIDTH * min(max((top - bottom) / (right - left), 0.3), 1.5)
     figure = figures.Figure(figsize=(WIDTH, height + 0.6), layout="constrained")
@@ -57,7 +45,4 @@ def write_plan_picture(path: Path, plan: Plan) -> Path:
     axes.plot(poses[:, 0], poses[:, 1], color=PATH, linewidth=1.8)
     axes.plot(*plan.goal[:2], marker="x", color=GOAL, markersize=9, markeredgewidth=2.2)
     axes.set(xlabel="x [m]", ylabel="y [m]", title=plan.title)
-    write_whole(
-        path, lambda target: figure.savefig(target, format="png", dpi=DPI, metadata={"Software": None})
-    )
-    return path
+    return write_png(path, figure)
