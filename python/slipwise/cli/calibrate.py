@@ -18,6 +18,7 @@ from slipwise.cli.options import (
     Runs,
     SettingsFile,
     chosen_settings,
+    optional,
     takes_log_options,
 )
 
@@ -32,10 +33,7 @@ def calibrate(
     logs: Logs,
     log_options: LogOptions,
     output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o", "--output", metavar="MODEL.yaml", show_default=False, help="Write the model here too."
-        ),
+        Path | None, optional("MODEL.yaml", "Write the model here too.", "-o", "--output")
     ] = None,
     input_name: Input = None,
     basis: Basis = None,

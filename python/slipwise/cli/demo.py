@@ -6,11 +6,9 @@ from __future__ import annotations
 import contextlib
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from slipwise.cli.options import Json, Runs
+from slipwise.cli.options import Duration, Folder, Json, Runs, Seed
 from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
@@ -21,14 +19,9 @@ SHOWN_HORIZONS = (2.0, 5.0)  # [s]
 
 
 def demo(
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="DIR", show_default=False, help="Write here, not into a new folder below `runs`."
-        ),
-    ] = None,
-    duration: Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")] = 300.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")] = 1,
+    output: Folder = None,
+    duration: Duration = 300.0,
+    seed: Seed = 1,
     runs: Runs = Path("runs"),
     json: Json = None,
 ) -> int:

@@ -17,6 +17,7 @@ from slipwise.cli.options import (
     Runs,
     SettingsFile,
     chosen_settings,
+    optional,
     takes_log_options,
 )
 
@@ -32,36 +33,26 @@ if TYPE_CHECKING:
 def evaluate(
     logs: Logs,
     log_options: LogOptions,
-    model: Annotated[
-        Path | None,
-        typer.Option(metavar="MODEL.yaml", show_default=False, help="Judge this model file too, as it is."),
-    ] = None,
+    model: Annotated[Path | None, optional("MODEL.yaml", "Judge this model file too, as it is.")] = None,
     input_name: Input = None,
     horizons: Annotated[
         str, typer.Option(metavar="SECONDS", help="How far ahead, separated by commas.")
     ] = "1,2,5",
     methods: Annotated[
         str | None,
-        typer.Option(
-            metavar="NAMES",
-            show_default=False,
-            help="vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
+        optional(
+            "NAMES",
+            "vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
             "delayed-state), slip-ratio-ekf or slip-ratio-smo, surfaces (surface-least-squares, "
             "surface-gaussian-process, surface-bayesian), separated by commas; `none` always is. "
             "Default: all but estimators, slip ratios and surfaces.",
         ),
     ] = None,
     vendor_track_multiplier: Annotated[
-        float | None,
-        typer.Option(
-            metavar="X", show_default=False, help="wheel_separation_multiplier of the method `vendor`."
-        ),
+        float | None, optional("X", "wheel_separation_multiplier of the method `vendor`.")
     ] = None,
     predictions: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE.csv", show_default=False, help="Write every prediction with its covariance."
-        ),
+        Path | None, optional("FILE.csv", "Write every prediction with its covariance.")
     ] = None,
     basis: Basis = None,
     settings: SettingsFile = None,

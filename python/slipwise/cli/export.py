@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Json
+from slipwise.cli.options import Json, ModelFile, optional
 
 if TYPE_CHECKING:
     from slipwise.cli.output import Output
@@ -38,7 +38,7 @@ class Nav2(StrEnum):
 
 
 def export(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")],
+    model: ModelFile,
     to: Annotated[TargetName, typer.Option("--to", show_default=False, help="The tool to write for.")],
     output: Annotated[
         Path,
@@ -46,10 +46,7 @@ def export(
     ] = Path(),
     horizon: Annotated[float, typer.Option(metavar="SECONDS", help="Noise is right this far ahead.")] = 1.0,
     wheel_separation: Annotated[
-        float | None,
-        typer.Option(
-            metavar="METRES", show_default=False, help="Nominal; tells left from right wheel radius."
-        ),
+        float | None, optional("METRES", "Nominal; tells left from right wheel radius.")
     ] = None,
     logged_separation_multiplier: Annotated[
         float, typer.Option(metavar="FACTOR", help="In force while the log was recorded.")
@@ -58,8 +55,7 @@ def export(
         float, typer.Option(metavar="FACTOR", help="In force while the log was recorded.")
     ] = 1.0,
     min_turning_radius: Annotated[
-        float | None,
-        typer.Option(metavar="METRES", show_default=False, help="Of an Ackermann vehicle, by its geometry."),
+        float | None, optional("METRES", "Of an Ackermann vehicle, by its geometry.")
     ] = None,
     nav2: Annotated[Nav2, typer.Option("--nav2", help="Whose parameter names MPPI gets.")] = Nav2.rolling,
     force: Annotated[bool, typer.Option("--force", help="Export a model with a bad verdict, too.")] = False,

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Json
+from slipwise.cli.options import Json, ModelFile, optional
 
 if TYPE_CHECKING:
     from slipwise.planning import CurvatureMap
 
 
 def lattice(
-    model: Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")],
+    model: ModelFile,
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="FOLDER", help="The folder to put the files into.")
     ] = Path("lattice"),
@@ -24,10 +24,7 @@ def lattice(
     headings: Annotated[int, typer.Option(metavar="N", help="A multiple of 8.")] = 16,
     turns: Annotated[int, typer.Option(metavar="N", help="Headings a primitive turns by at most.")] = 3,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
-    curvature: Annotated[
-        float | None,
-        typer.Option(metavar="1/M", show_default=False, help="Largest of commands; by the model's range."),
-    ] = None,
+    curvature: Annotated[float | None, optional("1/M", "Largest of commands; by the model's range.")] = None,
     picture: Annotated[bool, typer.Option(help="Draw the curvature map, which needs Matplotlib.")] = True,
     force: Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")] = False,
     json: Json = None,

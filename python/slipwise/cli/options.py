@@ -24,6 +24,11 @@ class InputName(StrEnum):
     wheel = "wheel"
 
 
+def optional(metavar: str, text: str, *names: str) -> Any:
+    """Return an option that is left out by default; named by its parameter where no names are given."""
+    return typer.Option(*names, metavar=metavar, show_default=False, help=text)
+
+
 Logs = Annotated[
     list[Path],
     typer.Argument(
@@ -42,38 +47,27 @@ Input = Annotated[
 ]
 Basis = Annotated[
     str | None,
-    typer.Option(
-        metavar="NAME",
-        show_default=False,
-        help="Slip basis, such as edd-2 or odd-even-10; default auto, an average of several.",
-    ),
+    optional("NAME", "Slip basis, such as edd-2 or odd-even-10; default auto, an average of several."),
 ]
 Estimator = Annotated[
     str | None,
-    typer.Option(
-        metavar="NAME",
-        show_default=False,
-        help="How to learn: average (the default, weighs bases by how well they predict), iekf, "
+    optional(
+        "NAME",
+        "How to learn: average (the default, weighs bases by how well they predict), iekf, "
         "delayed-state, ekf-thesis, gradient-descent; batch fits all windows at once, off-line.",
     ),
 ]
-SettingsFile = Annotated[
-    Path | None,
-    typer.Option("--settings", metavar="FILE.toml", show_default=False, help="Settings of learning."),
-]
-Report = Annotated[
-    Path | None,
-    typer.Option(metavar="FILE.html", show_default=False, help="Write the HTML report to this file."),
-]
+SettingsFile = Annotated[Path | None, optional("FILE.toml", "Settings of learning.", "--settings")]
+Report = Annotated[Path | None, optional("FILE.html", "Write the HTML report to this file.")]
 Json = Annotated[
-    Path | None,
-    typer.Option(
-        "--json",
-        metavar="FILE",
-        show_default=False,
-        help="Write the result as JSON; `-` prints it instead of tables.",
-    ),
+    Path | None, optional("FILE", "Write the result as JSON; `-` prints it instead of tables.", "--json")
 ]
+Folder = Annotated[
+    Path | None, optional("DIR", "Write here, not into a new folder below `runs`.", "-o", "--output")
+]
+ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")]
+Duration = Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")]
+Seed = Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")]
 Runs = Annotated[Path, typer.Option(metavar="DIR", help="Where run folders are kept.")]
 
 _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import Json
+from slipwise.cli.options import Json, optional
 
 if TYPE_CHECKING:
     from slipwise.reporting.plan_drawing import Plan
@@ -25,10 +25,7 @@ def plan(
         Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.png, STEM.html and STEM.csv.")
     ] = Path("plan"),
     radius: Annotated[float, typer.Option(metavar="METRES", help="Of a disc that covers the robot.")] = 0.5,
-    cruise: Annotated[
-        float | None,
-        typer.Option(metavar="M/S", show_default=False, help="Speed; 0.7 of the model's range by default."),
-    ] = None,
+    cruise: Annotated[float | None, optional("M/S", "Speed; 0.7 of the model's range by default.")] = None,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
     picture: Annotated[bool, typer.Option(help="Draw the PNG, which needs Matplotlib.")] = True,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the search round obstacles.")] = 1,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import Json, Runs
+from slipwise.cli.options import Folder, Json, Runs, optional
 
 if TYPE_CHECKING:
     from slipwise.reproduction import ChapterResult
@@ -24,20 +24,8 @@ class WorkName(StrEnum):
 
 def reproduce(
     work: Annotated[WorkName, typer.Argument(help="What to reproduce.", show_default=False)],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="DIR",
-            show_default=False,
-            help="Write here, not into a new folder below `runs`.",
-        ),
-    ] = None,
-    only: Annotated[
-        list[str] | None,
-        typer.Option(metavar="CHAPTER", show_default=False, help="This chapter alone; may be given again."),
-    ] = None,
+    output: Folder = None,
+    only: Annotated[list[str] | None, optional("CHAPTER", "This chapter alone; may be given again.")] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the simulated drives.")] = 1,
     data: Annotated[
         Path | None,

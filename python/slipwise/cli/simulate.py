@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from slipwise.cli.options import Json
+from slipwise.cli.options import Duration, Json, Seed
 
 
 def simulate(
@@ -16,14 +16,14 @@ def simulate(
         Path,
         typer.Option("-o", "--output", metavar="FILE", help="The log: .mcap, .csv, .csv.gz or .parquet."),
     ],
-    duration: Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")] = 300.0,
+    duration: Duration = 300.0,
     drive: Annotated[
         str, typer.Option(metavar="NAME", help="Command script: thesis, steps or dull.")
     ] = "thesis",
     ground: Annotated[
         str, typer.Option(metavar="NAME", help="tyre-force, traction-law, or MuJoCo's own contact-friction.")
     ] = "tyre-force",
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")] = 1,
+    seed: Seed = 1,
     pose_rate: Annotated[float, typer.Option(metavar="HZ", help="Rate of poses and wheel speeds.")] = 20.0,
     std_xy: Annotated[float, typer.Option(metavar="METRES", help="Noise of a measured position.")] = 0.01,
     std_yaw: Annotated[float, typer.Option(metavar="RADIANS", help="Noise of a measured heading.")] = 0.003,
