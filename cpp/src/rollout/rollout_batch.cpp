@@ -327,12 +327,12 @@ unsigned roll_on(Gpu& gpu, const RolloutProgram& program, const RolloutBatch<Sca
       std::copy_n(row, std::min(kMostLanes, starts - first), &rows[i * starts + first]);
     }
   }
-  const std::size_t past = batch.past.size() / batch.starts.size();
+  const LaneBlock<Scalar>& block = place.at(0);
   return gpu.roll<Scalar>({.job = job,
                            .starts = rows,
                            .past = batch.past,
-                           .past_count = past,
-                           .past_stride = batch.starts.size() > 1 ? past : 0,
+                           .past_count = block.past_count,
+                           .past_stride = block.past_stride,
                            .used = first_unused(job)});
 }
 
