@@ -179,6 +179,7 @@ void ModelAverage::doubt() {
 void ModelAverage::settle() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  seen_ = changed ? 0 : seen_;  // of a new ground, few data have spoken
   weights_ = basis_weights();
   filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
                  changed ? filters_.end() : filters_.begin() + bases);

@@ -116,6 +116,31 @@ TEST_CASE("a change of ground is found while driving, and learned faster than wi
   CHECK(seeing.state().weights.size() == 1);
 }
 
+TEST_CASE("on a new ground rivals are dealt as much weight as at first, on the old one ever less") {
+  const MotionModel real(named_basis("edd-2"), {});
+  const std::vector<double> start{0.0}, zero{0.0};
+  const InputTrack parked(start, zero, zero, zero);
+  const auto dealt_to_plain = [&](double later_slip) {
+    ModelAverage average("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
+    int alarms = 0;
+    for (const double slip : {-0.3, later_slip}) {
+      const std::size_t windows = slip == -0.3 ? 80 : 30;
+      const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.05, slip),
+                                               {.seed = 83, .windows = windows, .window = 2.0, .noise = kNoise});
+      for (const Segment& segment : drive.segments) {
+        average.learn(drive.inputs, segment);
+        alarms += average.change().alarm ? 1 : 0;
+      }
+    }
+    CHECK(alarms == (later_slip == -0.3 ? 0 : 1));
+    CHECK(average.state().weights[0] < 1e-3);
+    average.learn(parked, {.start = 0.0, .end = 2.0, .measured = {}});  // tells nothing of any model
+    return average.state().weights[0];
+  };
+  CHECK(dealt_to_plain(-0.3) == doctest::Approx(0.6 / 161.0).epsilon(0.02));
+  CHECK(dealt_to_plain(-0.6) == doctest::Approx(0.6 * 0.05).epsilon(0.02));
+}
+
 TEST_CASE("a parked robot forgets nothing") {
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverage average = learned({named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));
