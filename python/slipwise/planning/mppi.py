@@ -42,13 +42,14 @@ def vendor_motion(multiplier: float) -> Motion:
     return Motion(model, np.array([0.0, 1.0 / multiplier - 1.0]))
 
 
-def learned_motions(model: Model, *, samples: int = 0, seed: int = 1) -> list[Motion]:
+def learned_motions(model: Model, *, samples: int = 0, seed: int = 1, seconds: float = 2.8) -> list[Motion]:
     """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
 
-    All have the limits of the drive that were learned.
+    Slip that wanders is drawn as its mean over `seconds`, by default the controller's horizon. All have the
+    limits of the drive that were learned.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
-    drawn = rng.multivariate_normal(model.mean, model.covariance, size=samples, method="eigh")
+    drawn = rng.multivariate_normal(model.mean, model.covariance_over(seconds), size=samples, method="eigh")
     return [Motion(model.motion, parameters, model.limits) for parameters in (model.mean, *drawn)]
 
 

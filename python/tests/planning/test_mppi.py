@@ -50,13 +50,14 @@ def test_the_controller_steers_back_to_its_track() -> None:
 
 
 def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> None:
-    model = learned_model()
-    drawn = np.array([motion.parameters for motion in learned_motions(model, samples=400)])
-    assert (drawn[0] == model.mean).all()
-    spread = drawn[1:].std(axis=0) / np.sqrt(np.diag(model.covariance))
-    assert spread == pytest.approx(1.0, abs=0.2)
-    again = np.array([motion.parameters for motion in learned_motions(model, samples=400)])
-    assert (drawn == again).all()
+    wandering = make_model(Made(basis=_core.named_basis("edd-2"), commands=True, wander=(0.1, 0.3, 8.0)))
+    for model in (learned_model(), wandering):
+        drawn = np.array([motion.parameters for motion in learned_motions(model, samples=400, seconds=2.0)])
+        assert (drawn[0] == model.mean).all()
+        spread = drawn[1:].std(axis=0) / np.sqrt(np.diag(model.covariance_over(2.0)))
+        assert spread == pytest.approx(1.0, abs=0.2)
+        again = np.array([motion.parameters for motion in learned_motions(model, samples=400, seconds=2.0)])
+        assert (drawn == again).all()
 
 
 def test_a_start_in_an_obstacle_is_refused() -> None:
