@@ -102,7 +102,10 @@ void bind_segment(nb::module_& m) {
           "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
-      .def_ro("measured", &Segment::measured);
+      .def_ro("measured", &Segment::measured)
+      .def_prop_ro(
+          "known_drive", [](const Segment& segment) { return segment.known ? segment.known->twist : nullptr; },
+          "What was measured of the drive's twist, None where it was not.");
   nb::enum_<Integrator>(m, "Integrator").value("Exact", Integrator::Exact).value("Rk4", Integrator::Rk4);
   nb::class_<SegmentPath>(m, "SegmentPath", "The robot's path seen from its start.")
       .def_prop_ro("times",

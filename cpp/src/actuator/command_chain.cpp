@@ -8,19 +8,17 @@
 
 #include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/sensitive_lag.hpp"
 
 namespace slipwise {
 namespace {
 
 using Row = Eigen::Matrix<double, 1, kChainParameters>;
+using Value = Sensitive<kChainParameters>;
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
-/// Where a channel's parameters stand among the chain's.
-struct ChannelPlaces {
-  Eigen::Index lag, delay, gain, slow_share, slow_lag;
-};
 constexpr ChannelPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
 constexpr ChannelPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
 
@@ -69,43 +67,11 @@ class DelayedCursor {
   std::size_t end_;
 };
 
-/// A value with its derivative by the chain's parameters.
-struct Sensitive {
-  double value = 0.0;
-  Row slope = Row::Zero();
-};
-
-/// The part of an input that one of a channel's two lags follows: share * gain * input.
-Sensitive part_of(double input, const ChannelResponse& response, const ChannelPlaces& places, bool slow) {
-  const double share = slow ? response.share() : 1.0 - response.share();
-  Sensitive part{.value = share * response.gain * input};
-  part.slope[places.gain] = share * input;
-  if (response.has_slow_part()) {
-    part.slope[places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
-  }
-  return part;
-}
-
 /// Advances one lag over a step; returns the integral.
-double advance(Sensitive& state, double input, const LagDecay& decay) {
+double advance(Value& state, double input, const LagDecay& decay) {
   const LagStep step = linearize_lag_step(state.value, input, decay).value;
   state.value = step.output;
   return step.integral;
-}
-
-/// The same for a step whose duration moves with the parameters.
-Sensitive advance(Sensitive& state, const Sensitive& input, const LagDecay& decay, Eigen::Index lag_index,
-                  const Row& duration_slope) {
-  const auto step = linearize_lag_step(state.value, input.value, decay);
-  Sensitive integral{step.value.integral, step.by_duration.integral * duration_slope +
-                                              step.by_output.integral * state.slope +
-                                              step.by_input.integral * input.slope};
-  integral.slope[lag_index] += step.by_time_constant.integral;
-  state.slope = step.by_duration.output * duration_slope + step.by_output.output * state.slope +
-                step.by_input.output * input.slope;
-  state.slope[lag_index] += step.by_time_constant.output;
-  state.value = step.value.output;
-  return integral;
 }
 
 /// How the gaps of a channel's two lags close over a step.
@@ -123,8 +89,8 @@ class DriveChannel {
 
   /// Settled on an input that was held for long.
   void settle(double input) {
-    fast_ = part_of(input, response_, places_, false);
-    slow_ = response_.has_slow_part() ? part_of(input, response_, places_, true) : Sensitive{};
+    fast_ = part_of<kChainParameters>(input, response_, places_, false);
+    slow_ = response_.has_slow_part() ? part_of<kChainParameters>(input, response_, places_, true) : Value{};
   }
 
   /// The whole was measured: what the fast part does not explain is the slow part's.
@@ -145,12 +111,12 @@ class DriveChannel {
     return integral;
   }
 
-  Sensitive linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
-    Sensitive integral =
-        advance(fast_, part_of(input, response_, places_, false), decay.fast, places_.lag, duration_slope);
+  Value linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
+    Value integral = advance(fast_, part_of<kChainParameters>(input, response_, places_, false), decay.fast,
+                             places_.lag, duration_slope);
     if (response_.has_slow_part()) {
-      const Sensitive slow =
-          advance(slow_, part_of(input, response_, places_, true), decay.slow, places_.slow_lag, duration_slope);
+      const Value slow = advance(slow_, part_of<kChainParameters>(input, response_, places_, true), decay.slow,
+                                 places_.slow_lag, duration_slope);
       integral.value += slow.value;
       integral.slope += slow.slope;
     }
@@ -160,7 +126,7 @@ class DriveChannel {
  private:
   ChannelResponse response_;
   ChannelPlaces places_;
-  Sensitive fast_, slow_;
+  Value fast_, slow_;
 };
 
 /// Walks over the delayed input changes of a window, with or without slopes.
@@ -315,9 +281,9 @@ class ChainWalk {
   DriveStep linearize_step(const ChannelDecay& decay_v, const ChannelDecay& decay_omega, const Row& duration_slope,
                            DriveStepJacobian& jacobian) {
     const BodyTwist linear = cursor_v_.held();
-    const Sensitive forward = v_.linearize_step(linear.v, decay_v, duration_slope);
-    const Sensitive left = vy_.linearize_step(linear.vy, decay_v, duration_slope);
-    const Sensitive turn = omega_.linearize_step(cursor_omega_.held().omega, decay_omega, duration_slope);
+    const Value forward = v_.linearize_step(linear.v, decay_v, duration_slope);
+    const Value left = vy_.linearize_step(linear.vy, decay_v, duration_slope);
+    const Value turn = omega_.linearize_step(cursor_omega_.held().omega, decay_omega, duration_slope);
     jacobian << duration_slope, forward.slope, left.slope, turn.slope;
     return {decay_v.fast.duration, forward.value, left.value, turn.value};
   }

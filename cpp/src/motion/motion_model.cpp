@@ -49,6 +49,8 @@ const ChainParameter& chain_parameter(Eigen::Index place) { return kChain[static
 
 }  // namespace
 
+double even_slope(double seconds) { return (seconds + kShortResponse) / (seconds + kUsualResponse); }
+
 MotionModel::MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {
   const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> places) {
     if (wanted) {
@@ -107,8 +109,7 @@ Eigen::VectorXd MotionModel::even_slopes(const Eigen::Ref<const Eigen::VectorXd>
   Eigen::Index at = slip_size();
   for (const Eigen::Index place : chain_places_) {
     if (chain_parameter(place).logarithm) {
-      const double seconds = std::exp(parameters[at]);
-      slopes[at] = (seconds + kShortResponse) / (seconds + kUsualResponse);
+      slopes[at] = even_slope(std::exp(parameters[at]));
     }
     ++at;
   }

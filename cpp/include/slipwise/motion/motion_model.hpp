@@ -23,6 +23,10 @@ struct ChainParameters {
 
 inline constexpr Eigen::Index kMountParameters = 3;
 
+/// Derivative, by its logarithm, of a coordinate of a time in which motion is nearly linear (derivations.md, section
+/// 6): (s + 0.03) / (s + 0.3) for s [s].
+double even_slope(double seconds);
+
 /// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
 /// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
 /// [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms keep lags and delays positive.
@@ -46,8 +50,7 @@ class MotionModel {
   /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
   Eigen::VectorXd chain_scales(const CommandChain& chain) const;
 
-  /// Derivative, by the parameters, of coordinates in which the motion is nearly linear (derivations.md, section 6):
-  /// (s + 0.03) / (s + 0.3) for a time s [s] whose logarithm is learned, 1 otherwise.
+  /// `even_slope` of each time whose logarithm is learned, 1 for the other parameters.
   Eigen::VectorXd even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
 
   /// \throws std::invalid_argument when the length is not size() or a value is not finite.

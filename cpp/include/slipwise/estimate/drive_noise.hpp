@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of a lane's measured speed is not its chain: white noise of the samples, and a deviation that wanders
+// (derivations.md, section 4).
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+namespace slipwise {
+
+/// Shape of that noise. The deviation is a Gauss-Markov process (Ornstein and Uhlenbeck).
+struct DriveNoise {
+  double white = 1.0;          ///< variance of one sample
+  double wander = 0.0;         ///< variance of the deviation
+  double time_constant = 1.0;  ///< of the deviation [s]
+};
+
+/// The means over some intervals, and after them the deviation at the end: how they follow the deviation at the start,
+/// and their covariance, were that known.
+struct DriveNoiseMeans {
+  Eigen::VectorXd by_start;    ///< [K + 1]
+  Eigen::MatrixXd covariance;  ///< [K + 1, K + 1]
+};
+
+/// `edges` [K + 1, s] are those of the intervals, of which each holds so many `samples` [K].
+DriveNoiseMeans drive_noise_means(const DriveNoise& noise, std::span<const double> edges,
+                                  std::span<const double> samples);
+
+}  // namespace slipwise

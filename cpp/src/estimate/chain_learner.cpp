@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Banks of filters, weighed by how well they foretell wheel speeds.
+#include "slipwise/estimate/chain_learner.hpp"
+
+#include <array>
+#include <bit>
+
+#include "slipwise/estimate/prior.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kInterval = 0.1;  // [s] one measurement
+/// White noise alone, or a deviation that is far larger and lasts for this long.
+constexpr std::array<DriveNoise, 4> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
+                                             {.white = 1.0, .wander = 100.0, .time_constant = 0.2},
+                                             {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
+                                             {.white = 1.0, .wander = 100.0, .time_constant = 5.0}}};
+constexpr std::size_t kFirst = 4, kLast = 256;  // windows after which, and each doubling, all are learned anew
+constexpr double kHeard = 0.01;                 // weight from which a rival learns anew
+
+}  // namespace
+
+ChainLearner::ChainLearner(const CausalFilterSettings& settings)
+    : model_({"none", {}, {}, {}}, {.dynamics = true, .response = true}) {
+  const Estimate prior = prior_estimate(model_, {.v = 1.0, .omega = 1.0}, settings.prior);
+  prior_std_ = prior.covariance.diagonal().cwiseSqrt();
+  const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {
+    const Estimate own{prior.mean(places), prior.covariance(places, places)};
+    Bank bank{.places = std::move(places), .rivals = {}, .weights = {}};
+    for (const DriveNoise& shape : kShapes) {
+      bank.rivals.emplace_back(parts, own, shape, settings.iekf);
+    }
+    bank.weights = Eigen::VectorXd::Constant(std::ssize(kShapes), 1.0 / static_cast<double>(kShapes.size()));
+    banks_.push_back(std::move(bank));
+  };
+  add({0, 2, 4, 6, 8}, {&BodyTwist::v, &BodyTwist::vy});
+  add({1, 3, 5, 7, 9}, {&BodyTwist::omega});
+}
+
+/// The NIS of the heaviest. A window that all leave out weighs none of them.
+double ChainLearner::Bank::learn(const InputTrack& inputs, const WheelMeans& seen, std::size_t learned) {
+  Eigen::Index heaviest = 0;
+  weights.maxCoeff(&heaviest);
+  Eigen::VectorXd scores(weights.size());
+  double nis = 0.0;
+  bool left_out = true;
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(inputs, seen);
+    scores[i] = update.log_score;
+    nis = i == heaviest ? update.nis : nis;
+    left_out = left_out && update.status == Status::Rejected;
+  }
+  if (left_out) {
+    return nis;
+  }
+  const auto equal = Eigen::VectorXd::Constant(weights.size(), 1.0 / static_cast<double>(weights.size()));
+  weights = reweighed(weights, scores, equal, WeighingSettings{}, learned);
+  return nis;
+}
+
+void ChainLearner::Bank::relearn(std::span<const ChainChannel::Past> past) {
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    if (weights[static_cast<Eigen::Index>(i)] > kHeard) {
+      rivals[i].relearn(past);
+    }
+  }
+}
+
+/// Mean and covariance of the weighed rivals.
+Estimate ChainLearner::Bank::mixture() const {
+  Estimate all{Eigen::VectorXd::Zero(kChannelParameters),
+               Eigen::MatrixXd::Zero(kChannelParameters, kChannelParameters)};
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    all.mean += weights[static_cast<Eigen::Index>(i)] * rivals[i].estimate().mean;
+  }
+  for (std::size_t i = 0; i < rivals.size(); ++i) {
+    const Estimate own = rivals[i].estimate();
+    const Eigen::VectorXd away = own.mean - all.mean;
+    all.covariance += weights[static_cast<Eigen::Index>(i)] * (own.covariance + away * away.transpose());
+  }
+  return all;
+}
+
+ChainUpdate ChainLearner::learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end) {
+  const WheelMeans seen = wheel_means(wheels, start, end, kInterval);
+  ChainUpdate update{.nis = 0.0};
+  for (Bank& bank : banks_) {
+    update.nis += bank.learn(inputs, seen, learned_);
+  }
+  ++learned_;
+  if (learned_ > kLast) {
+    return update;
+  }
+  past_.push_back({inputs, seen});
+  if (learned_ >= kFirst && std::has_single_bit(learned_)) {
+    for (Bank& bank : banks_) {
+      bank.relearn(past_);
+    }
+  }
+  if (learned_ == kLast) {
+    past_ = {};
+  }
+  return update;
+}
+
+Estimate ChainLearner::estimate() const {
+  Estimate all{Eigen::VectorXd(model_.size()), Eigen::MatrixXd::Zero(model_.size(), model_.size())};
+  for (const Bank& bank : banks_) {
+    const Estimate own = bank.mixture();
+    all.mean(bank.places) = own.mean;
+    all.covariance(bank.places, bank.places) = own.covariance;
+  }
+  return all;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// One lane from a known state: the same as the whole chain's walk, and its exact sensitivities.
+#include "slipwise/actuator/lane_motion.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "finite_difference.hpp"
+#include "slipwise/actuator/command_chain.hpp"
+
+namespace slipwise {
+namespace {
+
+const std::vector<double> kTimes{0.0, 0.3, 0.5, 0.9, 1.2, 1.6};
+const std::vector<double> kSpeeds{0.4, 1.0, 1.0, -0.5, -0.2, 0.7};
+const std::vector<double> kTurns{0.1, -0.6, 0.8, 0.8, 0.0, 0.3};
+const std::vector<double> kStill(6, 0.0);
+const std::vector<double> kEdges{0.45, 0.6, 0.77, 1.25, 1.4};
+
+InputTrack commands() { return {kTimes, kSpeeds, kStill, kTurns}; }
+
+Lane lane_of(const Eigen::VectorXd& p) {
+  return {&BodyTwist::omega, {.gain = p[2], .lag = p[0], .slow_share = p[3], .slow_lag = p[4]}, p[1]};
+}
+
+TEST_CASE("a lane's means sum to what the whole chain drives") {
+  const CommandChain chain{.lag_v = 0.2,
+                           .lag_omega = 0.3,
+                           .delay_v = 0.1,
+                           .delay_omega = 0.13,
+                           .gain_omega = 0.9,
+                           .slow_share_omega = 0.3,
+                           .slow_lag_omega = 0.8};
+  const Lane lane{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
+  const InputTrack inputs = commands();
+  const double long_before = -20.0;
+  const std::vector<double> all{long_before, 0.45, 0.6, 0.77, 1.25, 1.4};
+  const LaneMotion motion = lane_motion(inputs, lane, settled_lane(inputs, lane, long_before), all);
+  for (std::size_t k = 1; k + 1 < all.size(); ++k) {
+    double turned = 0.0;
+    for (const DriveStep& step : drive_steps(inputs, chain, {.start = all[k], .end = all[k + 1]}).steps) {
+      turned += step.turn;
+    }
+    CHECK(motion.value[static_cast<Eigen::Index>(k)] * (all[k + 1] - all[k]) == doctest::Approx(turned).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("a lane that is followed in two stretches ends as in one") {
+  const Lane lane{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
+  const InputTrack inputs = commands();
+  const LaneMotion whole = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, kEdges);
+  const LaneMotion first = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, std::span(kEdges).first(3));
+  const LaneMotion rest =
+      lane_motion(inputs, lane, {.fast = first.value[2], .slow = first.value[3]}, std::span(kEdges).subspan(2));
+  CHECK((whole.value.tail(4) - rest.value).lpNorm<Eigen::Infinity>() < 1e-14);
+  CHECK((whole.value.head(2) - first.value.head(2)).lpNorm<Eigen::Infinity>() < 1e-14);
+}
+
+TEST_CASE("a lane's slopes are its derivatives") {
+  Eigen::VectorXd at(kLaneParameters);
+  at << 0.3, 0.13, 0.9, 0.3, 0.8, 0.2, -0.1;
+  const InputTrack inputs = commands();
+  const auto motion = [&](const Eigen::VectorXd& p) {
+    return lane_motion(inputs, lane_of(p), {.fast = p[5], .slow = p[6]}, kEdges);
+  };
+  const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd { return motion(p).value; };
+  const Eigen::MatrixXd numeric = tests::finite_difference(value, at, 0.01);
+  CHECK(tests::jacobian_error(motion(at).slope, numeric) < tests::kDerivativeTolerance);
+}
+
+}  // namespace
+}  // namespace slipwise
