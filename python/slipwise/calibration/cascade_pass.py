@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.core_learners import AverageLearner, EstimatorLearner
+from slipwise.calibration.core_learners import AverageLearner, ChainLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
 from slipwise.calibration.learner import CASCADE, LIMITS, Belief, make_learner
 from slipwise.calibration.limited_drive import LimitedDrive
@@ -68,16 +68,12 @@ class CascadePass:
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self.change = max(self.change, self._average.change, key=lambda test: (test.alarm, test.log_odds))
 
-    def _see_chain(self, _i: int, update: _core.IekfUpdate, _belief: Belief) -> None:
+    def _see_chain(self, _i: int, update: _core.ChainUpdate, _belief: Belief) -> None:
         self._missed.append(update.nis > MISS)
 
-    def _chain_pass(self, windows: WindowSet, first: int = 0) -> CausalPass[_core.IekfUpdate]:
-        motion = _core.MotionModel.with_response(_core.Basis("none", [], [], []), False)
-        filter_settings = self._settings.filter_settings()
-        estimator = _core.FollowingEstimator("iekf", motion, filter_settings, _core.EstimatorSettings())
-        return CausalPass(
-            EstimatorLearner(estimator), windows, self._see_chain, pace=self._windows, first=first
-        )
+    def _chain_pass(self, windows: WindowSet, first: int = 0) -> CausalPass[_core.ChainUpdate]:
+        learner = ChainLearner(_core.ChainLearner(self._settings.filter_settings()))
+        return CausalPass(learner, windows, self._see_chain, pace=self._windows, first=first)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
         """Put slip and chain into one belief; clock offset and mount are learned with the slip."""

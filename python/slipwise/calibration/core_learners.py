@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The core's estimators as learners of a causal pass: an average of bases, or one estimator by name."""
+"""The core's estimators as learners of a causal pass: an average, one by name, or the chain alone."""
 
 from __future__ import annotations
 
@@ -68,13 +68,39 @@ class EstimatorLearner:
         return self._stated(self._estimator.estimate())
 
     def _stated(self, estimate: _core.Estimate) -> Belief:
-        covariance, prior_std = np.array(estimate.covariance), np.array(self._estimator.prior_std)
-        return Belief(
-            motion=self._motion,
-            mean=np.array(estimate.mean),
-            covariance=covariance,
-            noise_scale=np.array(self._estimator.noise_scale),
-            prior_std=prior_std,
-            variance_ratio=np.diag(covariance) / prior_std**2,
-            weights=np.ones(1),
-        )
+        prior_std = np.array(self._estimator.prior_std)
+        return _stated(self._motion, estimate, prior_std, np.array(self._estimator.noise_scale))
+
+
+class ChainLearner:
+    """The chain behind commands, from the wheel speeds that are known of each window."""
+
+    def __init__(self, learner: _core.ChainLearner) -> None:
+        """`learner` has learned nothing yet."""
+        self._learner = learner
+        self._motion = learner.model
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.ChainUpdate:
+        """Learn one window."""
+        assert segment.known_drive is not None
+        return self._learner.learn(inputs, segment.known_drive, segment.start, segment.end)
+
+    def belief(self) -> Belief:
+        """Return what is believed of the chain now."""
+        estimate, prior_std = self._learner.estimate(), np.array(self._learner.prior_std)
+        return _stated(self._motion, estimate, prior_std, np.ones(3))
+
+
+def _stated(
+    motion: _core.MotionModel, estimate: _core.Estimate, prior_std: np.ndarray, noise_scale: np.ndarray
+) -> Belief:
+    covariance = np.array(estimate.covariance)
+    return Belief(
+        motion=motion,
+        mean=np.array(estimate.mean),
+        covariance=covariance,
+        noise_scale=noise_scale,
+        prior_std=prior_std,
+        variance_ratio=np.diag(covariance) / prior_std**2,
+        weights=np.ones(1),
+    )
