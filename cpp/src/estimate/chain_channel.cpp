@@ -16,7 +16,7 @@ namespace slipwise {
 namespace {
 
 constexpr double kSameStamp = 1e-6;                     // [s] windows closer than this meet
-constexpr double kFirstSize = 0.05 * 0.05;              // [(m/s)^2, (rad/s)^2]
+constexpr double kFirstSize = 0.1 * 0.1;                // [(m/s)^2, (rad/s)^2]
 constexpr double kLeastSize = 1e-4 * 1e-4;              // nothing is computed or sampled more exactly
 constexpr double kFirstWindows = 3.0, kMemory = 40.0;   // as in NoiseSettings
 constexpr double kMostGain = 8.0;                       // of a window's noise over the expected

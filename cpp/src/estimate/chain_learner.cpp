@@ -11,11 +11,12 @@ namespace slipwise {
 namespace {
 
 constexpr double kInterval = 0.1;  // [s] one measurement
-/// White noise alone, or a deviation that is far larger and lasts for this long.
-constexpr std::array<DriveNoise, 4> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
+/// White noise alone first; or a deviation that is far larger and lasts for this long.
+constexpr std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 0.2},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
-                                             {.white = 1.0, .wander = 100.0, .time_constant = 5.0}}};
+                                             {.white = 1.0, .wander = 100.0, .time_constant = 5.0},
+                                             {.white = 1.0, .wander = 100.0, .time_constant = 25.0}}};
 constexpr std::size_t kFirst = 4, kLast = 256;  // windows after which, and each doubling, all are learned anew
 constexpr double kHeard = 0.01;                 // weight from which a rival learns anew
 
@@ -38,17 +39,15 @@ ChainLearner::ChainLearner(const CausalFilterSettings& settings)
   add({1, 3, 5, 7, 9}, {&BodyTwist::omega});
 }
 
-/// The NIS of the heaviest. A window that all leave out weighs none of them.
+/// The NIS of the chain without a deviation. A window that all leave out weighs none of them.
 double ChainLearner::Bank::learn(const InputTrack& inputs, const WheelMeans& seen, std::size_t learned) {
-  Eigen::Index heaviest = 0;
-  weights.maxCoeff(&heaviest);
   Eigen::VectorXd scores(weights.size());
   double nis = 0.0;
   bool left_out = true;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
     const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(inputs, seen);
     scores[i] = update.log_score;
-    nis = i == heaviest ? update.nis : nis;
+    nis = i == 0 ? update.nis : nis;
     left_out = left_out && update.status == Status::Rejected;
   }
   if (left_out) {

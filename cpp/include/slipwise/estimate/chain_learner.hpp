@@ -13,7 +13,7 @@
 
 namespace slipwise {
 
-/// How a window of wheel speeds was foretold by the heaviest guesses.
+/// How a window of wheel speeds was foretold by the chain and white noise alone.
 struct ChainUpdate {
   double nis;  ///< of the mean of speed, sideways speed and yaw rate over the window: of those that move
 };
