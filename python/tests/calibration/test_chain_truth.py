@@ -31,7 +31,7 @@ def test_much_was_learned_of_every_parameter(from_commands_alone: list[list[Foun
 
 
 def test_all_is_found_in_cascade_and_as_surely_as_stated() -> None:
-    runs = [from_wheels_too(seed, 120.0) for seed in SEEDS]
+    runs = [from_wheels_too(seed) for seed in SEEDS]
     assert {"clock_offset", "sensor_x", "lon.V", "slow_share_v", "log_delay_omega"} <= {
         f.name for f in runs[0]
     }
