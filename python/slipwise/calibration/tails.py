@@ -18,7 +18,9 @@ Ints = NDArray[np.int64]
 # The prior: ln(scale) and ln(dof) are normal. A log of some ten held-out windows outweighs it.
 PRIOR_SCALE, PRIOR_SCALE_STD = 1.0, 0.7  # median and standard deviation of the logarithm
 PRIOR_DOF, PRIOR_DOF_STD = 8.0, 0.8
-MEMORY = 100.0  # windows; the covariance that the tails correct changes while the filter learns
+# Windows after which an error is forgotten; the covariance that the tails correct changes while the filter
+# learns, on some drives fast and on others not at all. The last forgets nothing.
+MEMORIES = (10.0, 30.0, 100.0, math.inf)
 MATCHED = (0.50, 0.95)  # shares whose ellipsoids the point estimate takes over from the posterior
 
 _STEP = 0.1  # of the logarithms of scale and squared distance
@@ -41,7 +43,8 @@ def learn_tails(known: Ints, squared: Floats) -> Tails:
     """Fit the t of each prediction to the errors of the `known` first held-out windows.
 
     The posterior over a grid of scale and degrees of freedom is a mixture of t; the t returned is the one
-    with the mixture's 50 % and 95 % ellipsoids (derivations.md, section 5).
+    with the mixture's 50 % and 95 % ellipsoids. How fast older windows are forgotten is weighed among
+    `MEMORIES` by how well each foretold the windows so far (derivations.md, section 5).
 
     Args:
         known: number of windows whose errors were known at each prediction, [N], each at most M.
@@ -49,25 +52,53 @@ def learn_tails(known: Ints, squared: Floats) -> Tails:
     """
     growth, dof = np.empty(len(known)), np.empty(len(known))
     prior = _log_prior()
-    evidence = np.zeros_like(prior)
+    evidence, foretold = np.zeros((len(MEMORIES), len(prior))), np.zeros(len(MEMORIES))
     for first in range(0, len(squared) + 1, _CHUNK):
-        gathered = _gathered(evidence, _log_likelihood(squared[first : first + _CHUNK]))
-        after = prior + gathered
+        steps = _log_likelihood(squared[first : first + _CHUNK])
+        beliefs = []
+        for k, memory in enumerate(MEMORIES):
+            gathered = _gathered(evidence[k], steps, memory)
+            weights = _normalised(prior + gathered)
+            beliefs.append(_Belief(weights, foretold[k] + _log_foretold(weights, steps)))
+            evidence[k], foretold[k] = gathered[-1], beliefs[k].foretold[-1]
         at = np.flatnonzero((known >= first) & (known < first + _CHUNK))
         if len(at):
             counts, back = np.unique(known[at], return_inverse=True)
-            scale, degrees = _with_same_ellipsoids(_normalised(after[counts - first]))
+            scale, degrees = _with_same_ellipsoids(_mixed(beliefs)[counts - first])
             growth[at], dof[at] = (scale * degrees / (degrees - 2.0))[back], degrees[back]
-        evidence = gathered[-1]
     return Tails(growth, dof)
 
 
-def _gathered(evidence: Floats, steps: Floats) -> Floats:
+@dataclass(frozen=True, eq=False)
+class _Belief:
+    """What one memory makes of the windows, before and after each of N."""
+
+    weights: Floats  # [N + 1, S * D] posterior over the grid
+    foretold: Floats  # [N + 1] logarithm of the density that it gave to all windows so far
+
+
+def _log_foretold(weights: Floats, steps: Floats) -> Floats:
+    """Logarithm of the density that was given to windows before they were seen, added up, [N + 1]."""
+    most = steps.max(axis=1, keepdims=True)
+    density = np.log((weights[:-1] * np.exp(steps - most)).sum(axis=1)) + most[:, 0]
+    return np.concatenate(([0.0], np.cumsum(density)))
+
+
+def _mixed(beliefs: list[_Belief]) -> Floats:
+    """The posterior over memories and grid, summed over the memories, [N + 1, S * D]."""
+    shares = _normalised(np.column_stack([belief.foretold for belief in beliefs]))
+    mixed = np.zeros_like(beliefs[0].weights)
+    for k, belief in enumerate(beliefs):
+        mixed += shares[:, k, None] * belief.weights
+    return mixed
+
+
+def _gathered(evidence: Floats, steps: Floats, memory: float) -> Floats:
     """Evidence before and after each window [N, S * D], older windows counting less, [N + 1, S * D]."""
     gathered = np.empty((len(steps) + 1, evidence.size))
     gathered[0] = evidence
     for i, step in enumerate(steps):
-        gathered[i + 1] = (1.0 - 1.0 / MEMORY) * gathered[i] + step
+        gathered[i + 1] = (1.0 - 1.0 / memory) * gathered[i] + step
     return gathered
 
 
@@ -88,7 +119,7 @@ def _log_likelihood(squared: Floats) -> Floats:
 
 
 def _normalised(logarithms: Floats) -> Floats:
-    """Probabilities from their logarithms up to a constant, row by row, [N, S * D]."""
+    """Probabilities from their logarithms up to a constant, row by row, [N, K]."""
     weights = np.exp(logarithms - logarithms.max(axis=1, keepdims=True))
     return np.asarray(weights / weights.sum(axis=1, keepdims=True), dtype=np.float64)
 

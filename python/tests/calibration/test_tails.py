@@ -84,6 +84,17 @@ def test_absurd_errors_give_a_usable_distribution(length: float) -> None:
     assert LEAST_DOF <= tails.dof[0] <= MOST_DOF
 
 
+@pytest.mark.parametrize("falls_to", [0.1, 10.0])
+def test_a_covariance_that_becomes_truer_while_it_is_learned_is_followed(falls_to: float) -> None:
+    rng, inside = np.random.default_rng(12), []
+    drift = falls_to ** np.linspace(1.0, 0.0, WINDOWS)  # of the errors beside what was stated
+    for _ in range(LOGS):
+        squared = drift * squared_lengths(rng, 8.0, 1.0)
+        tails = learn_tails(EARLIER, squared)
+        inside.append(share_inside(squared / tails.growth, tails.dof)[WINDOWS // 2 :])
+    assert coverage(np.concatenate(inside)) == pytest.approx((0.50, 0.90, 0.95), abs=0.1)
+
+
 def test_one_pose_jump_changes_little() -> None:
     squared = squared_lengths(np.random.default_rng(11), np.inf, 1.0)
     spoilt = np.where(np.arange(WINDOWS) == 50, 1e6, squared)
