@@ -37,8 +37,8 @@ assert all(later > earlier for earlier, later in itertools.pairwise(spread))
 # Is it true? `evaluate` counts how often the measured pose lies inside the predicted 50, 90 and 95 %
 # ellipsoids, over windows that had not been learned. The mean NIS is 3 where the covariance is exact, less
 # where it is cautious and more where it is too sure. Here it is a little too sure: over a dozen such drives
-# (seeds 1 to 12) the 90 % ellipsoids hold some four fifths at 2 s. On real logs they hold 87 % (docs/statistics.md says
-# how to read this).
+# (seeds 1 to 12) the 90 % ellipsoids hold some four fifths at 2 s. On real logs they hold 87 %
+# (docs/statistics.md says how to read this).
 
 # %%
 options = sw.EvaluationOptions(methods=("none", "auto"))
