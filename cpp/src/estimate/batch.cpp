@@ -7,11 +7,14 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 namespace {
+
+using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 /// Normal equations of the robust MAP problem at one point.
 struct NormalEquations {
@@ -33,35 +36,61 @@ HuberLoss huber_loss(double squared, double threshold) {
   return {2.0 * threshold * distance - threshold * threshold, threshold / distance};
 }
 
+/// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.
+struct NewError {
+  Eigen::Matrix3d by_before;          ///< of what was new in the one before, how much comes again
+  Eigen::LLT<Eigen::Matrix3d> noise;  ///< of what is new
+};
+
+std::vector<NewError> new_errors(std::span<const BatchDatum> data) {
+  std::vector<NewError> errors;
+  errors.reserve(data.size());
+  for (const BatchDatum& datum : data) {
+    Eigen::Matrix3d by_before = Eigen::Matrix3d::Zero();
+    if (!errors.empty()) {
+      by_before = errors.back().noise.solve(datum.shared.transpose()).transpose();
+    }
+    errors.push_back({by_before, (datum.noise - by_before * datum.shared.transpose()).llt()});
+  }
+  return errors;
+}
+
 class BatchProblem {
  public:
   BatchProblem(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data, double huber)
       : model_(model),
         prior_(prior),
         data_(data),
+        errors_(new_errors(data)),
         huber_(huber),
         prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
 
   double cost(const Eigen::VectorXd& mean) const {
     const Eigen::VectorXd away = mean - prior_.mean;
     double sum = away.dot(prior_information_ * away);
-    for (const BatchDatum& datum : data_) {
-      const Pose2 predicted = integrate_segment(model_, mean, *datum.inputs, datum.segment).sensor_motion();
-      const Eigen::Vector3d r = datum.segment.measured.vector() - predicted.vector();
-      sum += huber_loss(r.dot(datum.noise.llt().solve(r)), huber_).cost;
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < data_.size(); ++i) {
+      const Segment& segment = data_[i].segment;
+      const Pose2 predicted = integrate_segment(model_, mean, *data_[i].inputs, segment).sensor_motion();
+      r = segment.measured.vector() - predicted.vector() - errors_[i].by_before * r;
+      sum += huber_loss(r.dot(errors_[i].noise.solve(r)), huber_).cost;
     }
     return sum;
   }
 
   NormalEquations linearize(const Eigen::VectorXd& mean) const {
     NormalEquations equations{prior_information_, prior_information_ * (prior_.mean - mean)};
-    for (const BatchDatum& datum : data_) {
-      const auto at = linearize_segment(model_, mean, *datum.inputs, datum.segment);
-      const Eigen::Vector3d r = datum.segment.measured.vector() - at.predicted.vector();
-      const Eigen::LLT<Eigen::Matrix3d> noise(datum.noise);
+    Eigen::Vector3d r = Eigen::Vector3d::Zero();
+    Jacobian by_parameter = Jacobian::Zero(3, model_.size());
+    for (std::size_t i = 0; i < data_.size(); ++i) {
+      const Segment& segment = data_[i].segment;
+      const auto at = linearize_segment(model_, mean, *data_[i].inputs, segment);
+      r = segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
+      by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
+      const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
       const double weight = huber_loss(r.dot(noise.solve(r)), huber_).weight;
-      const Eigen::MatrixXd weighted = noise.solve(at.by_parameter) * weight;
-      equations.information.noalias() += at.by_parameter.transpose() * weighted;
+      const Eigen::MatrixXd weighted = noise.solve(by_parameter) * weight;
+      equations.information.noalias() += by_parameter.transpose() * weighted;
       equations.gradient.noalias() += weighted.transpose() * r;
     }
     return equations;
@@ -71,12 +100,17 @@ class BatchProblem {
   const MotionModel& model_;
   const Estimate& prior_;
   std::span<const BatchDatum> data_;
+  std::vector<NewError> errors_;
   double huber_;
   Eigen::MatrixXd prior_information_;
 };
 
-void check(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data) {
+void check(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
+           const Eigen::VectorXd& start) {
   model.check(prior.mean);
+  if (start.size() > 0) {
+    model.check(start);
+  }
   if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
     throw std::invalid_argument("the prior's covariance must be square with one row per parameter, " +
                                 std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
@@ -97,15 +131,23 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
                                   "definite noise covariance");
     }
   }
+  const std::vector<NewError> errors = new_errors(data);
+  for (std::size_t i = 0; i < errors.size(); ++i) {
+    if (!data[i].shared.allFinite() || errors[i].noise.info() != Eigen::Success) {
+      throw std::invalid_argument("segment " + std::to_string(i) +
+                                  " shares more noise with the one before than both have: their covariance must be "
+                                  "finite and positive definite");
+    }
+  }
 }
 
 }  // namespace
 
 BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
                    const BatchSettings& settings) {
-  check(model, prior, data);
+  check(model, prior, data, settings.start);
   const BatchProblem problem(model, prior, data, settings.huber);
-  Eigen::VectorXd mean = prior.mean;
+  Eigen::VectorXd mean = settings.start.size() > 0 ? settings.start : prior.mean;
   double cost = problem.cost(mean);
   double damping = 1e-3;
   BatchFit fit{prior, cost, 0, Status::NotConverged};

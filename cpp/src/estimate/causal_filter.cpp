@@ -2,8 +2,11 @@
 // The causal filter of one model.
 #include "slipwise/estimate/causal_filter.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "slipwise/estimate/heavy_tails.hpp"
 
@@ -11,6 +14,12 @@ namespace slipwise {
 namespace {
 
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
+
+constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
+constexpr int kRounds = 2;                      // the noise follows the parameters, and they the noise
+constexpr int kSteps = 10;                      // of a round, at most
+constexpr double kTolerance = 1e-5;             // of the cost: far less than a standard deviation
+constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
 
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
 
@@ -25,13 +34,15 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
   if (!started_) {
-    estimate_ = prior_estimate(model_, speeds, settings_.prior);
+    estimate_ = before_ = prior_estimate(model_, speeds, settings_.prior);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
     std::optional<Estimate> changed = change_slip_prior(estimate_, slip_std_, std);
-    if (!changed) {
+    std::optional<Estimate> before = change_slip_prior(before_, slip_std_, std);
+    if (!changed || !before) {
       return;  // the old prior stays in force
     }
     estimate_ = std::move(*changed);
+    before_ = std::move(*before);
   } else {
     return;
   }
@@ -52,17 +63,88 @@ void CausalFilter::forget(double share) {
   estimate_.covariance.leftCols(slip) *= keep;
   estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
   noise_scale_.hurry();
+  before_ = estimate_;
+  kept_.clear();
+  since_ = 0;
+}
+
+Eigen::Matrix3d CausalFilter::expected_noise(const InputTrack& inputs, const Segment& segment) const {
+  const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
+  return slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
+}
+
+/// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
+  if (linearize_segment(model_, estimate_.mean, inputs, segment).by_parameter.isZero(0.0)) {
+    return;
+  }
+  ++since_;
+  if (since_ > kLast) {
+    kept_ = {};
+    return;
+  }
+  kept_.push_back({inputs, segment});
+  if (since_ >= kFirst && std::has_single_bit(since_)) {
+    relearn();
+  }
+}
+
+/// The first segments were learned with a first guess of the noise, and linearised where little was known.
+void CausalFilter::relearn() {
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<BatchDatum> data = kept_data();
+    if (data.empty()) {
+      return;
+    }
+    constexpr double kWeighed = std::numeric_limits<double>::infinity();
+    estimate_ = batch_fit(model_, before_, data,
+                          {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean})
+                    .estimate;
+    noise_scale_.restart();
+    for (const Kept& kept : kept_) {
+      noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,
+                         expected_noise(kept.inputs, kept.segment).diagonal());
+    }
+  }
+}
+
+/// Weighed by the rule of the IEKF. From wheels, neighbours share the noise of the pose where they meet; from commands,
+/// what is not known of the drive there is far more.
+std::vector<BatchDatum> CausalFilter::kept_data() const {
+  std::vector<BatchDatum> data;
+  const Segment* last = nullptr;
+  for (const Kept& kept : kept_) {
+    const Segment& segment = kept.segment;
+    const Eigen::Matrix3d noise = scaled_covariance(expected_noise(kept.inputs, segment), noise_scale_.value());
+    const auto at = linearize_segment(model_, estimate_.mean, kept.inputs, segment);
+    const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+    const Eigen::Matrix3d covariance =
+        at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
+    const double nis = innovation.dot(covariance.llt().solve(innovation));
+    if (!(nis <= settings_.iekf.gate)) {
+      last = nullptr;
+      continue;
+    }
+    Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+    if (!model_.learned().dynamics && last != nullptr && std::abs(segment.start - last->end) < kSameStamp) {
+      shared = scaled_covariance(shared_pose_noise(segment.measured, last->measured, settings_.noise.shape),
+                                 noise_scale_.value());
+    }
+    const double larger = std::max(std::sqrt(nis) / settings_.iekf.huber, 1.0);
+    data.push_back({.inputs = &kept.inputs, .segment = segment, .noise = noise * larger, .shared = shared});
+    last = &segment;
+  }
+  return data;
 }
 
 IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
-  const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
-  const Eigen::Matrix3d expected =
-      slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
+  const Eigen::Matrix3d expected = expected_noise(inputs, segment);
   IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, scaled_covariance(expected, noise_scale_.value()),
                                   settings_.iekf);
   estimate_ = update.estimate;
   noise_scale_.learn(model_, estimate_, inputs, segment, expected.diagonal());
+  keep(inputs, segment);
   return update;
 }
 

@@ -16,6 +16,20 @@ Eigen::Matrix3d end_by_tangent(const SegmentPath& path, std::size_t k) {
   return transition(path.poses[k + 1], path.poses.back()) * world;
 }
 
+/// H of derivations.md, section 5: a start measured too far left and turned too far left moves the end right and back.
+Eigen::Matrix3d end_by_start(const Pose2& measured) {
+  Eigen::Matrix3d by_start = -Eigen::Matrix3d::Identity();
+  by_start(0, 2) = measured.y;
+  by_start(1, 2) = -measured.x;
+  return by_start;
+}
+
+Eigen::Matrix3d pose_covariance(const MotionNoise& noise) {
+  const double xy = noise.pose_std_xy * noise.pose_std_xy;
+  const double yaw = noise.pose_std_yaw * noise.pose_std_yaw;
+  return Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+}
+
 std::array<double, 3> motion_of(const DriveStep& step) {
   const double distance = std::hypot(step.forward, step.left);
   const double turn = std::abs(step.turn);
@@ -45,14 +59,15 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise) {
-  // H of derivations.md, section 5: a start measured too far left and turned too far left moves the end right and back.
-  Eigen::Matrix3d from_start = -Eigen::Matrix3d::Identity();
-  from_start(0, 2) = measured.y;
-  from_start(1, 2) = -measured.x;
-  const double xy = noise.pose_std_xy * noise.pose_std_xy;
-  const double yaw = noise.pose_std_yaw * noise.pose_std_yaw;
-  const Eigen::Matrix3d pose = Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+  const Eigen::Matrix3d from_start = end_by_start(measured);
+  const Eigen::Matrix3d pose = pose_covariance(noise);
   return from_start * pose * from_start.transpose() + pose;
+}
+
+Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise) {
+  Eigen::Matrix3d seen_there = Eigen::Matrix3d::Identity();  // the pose where they meet, from the start of the one before
+  seen_there.topLeftCorner<2, 2>() = rotation(-before.theta);
+  return end_by_start(measured) * seen_there * pose_covariance(noise);
 }
 
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {

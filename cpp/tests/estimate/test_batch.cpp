@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -30,6 +31,37 @@ std::vector<BatchDatum> data_of(const MotionModel& model, const tests::Simulated
   return data;
 }
 
+/// Straight windows that meet, for a model whose chart is linear in its parameters.
+struct LinearDrive {
+  MotionModel model = straight_model();
+  InputTrack inputs = ramp();
+  std::vector<BatchDatum> data;
+
+  explicit LinearDrive(const Eigen::Matrix3d& shared) {
+    for (int i = 1; i < 18; ++i) {
+      Segment segment{.start = i + 0.3, .end = i + 1.3};
+      segment.measured = {0.55 + 0.1 * i + 0.03 * std::sin(3.0 * i), 0.02 * i, 0.001};
+      data.push_back({&inputs, segment, 0.01 * Eigen::Matrix3d::Identity(), shared});
+    }
+    data.front().shared.setZero();
+  }
+
+  static MotionModel straight_model() {
+    const std::vector<std::string> lon{"V", "V^2"}, lat{"V"}, none;
+    return {Basis("linear", lon, lat, none), {}};
+  }
+
+  static InputTrack ramp() {
+    std::vector<double> t, v, zero;
+    for (int i = 0; i < 20; ++i) {
+      t.push_back(i);
+      v.push_back(0.5 + 0.1 * i);
+      zero.push_back(0.0);
+    }
+    return {t, v, zero, zero};
+  }
+};
+
 TEST_CASE("the batch fit recovers slip and clock offset within three sigma") {
   const MotionModel model(named_basis("odd-even-10"), {.clock_offset = true});
   Eigen::VectorXd truth(11);
@@ -46,26 +78,60 @@ TEST_CASE("the batch fit recovers slip and clock offset within three sigma") {
 }
 
 TEST_CASE("on a linear problem the filter and the batch fit agree") {
-  const std::vector<std::string> lon{"V", "V^2"}, lat{"V"}, none;
-  const MotionModel model(Basis("linear", lon, lat, none), {});
-  std::vector<double> t, v, zero;
-  for (int i = 0; i < 20; ++i) {
-    t.push_back(i);
-    v.push_back(0.5 + 0.1 * i);
-    zero.push_back(0.0);
+  const LinearDrive drive(Eigen::Matrix3d::Zero());
+  Estimate filtered = wide_prior(drive.model);
+  for (const BatchDatum& datum : drive.data) {
+    filtered = iekf_update(drive.model, filtered, drive.inputs, datum.segment, datum.noise).estimate;
   }
-  const InputTrack inputs(t, v, zero, zero);
-  std::vector<BatchDatum> data;
-  Estimate filtered = wide_prior(model);
-  for (int i = 1; i < 18; ++i) {
-    Segment segment{.start = i + 0.3, .end = i + 1.3};
-    segment.measured = {0.55 + 0.1 * i, 0.02 * i, 0.001};
-    data.push_back({&inputs, segment, 0.01 * Eigen::Matrix3d::Identity()});
-    filtered = iekf_update(model, filtered, inputs, segment, data.back().noise).estimate;
-  }
-  const BatchFit fit = batch_fit(model, wide_prior(model), data, {.tolerance = 1e-14});
+  const BatchFit fit = batch_fit(drive.model, wide_prior(drive.model), drive.data, {.tolerance = 1e-14});
   CHECK((fit.estimate.mean - filtered.mean).norm() < 1e-7);
   CHECK((fit.estimate.covariance - filtered.covariance).norm() < 1e-10);
+}
+
+TEST_CASE("errors that neighbours share are weighed as generalised least squares weighs them") {
+  Eigen::Matrix3d shared;
+  shared << -0.004, 0.001, 0.0, 0.0, -0.003, 0.002, 0.001, 0.0, -0.004;
+  const LinearDrive drive(shared);
+  const Estimate prior = wide_prior(drive.model);
+  const auto n = std::ssize(drive.data);
+  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  Eigen::MatrixXd by_parameter(3 * n, drive.model.size());
+  Eigen::VectorXd residual(3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const BatchDatum& datum = drive.data[static_cast<std::size_t>(i)];
+    const auto at = linearize_segment(drive.model, prior.mean, drive.inputs, datum.segment);
+    by_parameter.middleRows<3>(3 * i) = at.by_parameter;
+    residual.segment<3>(3 * i) = datum.segment.measured.vector() - at.predicted.vector();
+    noise.block<3, 3>(3 * i, 3 * i) = datum.noise;
+    if (i > 0) {
+      noise.block<3, 3>(3 * i, 3 * i - 3) = shared;
+      noise.block<3, 3>(3 * i - 3, 3 * i) = shared.transpose();
+    }
+  }
+  const Eigen::LLT<Eigen::MatrixXd> whole(noise);
+  REQUIRE(whole.info() == Eigen::Success);
+  const Eigen::MatrixXd information =
+      by_parameter.transpose() * whole.solve(by_parameter) + prior.covariance.inverse();
+  const Eigen::VectorXd mean = information.llt().solve(by_parameter.transpose() * whole.solve(residual));
+  const BatchFit fit = batch_fit(drive.model, prior, drive.data, {.tolerance = 1e-14, .huber = 1e9});
+  CHECK((fit.estimate.mean - mean).norm() < 1e-7);
+  CHECK((fit.estimate.covariance - information.inverse()).norm() < 1e-10);
+}
+
+TEST_CASE("a fit from near its end takes fewer steps to the same place") {
+  const LinearDrive drive(Eigen::Matrix3d::Zero());
+  const BatchFit fit = batch_fit(drive.model, wide_prior(drive.model), drive.data);
+  const BatchFit again = batch_fit(drive.model, wide_prior(drive.model), drive.data, {.start = fit.estimate.mean});
+  CHECK(again.iterations < fit.iterations);
+  CHECK((again.estimate.mean - fit.estimate.mean).norm() < 1e-6);
+}
+
+TEST_CASE("errors that share more than they have are refused") {
+  const LinearDrive drive(0.02 * Eigen::Matrix3d::Identity());
+  CHECK_THROWS_WITH_AS(batch_fit(drive.model, wide_prior(drive.model), drive.data),
+                       doctest::Contains("segment 1 shares more noise"), std::invalid_argument);
+  CHECK_THROWS_AS(batch_fit(drive.model, wide_prior(drive.model), drive.data, {.start = Eigen::VectorXd::Zero(2)}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("one pose jump hardly moves a robust fit") {

@@ -12,11 +12,12 @@ namespace slipwise {
 namespace {
 
 const ReferenceSpeeds kSpeeds{.v = 1.5, .omega = 0.8};
+const MotionNoise kTrueNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.002};
 
 TEST_CASE("the noise factor finds noise that is not what the shape says") {
   const MotionModel model(named_basis("edd-2"), {});
   CausalFilterSettings settings;
-  settings.noise.shape = {.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.002};
+  settings.noise.shape = kTrueNoise;
   MotionNoise real = settings.noise.shape;
   for (double& psd : real.psd_time) {
     psd *= 4.0;
@@ -69,6 +70,53 @@ TEST_CASE("a prior that grows with the speeds gives the answer of knowing the sp
   CHECK(growing.prior_std().isApprox(knowing.prior_std()));
   CHECK(((growing.estimate().mean - knowing.estimate().mean).cwiseQuotient(sigma)).cwiseAbs().maxCoeff() < 0.3);
   CHECK(growing.estimate().covariance.isApprox(knowing.estimate().covariance, 0.05));
+}
+
+/// The filter after a drive with `kTrueNoise`, told a shape whose variances are `factor` times as large.
+CausalFilter learned_under(double factor, std::size_t windows) {
+  const MotionModel model(named_basis("edd-2"), {});
+  CausalFilterSettings settings;
+  settings.noise.shape = kTrueNoise;
+  for (double& psd : settings.noise.shape.psd_time) {
+    psd *= factor;
+  }
+  settings.noise.shape.pose_std_xy *= std::sqrt(factor);
+  settings.noise.shape.pose_std_yaw *= std::sqrt(factor);
+  const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
+                                           {.seed = 79, .windows = windows, .window = 2.0, .noise = kTrueNoise});
+  CausalFilter filter(model, settings);
+  for (const Segment& segment : drive.segments) {
+    filter.learn(drive.inputs, segment, kSpeeds);
+  }
+  return filter;
+}
+
+TEST_CASE("a first guess of the noise is forgotten once the first segments are learned anew") {
+  const Eigen::VectorXd told = learned_under(1.0, 64).estimate().covariance.diagonal();
+  const Eigen::VectorXd guessed = learned_under(30.0, 64).estimate().covariance.diagonal();
+  const Eigen::VectorXd just_before = learned_under(30.0, 15).estimate().covariance.diagonal();
+  const Eigen::VectorXd anew = learned_under(30.0, 16).estimate().covariance.diagonal();
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    CAPTURE(i);
+    CHECK(guessed[i] / told[i] == doctest::Approx(1.0).epsilon(0.5));
+    CHECK(anew[i] < 0.7 * just_before[i]);
+  }
+}
+
+TEST_CASE("what is learned anew after a change of ground is the new ground") {
+  const MotionModel model(named_basis("edd-2"), {});
+  CausalFilterSettings settings;
+  settings.noise.shape = kTrueNoise;
+  CausalFilter filter(model, settings);
+  for (const double slip : {-0.3, -0.6}) {
+    const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, slip),
+                                             {.seed = 80, .windows = 32, .window = 2.0, .noise = kTrueNoise});
+    for (const Segment& segment : drive.segments) {
+      filter.learn(drive.inputs, segment, kSpeeds);
+    }
+    CHECK(std::abs(filter.estimate().mean[1] - slip) < 3.0 * std::sqrt(filter.estimate().covariance(1, 1)));
+    filter.forget(1.0);
+  }
 }
 
 TEST_CASE("forgetting gives slip its prior variance back in part, and nothing to lag and delay") {

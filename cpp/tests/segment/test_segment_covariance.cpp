@@ -107,6 +107,31 @@ TEST_CASE("the covariance of pose noise is that of two noisy poses seen from the
   }
 }
 
+TEST_CASE("motions that meet at a measured pose share its noise") {
+  const MotionNoise noise{.pose_std_xy = 0.02, .pose_std_yaw = 0.01};
+  const Pose2 start{3.0, -1.0, 0.7}, before{2.0, 0.5, 0.4}, after{1.0, -0.6, -1.1};
+  std::mt19937_64 random(45);
+  std::normal_distribution<double> normal;
+  const auto disturbed = [&](const Pose2& pose) {
+    const double x = normal(random), y = normal(random), yaw = normal(random);
+    return Pose2{pose.x + 0.02 * x, pose.y + 0.02 * y, pose.theta + 0.01 * yaw};
+  };
+  const Pose2 meeting = compose(start, before);
+  Eigen::Matrix3d sampled = Eigen::Matrix3d::Zero();
+  for (int i = 0; i < kDraws; ++i) {
+    const Pose2 met = disturbed(meeting);
+    const Eigen::Vector3d first = between(disturbed(start), met).vector() - before.vector();
+    const Eigen::Vector3d second = between(met, disturbed(compose(meeting, after))).vector() - after.vector();
+    sampled += second * first.transpose() / kDraws;
+  }
+  const Eigen::Vector3d of_first = pose_noise_covariance(before, noise).diagonal();
+  const Eigen::Vector3d of_second = pose_noise_covariance(after, noise).diagonal();
+  const Eigen::Matrix3d off = (sampled - shared_pose_noise(after, before, noise)).cwiseAbs();
+  const Eigen::Matrix3d usual = (of_second * of_first.transpose() / kDraws).cwiseSqrt();
+  CHECK(off.cwiseQuotient(usual).maxCoeff() < 5.0);
+  CHECK(sampled.cwiseAbs().cwiseQuotient(usual).maxCoeff() > 20.0);
+}
+
 TEST_CASE("a parked robot gathers no slip noise") {
   const InputTrack inputs = tests::sampled([](double) { return BodyTwist{}; }, 0.0, 0.05, 100);
   const SegmentPath path = integrate_segment(MotionModel(named_basis("edd-2"), {}), Eigen::Vector2d::Zero(), inputs,

@@ -20,6 +20,7 @@ from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
 
+PATIENCE = 0.5  # of the bases' learning rate: structures share slip and poses, so that one window repeats the last
 JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
 
 
@@ -94,6 +95,7 @@ class StructureChoice:
     ) -> None:
         """`recorder` keeps the beliefs of all, and their weights."""
         self._windows, self._weighing = windows, settings.average_settings().weighing
+        self._weighing.learning_rate *= PATIENCE
         self._average = AverageLearner(average)
         self._together = CausalPass(self._average, windows, self._see)
         passing = CascadePass(windows, settings)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import queue
 import signal
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, wait
@@ -25,7 +24,7 @@ from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.real_logs import real_log_exhibits
 
 if TYPE_CHECKING:
-    from multiprocessing.queues import Queue
+    from multiprocessing.queues import SimpleQueue
 
 Progress = Callable[[str, float], None]  # what is being done, and which share of it is done, 0 to 1
 MakeExhibits = Callable[[Bench, Progress], list[Exhibit]]
@@ -105,7 +104,7 @@ def reproduce(
     if plan.seed < 0:
         raise SettingsError(f"the seed is {plan.seed}", where="seed", advice="give a whole number from 0 up")
     context = multiprocessing.get_context("spawn")  # forked processes hang in libraries that use threads
-    reports = context.Queue()
+    reports = context.SimpleQueue()  # written to before a chapter's result is: no report comes too late
     others = set(multiprocessing.active_children())
     with ProcessPoolExecutor(
         WORKERS, mp_context=context, initializer=_start, initargs=(plan, reports)
@@ -131,7 +130,7 @@ def reproduce(
 
 
 def _follow(
-    futures: Sequence[Future[list[Exhibit]]], reports: Queue[tuple[str, str, float]], progress: Progress
+    futures: Sequence[Future[list[Exhibit]]], reports: SimpleQueue[tuple[str, str, float]], progress: Progress
 ) -> None:
     """Report progress until all futures are done or one has failed."""
     shares: dict[str, float] = {}
@@ -139,11 +138,8 @@ def _follow(
     while waiting:
         done = wait(futures, timeout=POLL).done
         waiting = len(done) < len(futures) and not any(future.exception() for future in done)
-        while True:
-            try:
-                key, what, share = reports.get_nowait()
-            except queue.Empty:
-                break
+        while not reports.empty():
+            key, what, share = reports.get()
             shares[key] = max(share, shares.get(key, 0.0))
             progress(f"{key}: {what}", sum(shares.values()) / len(futures))
 
@@ -152,10 +148,10 @@ class _Worker:
     """What a worker process keeps from chapter to chapter."""
 
     bench: Bench
-    reports: Queue[tuple[str, str, float]]
+    reports: SimpleQueue[tuple[str, str, float]]
 
 
-def _start(plan: BenchPlan, reports: Queue[tuple[str, str, float]]) -> None:
+def _start(plan: BenchPlan, reports: SimpleQueue[tuple[str, str, float]]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent ends the workers
     load_simulator()
     _Worker.bench = Bench(seed=plan.seed, data=plan.data, size=plan.size)

@@ -105,11 +105,15 @@ def test_an_estimator_that_does_not_exist_is_refused_with_those_that_do() -> Non
         make_settings({"estimator": "magic"})
 
 
-def test_iekf_is_the_filter_that_calibrates(settings: Settings, windows: WindowSet) -> None:
-    belief = run_of("iekf", settings, windows).belief(40)
-    known = average_pass(make_learner(settings, "wheel").fresh(), windows).belief(40)
+def test_iekf_is_the_filter_that_calibrates_until_that_learns_anew(
+    settings: Settings, windows: WindowSet
+) -> None:
+    passing = average_pass(make_learner(settings, "wheel").fresh(), windows)
+    estimating = run_of("iekf", settings, windows)
+    belief, known = estimating.belief(7), passing.belief(7)
     assert belief.mean == pytest.approx(known.mean, rel=1e-9)
     assert belief.covariance == pytest.approx(known.covariance, rel=1e-9)
+    assert estimating.belief(8).mean != pytest.approx(passing.belief(8).mean, rel=1e-4)
 
 
 def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Off-line reference: Levenberg-Marquardt MAP over all segments at once, with a Huber loss.
+// Levenberg-Marquardt MAP over all segments at once, with a Huber loss.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,6 +16,8 @@ struct BatchSettings {
   int iterations = 30;      ///< at most
   double tolerance = 1e-8;  ///< relative decrease of the cost that counts as converged [-]
   double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
+  /// Where the search starts [parameters]; empty: at the prior's mean.
+  Eigen::VectorXd start = {};
 };
 
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
@@ -23,6 +25,8 @@ struct BatchDatum {
   const InputTrack* inputs;
   Segment segment;
   Eigen::Matrix3d noise;
+  /// Covariance of its error with that of the datum before.
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
 };
 
 struct BatchFit {

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning one model segment by segment: prior that follows the speeds, IEKF update, noise that follows the residuals.
+// Learning one model segment by segment: prior that follows the speeds, IEKF update, noise that follows the residuals,
+// and the first segments learned anew where noise and linearisation were guesses.
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <vector>
 
+#include "slipwise/estimate/batch.hpp"
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/noise_scale.hpp"
 #include "slipwise/estimate/prior.hpp"
@@ -21,7 +25,8 @@ class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
-  /// Learns one segment. `speeds` are those seen up to the segment's end.
+  /// Learns one segment. `speeds` are those seen up to the segment's end. After 8, 16, ... 256 segments all of them are
+  /// learned anew; the update returned is that of the segment alone.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
 
   /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
@@ -37,13 +42,25 @@ class CausalFilter {
   const NoiseSettings& noise() const { return settings_.noise; }
 
  private:
+  struct Kept {
+    InputTrack inputs;
+    Segment segment;
+  };
+
   void follow(const ReferenceSpeeds& speeds);
+  Eigen::Matrix3d expected_noise(const InputTrack& inputs, const Segment& segment) const;
+  void keep(const InputTrack& inputs, const Segment& segment);
+  void relearn();
+  std::vector<BatchDatum> kept_data() const;
 
   MotionModel model_;
   CausalFilterSettings settings_;
   ReferenceSpeeds speeds_{};
   bool started_ = false;
   Estimate estimate_;
+  Estimate before_;         ///< what was known before the segments that are kept
+  std::vector<Kept> kept_;  ///< the first since the start, or since the ground changed
+  std::size_t since_ = 0;   ///< segments since then
   Eigen::VectorXd slip_std_;
   NoiseScale noise_scale_;
 };

@@ -35,7 +35,9 @@ class NoiseScale {
              const Eigen::Vector3d& expected);
   /// Follows the next residuals as fast as those of the first segments, from the present value.
   void hurry() { segments_ = std::min(segments_, settings_.prior_segments); }
-  /// The same for a model that never learns the segment: of its squared error, the parameters explain `open`.
+  /// Forgets all residuals.
+  void restart() { *this = NoiseScale(settings_); }
+  /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain `open`.
   void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
 
  private:

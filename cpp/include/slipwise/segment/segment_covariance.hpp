@@ -13,6 +13,8 @@ namespace slipwise {
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
 /// Covariance of a measured T_start_end because both poses are measured: H R H^T + R.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise);
+/// Covariance of the chart of a measured motion with that of the one before it, where they meet at one measured pose.
+Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise);
 /// A covariance of (x, y, theta) with a factor of its variances.
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale);
 /// R of a measured segment: slip and both poses, with a factor of the variances of (x, y, theta).
