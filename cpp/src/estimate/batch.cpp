@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slipwise/segment/integrate_segment.hpp"
@@ -20,6 +21,7 @@ using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 struct NormalEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;  ///< of half the cost, downhill
+  double cost;
 };
 
 struct HuberLoss {
@@ -65,21 +67,9 @@ class BatchProblem {
         huber_(huber),
         prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
 
-  double cost(const Eigen::VectorXd& mean) const {
-    const Eigen::VectorXd away = mean - prior_.mean;
-    double sum = away.dot(prior_information_ * away);
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < data_.size(); ++i) {
-      const Segment& segment = data_[i].segment;
-      const Pose2 predicted = integrate_segment(model_, mean, *data_[i].inputs, segment).sensor_motion();
-      r = segment.measured.vector() - predicted.vector() - errors_[i].by_before * r;
-      sum += huber_loss(r.dot(errors_[i].noise.solve(r)), huber_).cost;
-    }
-    return sum;
-  }
-
   NormalEquations linearize(const Eigen::VectorXd& mean) const {
-    NormalEquations equations{prior_information_, prior_information_ * (prior_.mean - mean)};
+    const Eigen::VectorXd back = prior_.mean - mean;
+    NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back)};
     Eigen::Vector3d r = Eigen::Vector3d::Zero();
     Jacobian by_parameter = Jacobian::Zero(3, model_.size());
     for (std::size_t i = 0; i < data_.size(); ++i) {
@@ -88,8 +78,9 @@ class BatchProblem {
       r = segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
       by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
       const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
-      const double weight = huber_loss(r.dot(noise.solve(r)), huber_).weight;
-      const Eigen::MatrixXd weighted = noise.solve(by_parameter) * weight;
+      const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), huber_);
+      const Jacobian weighted = noise.solve(by_parameter) * loss.weight;
+      equations.cost += loss.cost;
       equations.information.noalias() += by_parameter.transpose() * weighted;
       equations.gradient.noalias() += weighted.transpose() * r;
     }
@@ -148,29 +139,27 @@ BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<co
   check(model, prior, data, settings.start);
   const BatchProblem problem(model, prior, data, settings.huber);
   Eigen::VectorXd mean = settings.start.size() > 0 ? settings.start : prior.mean;
-  double cost = problem.cost(mean);
+  NormalEquations now = problem.linearize(mean);
   double damping = 1e-3;
-  BatchFit fit{prior, cost, 0, Status::NotConverged};
-  NormalEquations equations = problem.linearize(mean);
+  BatchFit fit{prior, now.cost, 0, Status::NotConverged};
   while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
     ++fit.iterations;
-    Eigen::MatrixXd damped = equations.information;
+    Eigen::MatrixXd damped = now.information;
     damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd candidate = mean + damped.llt().solve(equations.gradient);
-    const double candidate_cost = problem.cost(candidate);
-    if (!(candidate_cost <= cost)) {
+    const Eigen::VectorXd candidate = mean + damped.llt().solve(now.gradient);
+    NormalEquations next = problem.linearize(candidate);
+    if (!(next.cost <= now.cost)) {
       damping *= 10.0;
       fit.status = damping > 1e12 ? Status::Converged : fit.status;  // no downhill step is left at working precision
       continue;
     }
-    fit.status = cost - candidate_cost <= settings.tolerance * cost ? Status::Converged : fit.status;
+    fit.status = now.cost - next.cost <= settings.tolerance * now.cost ? Status::Converged : fit.status;
     mean = candidate;
-    cost = candidate_cost;
+    now = std::move(next);
     damping = std::max(damping / 10.0, 1e-12);
-    equations = problem.linearize(mean);
   }
-  fit.cost = cost;
-  fit.estimate = {mean, equations.information.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))};
+  fit.cost = now.cost;
+  fit.estimate = {mean, now.information.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))};
   return fit;
 }
 

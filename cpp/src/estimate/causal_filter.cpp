@@ -16,8 +16,7 @@ namespace {
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
 constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
-constexpr int kRounds = 2;                      // the noise follows the parameters, and they the noise
-constexpr int kSteps = 10;                      // of a round, at most
+constexpr int kSteps = 10;                      // then, at most
 constexpr double kTolerance = 1e-5;             // of the cost: far less than a standard deviation
 constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
 
@@ -91,20 +90,18 @@ void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
 
 /// The first segments were learned with a first guess of the noise, and linearised where little was known.
 void CausalFilter::relearn() {
-  for (int round = 0; round < kRounds; ++round) {
-    const std::vector<BatchDatum> data = kept_data();
-    if (data.empty()) {
-      return;
-    }
-    constexpr double kWeighed = std::numeric_limits<double>::infinity();
-    estimate_ = batch_fit(model_, before_, data,
-                          {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean})
-                    .estimate;
-    noise_scale_.restart();
-    for (const Kept& kept : kept_) {
-      noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,
-                         expected_noise(kept.inputs, kept.segment).diagonal());
-    }
+  const std::vector<BatchDatum> data = kept_data();
+  if (data.empty()) {
+    return;
+  }
+  constexpr double kWeighed = std::numeric_limits<double>::infinity();
+  estimate_ = batch_fit(model_, before_, data,
+                        {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean})
+                  .estimate;
+  noise_scale_.restart();
+  for (const Kept& kept : kept_) {
+    noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,
+                       expected_noise(kept.inputs, kept.segment).diagonal());
   }
 }
 
@@ -118,8 +115,7 @@ std::vector<BatchDatum> CausalFilter::kept_data() const {
     const Eigen::Matrix3d noise = scaled_covariance(expected_noise(kept.inputs, segment), noise_scale_.value());
     const auto at = linearize_segment(model_, estimate_.mean, kept.inputs, segment);
     const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-    const Eigen::Matrix3d covariance =
-        at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
+    const Eigen::Matrix3d covariance = at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
     const double nis = innovation.dot(covariance.llt().solve(innovation));
     if (!(nis <= settings_.iekf.gate)) {
       last = nullptr;

@@ -110,8 +110,7 @@ TEST_CASE("errors that neighbours share are weighed as generalised least squares
   }
   const Eigen::LLT<Eigen::MatrixXd> whole(noise);
   REQUIRE(whole.info() == Eigen::Success);
-  const Eigen::MatrixXd information =
-      by_parameter.transpose() * whole.solve(by_parameter) + prior.covariance.inverse();
+  const Eigen::MatrixXd information = by_parameter.transpose() * whole.solve(by_parameter) + prior.covariance.inverse();
   const Eigen::VectorXd mean = information.llt().solve(by_parameter.transpose() * whole.solve(residual));
   const BatchFit fit = batch_fit(drive.model, prior, drive.data, {.tolerance = 1e-14, .huber = 1e9});
   CHECK((fit.estimate.mean - mean).norm() < 1e-7);

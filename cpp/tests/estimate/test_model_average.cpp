@@ -133,7 +133,7 @@ TEST_CASE("on a new ground rivals are dealt as much weight as at first, on the o
       }
     }
     CHECK(alarms == (later_slip == -0.3 ? 0 : 1));
-    CHECK(average.state().weights[0] < 0.6 * 0.05 / 20.0);  // far less than it is dealt on a new ground
+    CHECK(average.state().weights[0] < 0.6 * 0.05 / 20.0);              // far less than it is dealt on a new ground
     average.learn(parked, {.start = 0.0, .end = 2.0, .measured = {}});  // tells nothing of any model
     return average.state().weights[0];
   };

@@ -37,7 +37,8 @@ class NoiseScale {
   void hurry() { segments_ = std::min(segments_, settings_.prior_segments); }
   /// Forgets all residuals.
   void restart() { *this = NoiseScale(settings_); }
-  /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain `open`.
+  /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain
+  /// `open`.
   void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
 
  private:
