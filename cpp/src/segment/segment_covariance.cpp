@@ -65,7 +65,7 @@ Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& 
 }
 
 Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise) {
-  Eigen::Matrix3d seen_there = Eigen::Matrix3d::Identity();  // the pose where they meet, from the start of the one before
+  Eigen::Matrix3d seen_there = Eigen::Matrix3d::Identity();  // turns back to the frame of the earlier start
   seen_there.topLeftCorner<2, 2>() = rotation(-before.theta);
   return end_by_start(measured) * seen_there * pose_covariance(noise);
 }

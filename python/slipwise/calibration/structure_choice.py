@@ -20,7 +20,7 @@ from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.wheel_drive import has_wheels
 
-PATIENCE = 0.3  # of the bases' learning rate: structures share slip and poses, so that one window repeats the last
+PATIENCE = 0.3  # of the bases' learning rate: what sets structures apart repeats from window to window
 JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
 
 
