@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
 
@@ -88,16 +89,20 @@ void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
   }
 }
 
-/// The first segments were learned with a first guess of the noise, and linearised where little was known.
+/// The first segments were learned with a first guess of the noise, and linearised where little was known. Where the
+/// fit does not settle, what was learned one by one stands.
 void CausalFilter::relearn() {
   const std::vector<BatchDatum> data = kept_data();
-  if (data.empty()) {
+  if (data.empty() || before_.covariance.llt().info() != Eigen::Success) {
     return;
   }
   constexpr double kWeighed = std::numeric_limits<double>::infinity();
-  estimate_ = batch_fit(model_, before_, data,
-                        {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean})
-                  .estimate;
+  BatchFit fit = batch_fit(model_, before_, data,
+                           {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean});
+  if (fit.status != Status::Converged) {
+    return;
+  }
+  estimate_ = std::move(fit.estimate);
   noise_scale_.restart();
   for (const Kept& kept : kept_) {
     noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,
