@@ -17,7 +17,6 @@ namespace {
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
 constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
-constexpr int kSteps = 10;                      // then, at most
 constexpr double kTolerance = 1e-5;             // of the cost: far less than a standard deviation
 constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
 
@@ -97,8 +96,8 @@ void CausalFilter::relearn() {
     return;
   }
   constexpr double kWeighed = std::numeric_limits<double>::infinity();
-  BatchFit fit = batch_fit(model_, before_, data,
-                           {.iterations = kSteps, .tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean});
+  BatchFit fit =
+      batch_fit(model_, before_, data, {.tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean});
   if (fit.status != Status::Converged) {
     return;
   }
