@@ -74,14 +74,14 @@ Eigen::Matrix3d CausalFilter::expected_noise(const InputTrack& inputs, const Seg
 
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
 void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
+  if (since_ == kLast) {
+    kept_ = {};
+    return;
+  }
   if (linearize_segment(model_, estimate_.mean, inputs, segment).by_parameter.isZero(0.0)) {
     return;
   }
   ++since_;
-  if (since_ > kLast) {
-    kept_ = {};
-    return;
-  }
   kept_.push_back({inputs, segment});
   if (since_ >= kFirst && std::has_single_bit(since_)) {
     relearn();
@@ -116,8 +116,8 @@ std::vector<BatchDatum> CausalFilter::kept_data() const {
   const Segment* last = nullptr;
   for (const Kept& kept : kept_) {
     const Segment& segment = kept.segment;
-    const Eigen::Matrix3d noise = scaled_covariance(expected_noise(kept.inputs, segment), noise_scale_.value());
     const auto at = linearize_segment(model_, estimate_.mean, kept.inputs, segment);
+    const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, settings_.noise.shape, noise_scale_.value());
     const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
     const Eigen::Matrix3d covariance = at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
     const double nis = innovation.dot(covariance.llt().solve(innovation));
