@@ -108,9 +108,12 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
 
 
 def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
-    """Judge what is known causally on held-out windows, at the longest horizon with enough of them."""
+    """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
+
+    The model is judged, so its predictions start where the plain model's do: at the measured pose.
+    """
     shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
+    forecaster = Forecaster("learned", shape, run.belief, run.dynamics, averages_poses=False)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])
@@ -148,6 +151,7 @@ def _content(
         covariance=learned.belief.covariance.tolist(),
         noise=_noise(learned, settings),
         coloured=_coloured(learned.belief, windows.length),
+        start=_start(learned.belief),
         range=_range(windows.drive),
         weights=dict(zip(bases, map(float, learned.belief.weights), strict=False)),
         provenance=schema.Provenance(
@@ -211,6 +215,17 @@ def _coloured(belief: Belief, window: float) -> schema.Coloured | None:
         for wander, weight in zip(law.candidates, law.weights, strict=True)
     ]
     return schema.Coloured(window=window, candidates=candidates)
+
+
+def _start(belief: Belief) -> schema.Start | None:
+    if belief.start is None:
+        return None
+    law = belief.start.law
+    memories = [
+        schema.PoseMemory(seconds=seconds, weight=float(weight))
+        for seconds, weight in zip(law.memories, law.weights, strict=True)
+    ]
+    return schema.Start(memories=memories)
 
 
 def _range(drive: tuple[DriveRun, ...]) -> schema.Range:

@@ -48,6 +48,8 @@ class WindowSet:
     end: Floats  # s
     measured: Floats  # [N, 3]
     segments: tuple[_core.Segment, ...]
+    known_since: Floats  # s; the input has no gap between it and the start
+    usable: tuple[Ints, ...]  # of each run: indices of the poses that are not late
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
@@ -94,6 +96,21 @@ class WindowSet:
             for i in range(max(0, count - RECENT_WINDOWS), count)
             if self.position[i] == position and self.start[i] > time - RECENT_SECONDS
         ]
+
+    def seen(self, i: int, reach: float) -> _core.SeenPoses:
+        """Return the poses of the last `reach` [s] until window i starts, where they tell of its start.
+
+        They are of its frame, not late, and the input has been known since.
+        """
+        poses, usable = self.drive[self.position[i]].run.poses, self.usable[self.position[i]]
+        start = float(self.start[i])
+        since = max(start - reach, float(self.known_since[i]))
+        first, last = np.searchsorted(poses.t, (since, start)).tolist()
+        at = usable[slice(*np.searchsorted(usable, (first, last + 1)).tolist())]
+        at = at[poses.frame[at] == poses.frame[last]]
+        return _core.SeenPoses(
+            poses.t[at].tolist(), np.column_stack((poses.x[at], poses.y[at], poses.yaw[at]))
+        )
 
     @cached_property
     def _clock_of_each(self) -> Ints:
@@ -173,6 +190,8 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
         end=np.concatenate([cut.end for cut in cuts]),
         measured=np.concatenate([cut.measured for cut in cuts]),
         segments=tuple(segments),
+        known_since=np.concatenate([cut.known_since for cut in cuts]),
+        usable=tuple(cut.usable for cut in cuts),
         left_out=_merged([item for cut in cuts for item in cut.left_out]),
     )
 

@@ -2,7 +2,7 @@
 """Prequential prediction: each window predicted from what had been learned an embargo before its start.
 
 Parameters are those of the embargo. What is true of the start alone is measured until then: the drive's
-twist, and the slip now where it wanders.
+twist, the slip now where it wanders, and the pose now.
 """
 
 from __future__ import annotations
@@ -14,15 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.coloured_pass import motion_belief
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
+from slipwise.calibration.start_pass import expected_from_measured, motion_belief
 from slipwise.calibration.tails import Tails, learn_tails
 from slipwise.models.schema import Tail
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +35,7 @@ class Forecaster:
     belief: Callable[[int], Belief]  # asked for in the order learned: the number of windows never decreases
     starts_from_wheels: bool  # the drive's measured twist at the start is used
     follows: bool = True  # slip that wanders is followed through the last windows before the start
+    averages_poses: bool = True  # the start is where the last poses say together, where that was learned
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
@@ -54,9 +56,10 @@ class _Draft:
     in_sample_counts: Ints
     pose: Floats
     covariance: Floats
-    usual: Floats  # squared length of the error where nothing recent is known of slip that wanders
+    usual: Floats  # squared length of the error from the measured start, nothing recent known of the slip
     in_sample: Floats
     structure: Ints  # that predicted: the errors of each are a population of their own
+    from_poses: Bools  # whether the start is where the poses until then say together
 
 
 def forecast(forecaster: Forecaster, learned: WindowSet, targets: WindowSet) -> Predictions:
@@ -78,7 +81,7 @@ def forecast_all(
         if kind[k] % 2 == 0:
             _predict((forecaster, learned), belief, draft, int(index[k]))
         else:
-            _predict_in_sample(belief, draft, int(index[k]))
+            _predict_in_sample(forecaster, belief, draft, int(index[k]))
     return tuple(_finished(forecaster, learned, draft) for draft in drafts)
 
 
@@ -95,32 +98,25 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
         np.empty(size),
         np.empty((size, 3)),
         np.zeros(size, dtype=np.int64),
+        np.zeros(size, dtype=np.bool_),
     )
 
 
 def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft, i: int) -> None:
     forecaster, learned = given
     targets, position = draft.targets, int(draft.targets.position[i])
-    track = targets.track(i, belief.limited)
-    draft.structure[i] = belief.structure
+    track, segment = targets.track(i, belief.limited), targets.segments[i]
     if belief.coloured is None or not forecaster.follows:
         draft.recent[i] = 0
-    if belief.coloured is None:
-        at = _core.linearize_segment(belief.motion, belief.mean, track, targets.segments[i])
-        draft.pose[i] = at.predicted.vector()
-        draft.covariance[i] = _core.prediction_covariance(
-            at, belief.covariance, belief.noise or forecaster.noise, belief.noise_scale
-        )
-        draft.usual[i] = _squared(targets, i, draft.pose[i], draft.covariance[i])
-        return
-    known = motion_belief(belief, forecaster.noise)
     recent = learned.recent(int(draft.recent[i]), position, float(targets.start[i]))
-    followed, usual = (
-        belief.coloured.predict(known, track, belief.coloured.now(known, track, seen), targets.segments[i])
-        for seen in (recent, [])
+    usual, expected = (
+        expected_from_measured(belief, forecaster.noise, track, segment, seen) for seen in ([], recent)
     )
-    draft.pose[i], draft.covariance[i] = followed.pose, followed.covariance
+    expected = _core.starting_at(_start(forecaster, belief, targets, i), expected)
+    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
     draft.usual[i] = _squared(targets, i, usual.pose, usual.covariance)
+    draft.structure[i] = belief.structure
+    draft.from_poses[i] = belief.start is not None and forecaster.averages_poses
 
 
 def _squared(targets: WindowSet, i: int, pose: Floats, covariance: Floats) -> float:
@@ -128,7 +124,7 @@ def _squared(targets: WindowSet, i: int, pose: Floats, covariance: Floats) -> fl
     return float(normalised_squared(error, covariance[None])[0])
 
 
-def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
+def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i: int) -> None:
     targets = draft.targets
     path = _core.integrate_segment(
         belief.motion,
@@ -137,7 +133,16 @@ def _predict_in_sample(belief: Belief, draft: _Draft, i: int) -> None:
         targets.segments[i],
         _core.Integrator.Exact,
     )
-    draft.in_sample[i] = path.sensor_poses[-1]
+    end = _core.Pose2(*path.sensor_poses[-1].tolist())
+    draft.in_sample[i] = _core.compose(_start(forecaster, belief, targets, i), end).vector()
+
+
+def _start(forecaster: Forecaster, belief: Belief, targets: WindowSet, i: int) -> _core.Pose2:
+    """Where window i starts, as seen from the pose measured there."""
+    if belief.start is None or not forecaster.averages_poses:
+        return _core.Pose2(0.0, 0.0, 0.0)
+    known, track = motion_belief(belief, forecaster.noise), targets.track(i, belief.limited)
+    return belief.start.offset(known, track, targets.seen(i, belief.start.reach), targets.segments[i])
 
 
 def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Predictions:
@@ -160,7 +165,7 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
         structure=draft.structure,
         measured=targets.measured,
         learned_until=_learned_until(
-            forecaster, ((learned, draft.counts), (learned, draft.recent), (targets, known)), targets
+            forecaster, ((learned, draft.counts), (learned, draft.recent), (targets, known)), draft
         ),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
@@ -187,12 +192,9 @@ def final_tail(predictions: Predictions, structure: int) -> Tail:
     return Tail(growth=float(tails.growth[0]), dof=float(tails.dof[0]))
 
 
-def _learned_until(
-    forecaster: Forecaster,
-    used: Sequence[tuple[WindowSet, Ints]],
-    targets: WindowSet,
-) -> Floats:
+def _learned_until(forecaster: Forecaster, used: Sequence[tuple[WindowSet, Ints]], draft: _Draft) -> Floats:
     """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
+    targets = draft.targets
     if not forecaster.causal:
         return np.array([run.run.poses.t[-1] for run in targets.drive])[targets.position]
     begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])
@@ -203,4 +205,5 @@ def _learned_until(
             same_run = (counts > 0) & (windows.position[last] == targets.position)
             until = np.where(same_run, np.maximum(until, windows.end[last]), until)
     has_wheels = np.array([run.wheels is not None for run in targets.drive])
-    return np.where(forecaster.starts_from_wheels & has_wheels[targets.position], targets.start, until)
+    from_wheels = forecaster.starts_from_wheels & has_wheels[targets.position]
+    return np.where(from_wheels | draft.from_poses, targets.start, until)

@@ -33,6 +33,7 @@ class Belief:
     weights: Floats  # [B]
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
     coloured: _core.ColouredSlip | None = None  # how slip wanders about this belief, where that is learned
+    start: _core.StartPose | None = None  # how far back poses tell of a start, where that is learned
     limited: LimitedDrive | None = None  # the limits in front of the chain, where some were found
     structure: int = TOGETHER  # of STRUCTURES; the errors of each are a population of their own
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.coloured_pass import ColouredPass
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.estimators import estimator_learner, estimator_motion, fed_windows
 from slipwise.calibration.history_recorder import HistoryRecorder
 from slipwise.calibration.learner import Belief, Progress, make_learner
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.start_pass import StartPass
 from slipwise.calibration.structure_choice import StructureChoice, learning_pass
 
 
@@ -62,7 +62,7 @@ def _averaging(
     bases = tuple(basis.name for basis in learner.bases)
     recorder = HistoryRecorder(windows, bases, progress) if record else None
     passing = learning_pass(learner.fresh(), windows, settings, recorder)
-    coloured = ColouredPass(passing.belief, windows, settings)
+    belief = StartPass(passing.belief, windows, settings).belief
 
     def history() -> History | None:
         return None if recorder is None else recorder.history(passing.finish())
@@ -70,7 +70,6 @@ def _averaging(
     def limits() -> _core.LimitSearch | None:
         return passing.limits if isinstance(passing, StructureChoice) else None
 
-    belief = coloured.belief if settings.coloured.learn else passing.belief
     return LearningRun(
         belief, lambda: belief(len(windows)), history, limits, bases, learner.dynamics, causal=True
     )

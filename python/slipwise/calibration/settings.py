@@ -28,6 +28,7 @@ _ESTIMATORS = _core.EstimatorSettings()
 _AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
 _CHANGE, _DRIFT = _core.ChangeSettings(), _core.DriftSettings()
 _COLOURED = _core.ColouredSlipSettings()
+_START = _core.StartPoseSettings()
 
 
 class _Section(BaseModel):
@@ -145,6 +146,16 @@ class ColouredTable(_Section):
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
 
 
+class StartTable(_Section):
+    """Where a prediction starts: candidates of how far back poses tell of it."""
+
+    learn: bool = True
+    memories: list[Positive] = Field(list(_START.memories), min_length=1)
+    measured: Annotated[float, Field(gt=0.0, lt=1.0)] = _START.measured
+    learning_rate: Positive = _START.weighing.learning_rate
+    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _START.weighing.share
+
+
 class ChangeTable(_Section):
     """Finding a change of ground, and what is forgotten then; without one nothing ever is."""
 
@@ -197,6 +208,7 @@ class Settings(_Section):
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
     coloured: ColouredTable = ColouredTable()
+    start: StartTable = StartTable()
     change: ChangeTable = ChangeTable()
     smoothing: SmoothingTable = SmoothingTable()
     gradient_descent: GradientDescentTable = GradientDescentTable()
@@ -251,6 +263,16 @@ class Settings(_Section):
         settings, table = _core.ColouredSlipSettings(), self.coloured
         settings.fractions, settings.time_constants = table.fractions, table.time_constants
         settings.white, settings.weighing = table.white, _weighing(table)
+        return settings
+
+    def start_settings(self) -> _core.StartPoseSettings:
+        """Return the core's settings of where a prediction starts."""
+        settings, table = _core.StartPoseSettings(), self.start
+        settings.memories, settings.measured, settings.weighing = (
+            table.memories,
+            table.measured,
+            _weighing(table),
+        )
         return settings
 
     def average_settings(self) -> _core.ModelAverageSettings:
@@ -327,7 +349,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
         ) from problem
 
 
-def _weighing(table: AutoTable | ColouredTable) -> _core.WeighingSettings:
+def _weighing(table: AutoTable | ColouredTable | StartTable) -> _core.WeighingSettings:
     settings = _core.WeighingSettings()
     settings.learning_rate, settings.share = table.learning_rate, table.share
     return settings

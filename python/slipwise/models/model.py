@@ -139,6 +139,13 @@ class Model:
             np.array([each.weight for each in candidates], dtype=np.float64),
         )
 
+    @property
+    def start_law(self) -> _core.StartLaw:
+        """How far back poses tell of a start; without any memory where that was not learned."""
+        memories = [] if self.content.start is None else self.content.start.memories
+        weights = np.array([each.weight for each in memories], dtype=np.float64)
+        return _core.StartLaw([each.seconds for each in memories], weights)
+
     def covariance_over(self, seconds: float) -> NDArray[np.float64]:
         """Covariance of the parameters' mean over `seconds`, slip that wanders included.
 

@@ -97,6 +97,26 @@ class Coloured(_Section):
         return self
 
 
+class PoseMemory(_Section):
+    """One guess of how far back poses tell of the start of a prediction."""
+
+    seconds: NotNegative  # age at which a pose counts 1/e of the last; 0: the last pose alone
+    weight: NotNegative  # how likely this guess is; all together 1
+
+
+class Start(_Section):
+    """Where a prediction starts: how the noise of the last poses averages out."""
+
+    memories: Annotated[list[PoseMemory], Field(min_length=1)]
+
+    @model_validator(mode="after")
+    def _weights_are_shares(self) -> Start:
+        total = sum(memory.weight for memory in self.memories)
+        if abs(total - 1.0) > 1e-6:
+            raise ValueError(f"the weights of the memories must sum to 1, not {total:.6g}")
+        return self
+
+
 class Range(_Section):
     """What the robot did in the log; the model is not known to hold beyond it."""
 
@@ -196,6 +216,7 @@ class ModelFile(_Section):
     covariance: list[list[Finite]]
     noise: Noise
     coloured: Coloured | None = None  # slip that wanders about the parameters; None: it was not looked for
+    start: Start | None = None  # how far back poses tell of a start; None: it was not looked for
     range: Range
     weights: dict[str, NotNegative] = {}
     provenance: Provenance

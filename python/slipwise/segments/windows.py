@@ -56,6 +56,8 @@ class Windows:
     end: Floats  # s, stamp of the second pose
     measured: Floats  # [N, 3] T_start_end: x, y [m], yaw [rad], heading unwrapped
     gravity: Floats  # [N, 2] body-frame gravity (gx, gy) at the start [m/s^2]
+    known_since: Floats  # s; the input has no gap between it and the start
+    usable: Ints  # [U] indices of the poses that are not late
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
@@ -104,6 +106,7 @@ class _Cutter:
     def __init__(self, run: Run, inputs: Inputs, length: float, rules: WindowRules) -> None:
         self._run, self._inputs, self._length, self._rules = run, inputs, length, rules
         self._pairs: list[tuple[int, int]] = []
+        self._usable: list[Ints] = []
         self._counts: Counter[str] = Counter()
         self._first: dict[str, float] = {}
         poses = run.poses
@@ -130,6 +133,7 @@ class _Cutter:
         for t_late in poses.t[first:last][late].tolist():
             self._leave_out("late-pose", t_late)
         usable = first + np.flatnonzero(~late)
+        self._usable.append(usable)
         times = poses.t[usable]
         length = self._length
         if rules.whole_frames and LEAST_SHARE * length <= float(times[-1] - times[0]) < length:
@@ -201,7 +205,21 @@ class _Cutter:
             LeftOut(_REASONS[kind], count, f"run {self._run.name}, t = {self._first[kind]:.3f} s", kind)
             for kind, count in sorted(self._counts.items())
         )
-        return Windows(poses.t[i], poses.t[j], self._measured(i, j), _gravity(poses, i), left_out)
+        usable = np.concatenate([np.empty(0, dtype=np.int64), *self._usable])
+        return Windows(
+            poses.t[i],
+            poses.t[j],
+            self._measured(i, j),
+            _gravity(poses, i),
+            self._known_since(poses.t[i]),
+            usable,
+            left_out,
+        )
+
+    def _known_since(self, start: Floats) -> Floats:
+        """Return when the input became known that is known at each start [s], [N]."""
+        known_again = np.concatenate((self._inputs.t[:1], self._gap_to[:-1]))
+        return known_again[np.searchsorted(known_again, start, side="right") - 1]
 
     def _measured(self, i: Ints, j: Ints) -> Floats:
         """T_i_j from the measured poses, the yaw difference along the unwrapped yaw."""

@@ -74,6 +74,13 @@ white = 0.4
 learning_rate = 0.6
 share = 0.02
 
+[start]
+learn = false
+memories = [0.15]
+measured = 0.8
+learning_rate = 0.3
+share = 0.03
+
 [change]
 detect = false
 threshold = 12.0
@@ -148,6 +155,9 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (list(coloured.fractions), list(coloured.time_constants)) == ([0.02, 0.1], [5.0])
     assert coloured.white == 0.4
     assert (coloured.weighing.learning_rate, coloured.weighing.share) == (0.6, 0.02)
+    start = settings.start_settings()
+    assert (list(start.memories), start.measured) == ([0.15], 0.8)
+    assert (start.weighing.learning_rate, start.weighing.share) == (0.3, 0.03)
     (basis,) = settings.bases()
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
 

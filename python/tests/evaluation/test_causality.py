@@ -121,16 +121,16 @@ def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: s
 
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
-@pytest.mark.parametrize("coloured", [False, True])
+@pytest.mark.parametrize("at_start", [False, True])
 def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_the_start(
-    log: Log, input_name: str, *, coloured: bool
+    log: Log, input_name: str, *, at_start: bool
 ) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
-    settings = make_settings({"coloured": {"learn": coloured}})
+    settings = make_settings({"coloured": {"learn": at_start}, "start": {"learn": at_start}})
     whole = by_name(evaluate(log, input_name=input_name, options=options, settings=settings))
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
-        until = start if coloured else start - 2.0  # the slip now is of the start
+        until = start if at_start else start - 2.0  # the slip and the pose now are of the start
         runs = tuple(replace(run, poses=spoilt_poses(run.poses, until + 1e-6)) for run in log.runs)
         spoilt = by_name(
             evaluate(replace(log, runs=runs), input_name=input_name, options=options, settings=settings)
@@ -177,7 +177,7 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
 def test_stated_times_lie_before_the_start_and_those_of_parameters_before_the_embargo(
     log: Log, input_name: str
 ) -> None:
-    still = make_settings({"coloured": {"learn": False}})
+    still = make_settings({"coloured": {"learn": False}, "start": {"learn": False}})
     for settings in (still, make_settings({})):
         for p in evaluate(log, input_name=input_name, options=OPTIONS, settings=settings).predictions:
             assert (p.learned_until <= p.t_start + 1e-9).all()

@@ -77,9 +77,10 @@ def test_model_without_parameters_makes_the_round_trip(tmp_path: Path) -> None:
 def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
     content: Content, tmp_path: Path
 ) -> None:
-    older = {key: value for key, value in content.items() if key != "coloured"} | {"slipwise_model": 2}
+    later = ("coloured", "start")
+    older = {key: value for key, value in content.items() if key not in later} | {"slipwise_model": 2}
     model = load_model(saved(older, tmp_path / "m.yaml"))
-    assert model.content.coloured is None
+    assert (model.content.coloured, model.content.start) == (None, None)
     assert model.covariance_over(1.0).tobytes() == model.covariance.tobytes()
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
@@ -107,6 +108,11 @@ WRONG = {
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),
     "slip wanders without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
     "weights of more than all": (set_key("coloured.candidates.0.weight", 1.5), "coloured: .*sum to 1"),
+    "memories of more than all": (set_key("start.memories.0.weight", 1.5), "start: .*sum to 1"),
+    "a memory of negative length": (
+        set_key("start.memories.1.seconds", -0.1),
+        r"start\.memories\.1\.seconds",
+    ),
     "wander of negative size": (
         set_key("coloured.candidates.1.turn", -0.1),
         r"coloured\.candidates\.1\.turn",
