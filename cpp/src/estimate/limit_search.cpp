@@ -142,7 +142,7 @@ class Search {
   }
 
   ScoredDrive refined(const LimitedDrive& drive, int iterations) const {
-    return fit_.scored(fit_.refine(bands_.between_commands(drive), iterations));
+    return fit_.refine(bands_.between_commands(drive), iterations);
   }
 
   /// The best limit, or pair of rates, to add; nothing where none gains enough.
@@ -331,9 +331,9 @@ LimitedDrive plain_drive(const LimitedDriveFit& fit) {
   LimitedDrive late = start;
   std::swap(late.chain.lag_v, late.chain.delay_v);
   std::swap(late.chain.lag_omega, late.chain.delay_omega);
-  const LimitedDrive one = fit.refine(start, kLongRefinement);
-  const LimitedDrive other = fit.refine(late, kLongRefinement);
-  return fit.loss(one).total <= fit.loss(other).total ? one : other;
+  const ScoredDrive one = fit.refine(start, kLongRefinement);
+  const ScoredDrive other = fit.refine(late, kLongRefinement);
+  return one.loss.total <= other.loss.total ? one.drive : other.drive;
 }
 
 /// The fit has the gain in front of the sides, limited or not.
