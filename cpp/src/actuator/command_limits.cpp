@@ -74,12 +74,6 @@ CommandLimits channel_limits(const CommandLimits& limits) {
   return {.speed = limits.speed, .yaw_rate = limits.yaw_rate};
 }
 
-SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist) {
-  const double v = limits.gain_v * twist.v;
-  const double half = 0.5 * limits.gain_omega * twist.omega * limits.track;
-  return {v - half, v + half};
-}
-
 InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
   need_positive("a ramp's longest piece", longest_piece);
   CommandLimiter limiter(limits);
