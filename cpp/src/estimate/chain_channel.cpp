@@ -221,11 +221,10 @@ double ChainChannel::inflation(double nis, Eigen::Index count) const {
 }
 
 /// One step of expectation-maximisation for the size of the noise, given its shape: what of the innovation is noise.
-void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance,
+void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
                               const Eigen::MatrixXd& noise) {
-  const Eigen::LLT<Eigen::MatrixXd> s(covariance);
-  const Eigen::VectorXd whitened = s.solve(innovation);
-  const double surprise = whitened.dot(noise * whitened) - s.solve(noise).trace();
+  const Eigen::VectorXd whitened = covariance.solve(innovation);
+  const double surprise = whitened.dot(noise * whitened) - covariance.solve(noise).trace();
   windows_ += 1.0;
   const double gain = std::max(1.0 / (windows_ + kFirstWindows), 1.0 / kMemory);
   size_ *= 1.0 + gain * std::min(surprise / static_cast<double>(innovation.size()), kMostGain);
@@ -291,7 +290,7 @@ ChannelUpdate ChainChannel::learn(const InputTrack& inputs, const WheelMeans& se
     update.status = Status::Rejected;
     lose_track();
   }
-  learn_size(innovation, s, usual);
+  learn_size(innovation, s_llt, usual);
   return update;
 }
 

@@ -3,6 +3,7 @@
 // (derivations.md, section 4).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
@@ -62,7 +63,8 @@ class ChainChannel {
   Eigen::VectorXd measured(const WheelMeans& seen) const;
   double mean_nis(const WheelMeans& seen, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) const;
   double inflation(double nis, Eigen::Index count) const;
-  void learn_size(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& noise);
+  void learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
+                  const Eigen::MatrixXd& noise);
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
