@@ -59,12 +59,17 @@ class LaneWalk {
     towards_slow_ = part_of<N>(held_, lane_.response, kPlaces, true);
   }
 
+  static Row by_delay(double moves) {
+    if constexpr (N > 0) {
+      return moves * Row::Unit(kPlaces.delay);
+    } else {
+      return {};
+    }
+  }
+
   /// A moment that moves with the delay, or stays.
   void go_to(double then, double moves) {
-    Row duration_slope = Row::Zero();
-    if constexpr (N > 0) {
-      duration_slope[kPlaces.delay] = moves - moves_;
-    }
+    const Row duration_slope = by_delay(moves - moves_);
     const double duration = then - now_;
     const Value fast =
         advance(fast_, towards_fast_, LagDecay(lane_.response.lag, duration), kPlaces.lag, duration_slope);

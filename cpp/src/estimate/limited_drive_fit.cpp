@@ -206,7 +206,7 @@ ScoredDrive LimitedDriveFit::refine(const LimitedDrive& drive, int iterations, d
       break;
     }
   }
-  return best;
+  return {best.drive, best.loss};
 }
 
 void LimitedDriveFit::step(FittedDrive& best, const Normal& normal, const std::vector<int>& free,
