@@ -50,7 +50,8 @@ TEST_CASE("a passage that is not linear settles where its cost is least") {
   };
   const Estimate before{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Identity(1, 1)};
   const Eigen::VectorXd measured = Eigen::VectorXd::Constant(1, 3.0);
-  const double found = settle(before, bent(before.mean), bent, measured, {.iterations = 20, .tolerance = 1e-12}).state[0];
+  const double found =
+      settle(before, bent(before.mean), bent, measured, {.iterations = 20, .tolerance = 1e-12}).state[0];
   const double slope = found + (std::exp(found) - 3.0) * std::exp(found) / 0.01;
   CHECK(std::abs(slope) < 1e-3);
 }
