@@ -5,48 +5,47 @@
 #include "slipwise/actuator/first_order_lag.hpp"
 
 namespace slipwise {
-namespace {
 
-struct Channel {
-  double BodyTwist::* input;
-  double gain, lag, delay;
-};
+OutputChannel speed_channel(const CommandChain& chain) {
+  return {&BodyTwist::v, chain.gain_v, chain.lag_v, chain.delay_v};
+}
 
-std::vector<double> follow(const InputTrack& inputs, const Channel& channel, std::span<const double> times,
-                           double output) {
-  std::vector<double> result;
-  result.reserve(times.size());
+OutputChannel turn_channel(const CommandChain& chain) {
+  return {&BodyTwist::omega, chain.gain_omega, chain.lag_omega, chain.delay_omega};
+}
+
+void channel_output(const InputTrack& inputs, const OutputChannel& channel, std::span<const double> times,
+                    const BodyTwist& initial, std::span<double> output) {
   if (times.empty()) {
-    return result;
+    return;
   }
   double now = times.front();
+  double state = initial.*channel.twist;
   std::size_t next = inputs.count_until(now - channel.delay);
-  double held = next == 0 ? 0.0 : channel.gain * inputs.sample(next - 1).*channel.input;
+  double held = next == 0 ? 0.0 : channel.gain * inputs.sample(next - 1).*channel.twist;
   const auto go_to = [&](double then) {
-    output = lag_output(output, held, channel.lag, then - now);
+    state = lag_output(state, held, channel.lag, then - now);
     now = then;
   };
-  for (const double t : times) {
-    for (; next < inputs.size() && inputs.time(next) + channel.delay < t; ++next) {
-      const double changed = channel.gain * inputs.sample(next).*channel.input;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    for (; next < inputs.size() && inputs.time(next) + channel.delay < times[i]; ++next) {
+      const double changed = channel.gain * inputs.sample(next).*channel.twist;
       if (changed != held) {
         go_to(inputs.time(next) + channel.delay);
         held = changed;
       }
     }
-    go_to(t);
-    result.push_back(output);
+    go_to(times[i]);
+    output[i] = state;
   }
-  return result;
 }
-
-}  // namespace
 
 ChainOutput chain_output(const InputTrack& inputs, const CommandChain& chain, std::span<const double> times,
                          const BodyTwist& initial) {
-  return {
-      follow(inputs, {&BodyTwist::v, chain.gain_v, chain.lag_v, chain.delay_v}, times, initial.v),
-      follow(inputs, {&BodyTwist::omega, chain.gain_omega, chain.lag_omega, chain.delay_omega}, times, initial.omega)};
+  ChainOutput output{.v = std::vector<double>(times.size()), .omega = std::vector<double>(times.size())};
+  channel_output(inputs, speed_channel(chain), times, initial, output.v);
+  channel_output(inputs, turn_channel(chain), times, initial, output.omega);
+  return output;
 }
 
 }  // namespace slipwise

@@ -1,55 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ramps of one lane, and of the four lanes of a drive.
+// Ramps of the four lanes of a drive.
 #include "slipwise/actuator/command_limiter.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace slipwise {
-
-double LaneRamp::limited(double command) const {
-  return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.top, limits_.top);
-}
-
-void LaneRamp::aim(double command) {
-  target_ = limited(command);
-  follow(0.0);
-}
-
-double LaneRamp::seconds_to(double target) const {
-  const bool turns = state_ * target < 0.0;
-  return turns ? std::abs(state_) / limits_.braking + std::abs(target) / limits_.acceleration
-               : std::abs(target - state_) / rate_towards(target);
-}
-
-double LaneRamp::mean_over(double piece, double taken) {
-  if (taken == piece) {
-    return follow(piece) / piece;
-  }
-  LaneRamp whole = *this;
-  follow(taken);
-  return whole.follow(piece) / piece;
-}
-
-double LaneRamp::rate_towards(double goal) const {
-  return std::abs(goal) < std::abs(state_) ? limits_.braking : limits_.acceleration;
-}
-
-/// Goes on for `seconds`; returns the integral.
-double LaneRamp::follow(double seconds) {
-  double integral = 0.0;
-  for (int phase = 0; phase < 2 && state_ != target_; ++phase) {
-    const double goal = state_ * target_ < 0.0 ? 0.0 : target_;
-    const double rate = rate_towards(goal);
-    const double needed = std::abs(goal - state_) / rate;
-    const double next = needed <= seconds ? goal : state_ + std::copysign(rate * seconds, goal - state_);
-    const double taken = std::min(needed, seconds);
-    integral += 0.5 * (state_ + next) * taken;
-    state_ = next;
-    seconds -= taken;
-  }
-  return integral + state_ * seconds;
-}
 
 CommandLimiter::CommandLimiter(const CommandLimits& limits)
     : limits_(limits),
@@ -95,6 +50,17 @@ double CommandLimiter::seconds_left() const {
   const SideSpeeds asked = asked_of_sides(speed_.target(), yaw_rate_.target());
   return channels +
          std::max(left_.seconds_to(left_.limited(asked.left)), right_.seconds_to(right_.limited(asked.right)));
+}
+
+bool CommandLimiter::ramps() const {
+  if (speed_.ramps_to(speed_.target()) || yaw_rate_.ramps_to(yaw_rate_.target())) {
+    return true;
+  }
+  if (!sides_) {
+    return false;
+  }
+  const SideSpeeds asked = asked_of_sides(speed_.target(), yaw_rate_.target());
+  return left_.ramps_to(left_.limited(asked.left)) || right_.ramps_to(right_.limited(asked.right));
 }
 
 BodyTwist CommandLimiter::target() const {

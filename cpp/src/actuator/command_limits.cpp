@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slipwise/actuator/command_limiter.hpp"
@@ -17,24 +18,6 @@ namespace {
 constexpr double kNoTime = 1e-6;      // [s]; stamps that count from 1970 are no finer
 constexpr int kMostPieces = 2000;     // of one ramp, however slow
 constexpr double kLongestRamp = 1e6;  // [s]; nobody waits longer
-
-/// Samples of the limited track as they come.
-struct Columns {
-  std::vector<double> t, v, vy, omega;
-
-  explicit Columns(std::size_t size) {
-    for (auto* column : {&t, &v, &vy, &omega}) {
-      column->reserve(size);
-    }
-  }
-
-  void push(double time, const BodyTwist& twist) {
-    t.push_back(time);
-    v.push_back(twist.v);
-    vy.push_back(twist.vy);
-    omega.push_back(twist.omega);
-  }
-};
 
 void check(const LaneLimits& limits, const char* lane) {
   const auto refuse = [&](const char* name, double value, const char* wanted) {
@@ -91,37 +74,40 @@ CommandLimits channel_limits(const CommandLimits& limits) {
   return {.speed = limits.speed, .yaw_rate = limits.yaw_rate};
 }
 
-SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist) {
-  const double v = limits.gain_v * twist.v;
-  const double half = 0.5 * limits.gain_omega * twist.omega * limits.track;
-  return {v - half, v + half};
-}
-
 InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
   need_positive("a ramp's longest piece", longest_piece);
   CommandLimiter limiter(limits);
   if (unlimited(limits)) {
     return commands;
   }
-  Columns out(commands.size());
+  std::vector<double> t;
+  std::vector<BodyTwist> twist;
+  t.reserve(2 * commands.size());
+  twist.reserve(2 * commands.size());
+  const auto push = [&](double now, const BodyTwist& given) {
+    t.push_back(now);
+    twist.push_back(given);
+  };
   double hold = longest_piece;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     limiter.tell(commands.sample(i));
     double now = commands.time(i);
     const double next = i + 1 < commands.size() ? commands.time(i + 1) : std::numeric_limits<double>::infinity();
     hold = i > 0 ? now - commands.time(i - 1) : hold;
-    const double ramp = std::min(limiter.seconds_left(), kLongestRamp);
-    const double piece = std::max(hold / ramp_pieces(hold, longest_piece), ramp / kMostPieces);
-    for (int k = 0; k <= kMostPieces && limiter.seconds_left() > 0.0 && next - now > kNoTime; ++k) {
-      const double taken = std::min(piece, next - now);
-      out.push(now, limiter.mean_over(piece, taken));
-      now += taken;
+    if (limiter.ramps()) {
+      const double ramp = std::min(limiter.seconds_left(), kLongestRamp);
+      const double piece = std::max(hold / ramp_pieces(hold, longest_piece), ramp / kMostPieces);
+      for (int k = 0; k <= kMostPieces && next - now > kNoTime && limiter.ramps(); ++k) {
+        const double taken = std::min(piece, next - now);
+        push(now, limiter.mean_over(piece, taken));
+        now += taken;
+      }
     }
     if (next - now > kNoTime) {
-      out.push(now, limiter.target());
+      push(now, limiter.target());
     }
   }
-  return {out.t, out.v, out.vy, out.omega};
+  return {std::move(t), std::move(twist)};
 }
 
 }  // namespace slipwise

@@ -9,25 +9,43 @@
 #include <utility>
 
 namespace slipwise {
+namespace {
 
-InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
-                       std::span<const double> omega) {
+std::vector<BodyTwist> joined(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
+                              std::span<const double> omega) {
   if (v.size() != t.size() || vy.size() != t.size() || omega.size() != t.size()) {
     throw std::invalid_argument("inputs t, v, vy, omega must have equal lengths, got " + std::to_string(t.size()) +
                                 ", " + std::to_string(v.size()) + ", " + std::to_string(vy.size()) + ", " +
                                 std::to_string(omega.size()));
   }
-  Samples samples{.t = {t.begin(), t.end()}, .twist = {}};
-  samples.twist.reserve(t.size());
+  std::vector<BodyTwist> twist;
+  twist.reserve(t.size());
   for (std::size_t i = 0; i < t.size(); ++i) {
-    const bool finite = std::isfinite(t[i]) && std::isfinite(v[i]) && std::isfinite(vy[i]) && std::isfinite(omega[i]);
+    twist.push_back({v[i], vy[i], omega[i]});
+  }
+  return twist;
+}
+
+}  // namespace
+
+InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
+                       std::span<const double> omega)
+    : InputTrack({t.begin(), t.end()}, joined(t, v, vy, omega)) {}
+
+InputTrack::InputTrack(std::vector<double> t, std::vector<BodyTwist> twist) {
+  if (twist.size() != t.size()) {
+    throw std::invalid_argument("inputs need a twist at each time, got " + std::to_string(twist.size()) + " and " +
+                                std::to_string(t.size()));
+  }
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const auto& [v, vy, omega] = twist[i];
+    const bool finite = std::isfinite(t[i]) && std::isfinite(v) && std::isfinite(vy) && std::isfinite(omega);
     if (!finite || (i > 0 && t[i] <= t[i - 1])) {
       throw std::invalid_argument("input " + std::to_string(i) +
                                   " is not finite or its time does not increase; clean the log first");
     }
-    samples.twist.push_back({v[i], vy[i], omega[i]});
   }
-  samples_ = std::make_shared<const Samples>(std::move(samples));
+  samples_ = std::make_shared<const Samples>(Samples{std::move(t), std::move(twist)});
 }
 
 std::size_t InputTrack::count_until(double t) const {

@@ -7,20 +7,25 @@
 namespace slipwise {
 namespace {
 
-using Value = Sensitive<kLaneParameters>;
-using Row = Eigen::Matrix<double, 1, kLaneParameters>;
 constexpr ChannelPlaces kPlaces{.lag = 0, .delay = 1, .gain = 2, .slow_share = 3, .slow_lag = 4};
 constexpr Eigen::Index kFast = 5;
 constexpr Eigen::Index kSlow = 6;
 
+/// With slopes by N parameters: all, or none.
+template <int N>
 class LaneWalk {
  public:
+  using Value = Sensitive<N>;
+  using Row = Eigen::Matrix<double, 1, N>;
+
   LaneWalk(const InputTrack& inputs, const Lane& lane, const LaneState& start, double time)
       : inputs_(inputs), lane_(lane), now_(time), next_(inputs.count_until(time - lane.delay)) {
     fast_.value = start.fast;
-    fast_.slope[kFast] = 1.0;
     slow_.value = start.slow;
-    slow_.slope[kSlow] = 1.0;
+    if constexpr (N > 0) {
+      fast_.slope[kFast] = 1.0;
+      slow_.slope[kSlow] = 1.0;
+    }
     hold();
   }
 
@@ -50,14 +55,21 @@ class LaneWalk {
     aim();
   }
   void aim() {
-    towards_fast_ = part_of<kLaneParameters>(held_, lane_.response, kPlaces, false);
-    towards_slow_ = part_of<kLaneParameters>(held_, lane_.response, kPlaces, true);
+    towards_fast_ = part_of<N>(held_, lane_.response, kPlaces, false);
+    towards_slow_ = part_of<N>(held_, lane_.response, kPlaces, true);
+  }
+
+  static Row by_delay(double moves) {
+    if constexpr (N > 0) {
+      return moves * Row::Unit(kPlaces.delay);
+    } else {
+      return {};
+    }
   }
 
   /// A moment that moves with the delay, or stays.
   void go_to(double then, double moves) {
-    Row duration_slope = Row::Zero();
-    duration_slope[kPlaces.delay] = moves - moves_;
+    const Row duration_slope = by_delay(moves - moves_);
     const double duration = then - now_;
     const Value fast =
         advance(fast_, towards_fast_, LagDecay(lane_.response.lag, duration), kPlaces.lag, duration_slope);
@@ -78,6 +90,19 @@ class LaneWalk {
   Value fast_, slow_, towards_fast_, towards_slow_, integral_;
 };
 
+/// Hands `record` each interval's mean, and then both parts at the end.
+template <int N, typename Record>
+void walk_lane(const InputTrack& inputs, const Lane& lane, const LaneState& start, std::span<const double> edges,
+               Record record) {
+  LaneWalk<N> walk(inputs, lane, start, edges.front());
+  const auto intervals = std::ssize(edges) - 1;
+  for (std::ptrdiff_t k = 0; k < intervals; ++k) {
+    record(k, walk.mean_until(edges[static_cast<std::size_t>(k + 1)]));
+  }
+  record(intervals, walk.fast());
+  record(intervals + 1, walk.slow());
+}
+
 }  // namespace
 
 LaneState settled_lane(const InputTrack& inputs, const Lane& lane, double time) {
@@ -87,20 +112,22 @@ LaneState settled_lane(const InputTrack& inputs, const Lane& lane, double time) 
 
 LaneMotion lane_motion(const InputTrack& inputs, const Lane& lane, const LaneState& start,
                        std::span<const double> edges) {
-  const auto intervals = std::ssize(edges) - 1;
-  LaneMotion motion{Eigen::VectorXd(intervals + 2),
-                    Eigen::Matrix<double, Eigen::Dynamic, kLaneParameters>(intervals + 2, kLaneParameters)};
-  LaneWalk walk(inputs, lane, start, edges.front());
-  const auto record = [&motion](Eigen::Index row, const Value& value) {
+  const auto rows = std::ssize(edges) + 1;
+  LaneMotion motion{Eigen::VectorXd(rows),
+                    Eigen::Matrix<double, Eigen::Dynamic, kLaneParameters>(rows, kLaneParameters)};
+  walk_lane<kLaneParameters>(inputs, lane, start, edges, [&motion](Eigen::Index row, const auto& value) {
     motion.value[row] = value.value;
     motion.slope.row(row) = value.slope;
-  };
-  for (std::ptrdiff_t k = 0; k < intervals; ++k) {
-    record(k, walk.mean_until(edges[static_cast<std::size_t>(k + 1)]));
-  }
-  record(intervals, walk.fast());
-  record(intervals + 1, walk.slow());
+  });
   return motion;
+}
+
+Eigen::VectorXd lane_values(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+                            std::span<const double> edges) {
+  Eigen::VectorXd values(std::ssize(edges) + 1);
+  walk_lane<0>(inputs, lane, start, edges,
+               [&values](Eigen::Index row, const auto& value) { values[row] = value.value; });
+  return values;
 }
 
 }  // namespace slipwise

@@ -114,11 +114,15 @@ void ChainChannel::lose_track() {
   joint_.covariance.rightCols(states).setZero();
 }
 
-Passage ChainChannel::foretell(const InputTrack& inputs, const WheelMeans& seen, const Eigen::VectorXd& state) const {
+DriveNoiseMeans ChainChannel::noise_means(const WheelMeans& seen) const {
+  return drive_noise_means(noise_, seen.edges, seen.samples);
+}
+
+Passage ChainChannel::foretell(const InputTrack& inputs, const WheelMeans& seen, const DriveNoiseMeans& noise,
+                               const Eigen::VectorXd& state) const {
   const auto k = std::ssize(seen.samples);
   const Eigen::Index n = state.size();
   const Eigen::Index m = std::ranges::count(live_, true) * k;
-  const DriveNoiseMeans noise = drive_noise_means(noise_, seen.edges, seen.samples);
   Passage passage{.measured = m,
                   .value = Eigen::VectorXd::Zero(m + n),
                   .slope = Eigen::MatrixXd::Zero(m + n, n),
@@ -158,6 +162,29 @@ Passage ChainChannel::foretell(const InputTrack& inputs, const WheelMeans& seen,
   return passage;
 }
 
+/// The value of what `foretell` returns.
+Eigen::VectorXd ChainChannel::foretell_values(const InputTrack& inputs, const WheelMeans& seen,
+                                              const DriveNoiseMeans& noise, const Eigen::VectorXd& state) const {
+  const auto k = std::ssize(seen.samples);
+  const Eigen::Index m = std::ranges::count(live_, true) * k;
+  Eigen::VectorXd value = Eigen::VectorXd::Zero(m + state.size());
+  value.segment(m, kChannelParameters) = state.head(kChannelParameters);
+  Eigen::Index from = 0;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (!live_[i]) {
+      continue;
+    }
+    const Eigen::Index own = place(i);
+    const Eigen::VectorXd motion =
+        lane_values(inputs, lane(state, i), {.fast = state[own], .slow = state[own + 1]}, seen.edges);
+    value.segment(from, k) = motion.head(k) + noise.by_start.head(k) * state[own + 2];
+    value.segment<2>(m + own) = motion.tail<2>();
+    value[m + own + 2] = noise.by_start[k] * state[own + 2];
+    from += k;
+  }
+  return value;
+}
+
 Eigen::VectorXd ChainChannel::measured(const WheelMeans& seen) const {
   Eigen::VectorXd means(std::ranges::count(live_, true) * std::ssize(seen.twist));
   Eigen::Index row = 0;
@@ -194,11 +221,10 @@ double ChainChannel::inflation(double nis, Eigen::Index count) const {
 }
 
 /// One step of expectation-maximisation for the size of the noise, given its shape: what of the innovation is noise.
-void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance,
+void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
                               const Eigen::MatrixXd& noise) {
-  const Eigen::LLT<Eigen::MatrixXd> s(covariance);
-  const Eigen::VectorXd whitened = s.solve(innovation);
-  const double surprise = whitened.dot(noise * whitened) - s.solve(noise).trace();
+  const Eigen::VectorXd whitened = covariance.solve(innovation);
+  const double surprise = whitened.dot(noise * whitened) - covariance.solve(noise).trace();
   windows_ += 1.0;
   const double gain = std::max(1.0 / (windows_ + kFirstWindows), 1.0 / kMemory);
   size_ *= 1.0 + gain * std::min(surprise / static_cast<double>(innovation.size()), kMostGain);
@@ -206,7 +232,7 @@ void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::Ma
 }
 
 /// As in iekf_update: how far the window bends away over what is left open of the parameters.
-Eigen::MatrixXd ChainChannel::bending(const Foretell& foretell, const PassagePoint& point) const {
+Eigen::MatrixXd ChainChannel::bending(const Values& values, const PassagePoint& point) const {
   const Eigen::MatrixXd left = start_covariance(joint_, point.at);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> open(left.topLeftCorner(kChannelParameters, kChannelParameters));
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(point.at.value.size(), point.at.value.size());
@@ -216,8 +242,7 @@ Eigen::MatrixXd ChainChannel::bending(const Foretell& foretell, const PassagePoi
       continue;
     }
     const Eigen::VectorXd step = left.leftCols(kChannelParameters) * open.eigenvectors().col(i) / std;
-    const Eigen::VectorXd second =
-        (foretell(point.state + step).value + foretell(point.state - step).value) / 2.0 - point.at.value;
+    const Eigen::VectorXd second = (values(point.state + step) + values(point.state - step)) / 2.0 - point.at.value;
     spread += 2.0 * second * second.transpose();
   }
   return spread;
@@ -238,23 +263,26 @@ ChannelUpdate ChainChannel::learn(const InputTrack& inputs, const WheelMeans& se
     return {};
   }
   const Eigen::VectorXd z = measured(seen);
-  const Foretell from = [&](const Eigen::VectorXd& state) { return foretell(inputs, seen, state); };
-  const Passage expected = from(joint_.mean);
+  const DriveNoiseMeans noise = noise_means(seen);
+  Passage expected = foretell(inputs, seen, noise, joint_.mean);
   const Eigen::VectorXd innovation = z - expected.seen();
   const Eigen::MatrixXd s = innovation_covariance(joint_, expected);
   const Eigen::LLT<Eigen::MatrixXd> s_llt(s);
   const double nis = innovation.dot(s_llt.solve(innovation));
   ChannelUpdate update{.log_score = -0.5 * student_cost(nis, s_llt), .nis = mean_nis(seen, innovation, s)};
   const double larger = inflation(nis, z.size());
+  const Eigen::MatrixXd usual = expected.seen_noise();
   const Foretell weighed = [&](const Eigen::VectorXd& state) {
-    Passage passage = from(state);
+    Passage passage = foretell(inputs, seen, noise, state);
     passage.noise *= larger;
     return passage;
   };
+  const Values values = [&](const Eigen::VectorXd& state) { return foretell_values(inputs, seen, noise, state); };
   if (larger > 0.0) {
     update.status = larger > 1.0 ? Status::Downweighted : Status::Converged;
-    PassagePoint point = settle(joint_, weighed, z, iekf_);
-    point.at.noise += bending(weighed, point);
+    expected.noise *= larger;
+    PassagePoint point = settle(joint_, std::move(expected), weighed, z, iekf_);
+    point.at.noise += bending(values, point);
     const Estimate before = joint_;
     joint_ = end_estimate(before, point, z);
     carry_times(before);
@@ -262,7 +290,7 @@ ChannelUpdate ChainChannel::learn(const InputTrack& inputs, const WheelMeans& se
     update.status = Status::Rejected;
     lose_track();
   }
-  learn_size(innovation, s, expected.seen_noise());
+  learn_size(innovation, s_llt, usual);
   return update;
 }
 
@@ -281,7 +309,8 @@ ChainChannel::Pass ChainChannel::pass(std::span<const Past> past, const Eigen::V
       continue;
     }
     const Eigen::VectorXd z = known.measured(window.seen);
-    PassagePoint along{known.joint_.mean, known.foretell(window.inputs, window.seen, known.joint_.mean)};
+    const DriveNoiseMeans noise = noise_means(window.seen);
+    PassagePoint along{known.joint_.mean, known.foretell(window.inputs, window.seen, noise, known.joint_.mean)};
     const Eigen::LLT<Eigen::MatrixXd> s(innovation_covariance(known.joint_, along.at));
     const double nis = (z - along.at.seen()).dot(s.solve(z - along.at.seen()));
     cost += student_cost(nis, s);

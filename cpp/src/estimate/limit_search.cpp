@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -29,6 +30,7 @@ constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
 constexpr double kLagFactor = 0.4;
 constexpr double kHighest = 0.98;  // quantile of speeds that is about a top
 constexpr double kUsual = 0.9;     // quantile of rates
+constexpr double kAnyLoss = std::numeric_limits<double>::infinity();
 
 double quantile(const std::vector<double>& sorted, double share) {
   return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
@@ -68,7 +70,7 @@ class Search {
   /// Limits that act together may each explain too little to be added alone. So all tops and rates of the commands are
   /// tried at once, and kept where they, or what is left of them, explain more than what was found one by one.
   ScoredDrive or_all_at_once(const ScoredDrive& one_by_one, const LimitedDrive& plain) {
-    const ScoredDrive all = refined(with_all(plain), kLongRefinement);
+    const ScoredDrive all = refined(with_all(plain), kLongRefinement, one_by_one.loss.total - least_gain_);
     if (!gains(all, one_by_one)) {
       return one_by_one;
     }
@@ -141,8 +143,9 @@ class Search {
     return added;
   }
 
-  ScoredDrive refined(const LimitedDrive& drive, int iterations) const {
-    return fit_.scored(fit_.refine(bands_.between_commands(drive), iterations));
+  /// Given up where it does not get below `wanted`.
+  ScoredDrive refined(const LimitedDrive& drive, int iterations, double wanted = kAnyLoss) const {
+    return fit_.refine(bands_.between_commands(drive), iterations, wanted);
   }
 
   /// The best limit, or pair of rates, to add; nothing where none gains enough.
@@ -163,7 +166,8 @@ class Search {
     std::ranges::sort(trials, {}, [](const ScoredDrive& trial) { return trial.loss.total; });
     std::optional<ScoredDrive> best;
     for (std::size_t i = 0; i < std::min<std::size_t>(trials.size(), 3); ++i) {
-      const ScoredDrive trial = refined(trials[i].drive, kShortRefinement);
+      const double wanted = best ? best->loss.total : now.loss.total - least_gain_;
+      const ScoredDrive trial = refined(trials[i].drive, kShortRefinement, wanted);
       if (!best || trial.loss.total < best->loss.total) {
         best = trial;
       }
@@ -260,10 +264,10 @@ class Search {
     return smooth.loss.total > best.loss.total ? best : bands_.best(smooth);
   }
 
-  ScoredDrive without(const ScoredDrive& all, Lane lane, LimitKind kind) const {
+  ScoredDrive without(const ScoredDrive& all, Lane lane, LimitKind kind, double wanted = kAnyLoss) const {
     LimitedDrive drive = all.drive;
     limit_of(lane_of(drive.limits, lane), kind) = limit_of(LaneLimits{}, kind);
-    return refined(drive, kShortRefinement);
+    return refined(drive, kShortRefinement, wanted);
   }
 
   /// Moves a limit to another lane, where it explains more; whether one was moved.
@@ -284,7 +288,7 @@ class Search {
           if (!moved) {
             continue;
           }
-          ScoredDrive trial = refined(moved->drive, kShortRefinement);
+          ScoredDrive trial = refined(moved->drive, kShortRefinement, best.loss.total + kHopeless);
           if (trial.loss.total - best.loss.total > kHopeless) {
             continue;
           }
@@ -306,7 +310,7 @@ class Search {
     for (const Lane lane : kLanes) {
       for (const LimitKind kind : kLimitKinds) {
         if (limits_anything(lane_of(best.drive.limits, lane), kind)) {
-          const ScoredDrive less = without(best, lane, kind);
+          const ScoredDrive less = without(best, lane, kind, best.loss.total + least * best.loss.inflation);
           if (gain_of(best, less) < least) {
             least = gain_of(best, less);
             idle = less;
@@ -331,9 +335,9 @@ LimitedDrive plain_drive(const LimitedDriveFit& fit) {
   LimitedDrive late = start;
   std::swap(late.chain.lag_v, late.chain.delay_v);
   std::swap(late.chain.lag_omega, late.chain.delay_omega);
-  const LimitedDrive one = fit.refine(start, kLongRefinement);
-  const LimitedDrive other = fit.refine(late, kLongRefinement);
-  return fit.loss(one).total <= fit.loss(other).total ? one : other;
+  const ScoredDrive one = fit.refine(start, kLongRefinement);
+  const ScoredDrive other = fit.refine(late, kLongRefinement);
+  return one.loss.total <= other.loss.total ? one.drive : other.drive;
 }
 
 /// The fit has the gain in front of the sides, limited or not.

@@ -18,13 +18,17 @@ struct Iterate {
   double cost;
 };
 
-Iterate evaluate(const Estimate& prior, const Foretell& foretell, const Eigen::VectorXd& measured,
-                 Eigen::VectorXd dual) {
+Iterate evaluated(const Estimate& prior, PassagePoint point, const Eigen::VectorXd& measured, Eigen::VectorXd dual) {
   const Eigen::VectorXd away = prior.covariance * dual;
-  PassagePoint point{prior.mean + away, foretell(prior.mean + away)};
   const Eigen::VectorXd r = measured - point.at.seen();
   const double cost = dual.dot(away) + r.dot(point.at.seen_noise().llt().solve(r));
   return {std::move(dual), std::move(point), cost};
+}
+
+Iterate evaluate(const Estimate& prior, const Foretell& foretell, const Eigen::VectorXd& measured,
+                 Eigen::VectorXd dual) {
+  const Eigen::VectorXd state = prior.mean + prior.covariance * dual;
+  return evaluated(prior, {state, foretell(state)}, measured, std::move(dual));
 }
 
 Eigen::VectorXd gauss_newton_dual(const Estimate& prior, const Iterate& i, const Eigen::VectorXd& measured) {
@@ -39,9 +43,9 @@ Eigen::MatrixXd innovation_covariance(const Estimate& prior, const Passage& at) 
   return at.seen_slope() * prior.covariance * at.seen_slope().transpose() + at.seen_noise();
 }
 
-PassagePoint settle(const Estimate& prior, const Foretell& foretell, const Eigen::VectorXd& measured,
+PassagePoint settle(const Estimate& prior, Passage expected, const Foretell& foretell, const Eigen::VectorXd& measured,
                     const IekfSettings& settings) {
-  Iterate now = evaluate(prior, foretell, measured, Eigen::VectorXd::Zero(prior.mean.size()));
+  Iterate now = evaluated(prior, {prior.mean, std::move(expected)}, measured, Eigen::VectorXd::Zero(prior.mean.size()));
   for (int steps = 0; steps < settings.iterations; ++steps) {
     const double before = now.cost;
     const Eigen::VectorXd full = gauss_newton_dual(prior, now, measured) - now.dual;

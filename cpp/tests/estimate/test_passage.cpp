@@ -29,7 +29,7 @@ Estimate prior() {
 
 TEST_CASE("the end given what was measured is that of the joint distribution") {
   const Eigen::Vector2d measured(1.1, 0.4);
-  const PassagePoint point = settle(prior(), linear, measured, {});
+  const PassagePoint point = settle(prior(), linear(prior().mean), linear, measured, {});
   const Estimate end = end_estimate(prior(), point, measured);
   const Passage at = linear(prior().mean);
   const Eigen::MatrixXd joint = at.slope * prior().covariance * at.slope.transpose() + at.noise;
@@ -50,7 +50,8 @@ TEST_CASE("a passage that is not linear settles where its cost is least") {
   };
   const Estimate before{Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Identity(1, 1)};
   const Eigen::VectorXd measured = Eigen::VectorXd::Constant(1, 3.0);
-  const double found = settle(before, bent, measured, {.iterations = 20, .tolerance = 1e-12}).state[0];
+  const double found =
+      settle(before, bent(before.mean), bent, measured, {.iterations = 20, .tolerance = 1e-12}).state[0];
   const double slope = found + (std::exp(found) - 3.0) * std::exp(found) / 0.01;
   CHECK(std::abs(slope) < 1e-3);
 }

@@ -24,6 +24,25 @@ RECENT_CHAIN_WINDOWS = 200  # from which the chain behind newly found limits is 
 JUDGED, MISSES, MISS = 20, 6, 11.34  # of the last chain windows, so many beyond the 99 % point of chi2 of 3
 
 
+class _WatchedChain(ChainLearner):
+    """Counts how often wheel speeds leave what the chain foretells; nobody asks for beliefs on the way."""
+
+    def __init__(self, learner: _core.ChainLearner) -> None:
+        super().__init__(learner)
+        self._missed: deque[bool] = deque(maxlen=JUDGED)
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.ChainUpdate:
+        """Learn one window."""
+        update = super().learn(inputs, segment)
+        self._missed.append(update.nis > MISS)
+        return update
+
+    @property
+    def fails(self) -> bool:
+        """Whether that was too often of late for the chain to be true."""
+        return sum(self._missed) >= MISSES
+
+
 class CascadePass:
     """Wheel speeds are the output of the chain and the input of the slip: each is learned from much more.
 
@@ -40,9 +59,8 @@ class CascadePass:
         average = make_learner(settings, "wheel").fresh()
         self._average = AverageLearner(average)
         self._slip = CausalPass(self._average, slip_windows, self._see, pace=windows)
-        self._chain = self._chain_pass(self._chain_windows)
+        self._learn_chain(self._chain_windows)
         self._limited: LimitedDrive | None = None
-        self._missed: deque[bool] = deque(maxlen=JUDGED)
         self.change = _core.ChangeTest()  # the strongest test for a change of ground since the last belief
         response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
         self.motion = response.with_mount(average.model.mount)
@@ -57,23 +75,21 @@ class CascadePass:
         drive = self._chain_windows.drive
         runs = tuple(replace(run, track=limited.track(k)) for k, run in enumerate(drive))
         first = max(self._chain.learned - RECENT_CHAIN_WINDOWS, 0)
-        self._limited, self._missed = limited, deque(maxlen=JUDGED)
-        self._chain = self._chain_pass(replace(self._chain_windows, drive=runs), first)
+        self._limited = limited
+        self._learn_chain(replace(self._chain_windows, drive=runs), first)
 
     @property
     def chain_fails(self) -> bool:
         """Whether wheel speeds have left what the chain foretells too often of late for it to be true."""
-        return sum(self._missed) >= MISSES
+        return self._watched.fails
 
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self.change = max(self.change, self._average.change, key=lambda test: (test.alarm, test.log_odds))
 
-    def _see_chain(self, _i: int, update: _core.ChainUpdate, _belief: Belief) -> None:
-        self._missed.append(update.nis > MISS)
-
-    def _chain_pass(self, windows: WindowSet, first: int = 0) -> CausalPass[_core.ChainUpdate]:
-        learner = ChainLearner(_core.ChainLearner(self._settings.filter_settings()))
-        return CausalPass(learner, windows, self._see_chain, pace=self._windows, first=first)
+    def _learn_chain(self, windows: WindowSet, first: int = 0) -> None:
+        """Begin anew with window `first`."""
+        self._watched = _WatchedChain(_core.ChainLearner(self._settings.filter_settings()))
+        self._chain = CausalPass(self._watched, windows, pace=self._windows, first=first)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
         """Put slip and chain into one belief; clock offset and mount are learned with the slip."""

@@ -10,8 +10,20 @@
 
 namespace slipwise {
 
-/// One channel of the chain, at each of the `times` [s, increasing, in input stamps].
-/// The drive does `initial` at the first of them, as it was measured. A slow part is not followed.
+/// One channel of the chain, without its slow part.
+struct OutputChannel {
+  double BodyTwist::* twist;  ///< the channel, of inputs and output
+  double gain, lag, delay;
+};
+OutputChannel speed_channel(const CommandChain& chain);
+OutputChannel turn_channel(const CommandChain& chain);
+
+/// What the channel does at each of the `times` [s, increasing, in input stamps], as many as `output` holds.
+/// The drive does `initial` at the first of them, as it was measured.
+void channel_output(const InputTrack& inputs, const OutputChannel& channel, std::span<const double> times,
+                    const BodyTwist& initial, std::span<double> output);
+
+/// Both channels. A slow part is not followed.
 struct ChainOutput {
   std::vector<double> v, omega;
 };

@@ -2,32 +2,83 @@
 // Limits of the drive as they act: what it was told, and what its ramps hold meanwhile (derivations.md, section 4).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "slipwise/actuator/command_limits.hpp"
 
 namespace slipwise {
 
-/// The set speed of one lane, which follows its target as fast as it may.
+/// The set speed of one lane, which follows its target as fast as it may. A track holds thousands of pieces, so its
+/// steps are inline.
 class LaneRamp {
  public:
   explicit LaneRamp(const LaneLimits& limits) : limits_(limits) {}
 
   /// What the lane makes of a command that is held for long.
-  double limited(double command) const;
-  void aim(double command);
+  double limited(double command) const {
+    return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.top, limits_.top);
+  }
+  void aim(double command) {
+    target_ = limited(command);
+    jump();
+  }
   /// Now it is `state`, however that came about.
   void place(double state) { state_ = state; }
   double state() const { return state_; }
   double target() const { return target_; }
   /// Until it is there; 0 where it goes at once [s].
-  double seconds_to(double target) const;
+  double seconds_to(double target) const {
+    const bool turns = state_ * target < 0.0;
+    return turns ? std::abs(state_) / limits_.braking + std::abs(target) / limits_.acceleration
+                 : std::abs(target - state_) / rate_towards(target);
+  }
+  /// Whether that takes any time.
+  bool ramps_to(double target) const {
+    const bool turns = state_ * target < 0.0;
+    return state_ != target && (turns ? std::isfinite(limits_.braking) || std::isfinite(limits_.acceleration)
+                                      : std::isfinite(rate_towards(target)));
+  }
   /// The mean over a piece, of which `taken` seconds pass [s].
-  double mean_over(double piece, double taken);
+  double mean_over(double piece, double taken) {
+    if (taken == piece || state_ == target_) {
+      return follow(piece) / piece;
+    }
+    LaneRamp whole = *this;
+    follow(taken);
+    return whole.follow(piece) / piece;
+  }
 
  private:
-  double rate_towards(double goal) const;
-  double follow(double seconds);
+  double rate_towards(double goal) const {
+    return std::abs(goal) < std::abs(state_) ? limits_.braking : limits_.acceleration;
+  }
+  /// Where it turns, zero comes first.
+  double next_goal() const { return state_ * target_ < 0.0 ? 0.0 : target_; }
+
+  /// Goes where no rate limits it, in no time.
+  void jump() {
+    while (state_ != target_ && std::isinf(rate_towards(next_goal()))) {
+      state_ = next_goal();
+    }
+  }
+
+  /// Goes on for `seconds`; returns the integral.
+  double follow(double seconds) {
+    double integral = 0.0;
+    for (int phase = 0; phase < 2 && state_ != target_; ++phase) {
+      const double goal = next_goal();
+      const double rate = rate_towards(goal);
+      const double needed = std::abs(goal - state_) / rate;
+      const double next = needed <= seconds ? goal : state_ + std::copysign(rate * seconds, goal - state_);
+      const double taken = std::min(needed, seconds);
+      integral += 0.5 * (state_ + next) * taken;
+      state_ = next;
+      seconds -= taken;
+    }
+    return integral + state_ * seconds;
+  }
 
   LaneLimits limits_;
   double state_ = 0.0;
@@ -48,6 +99,8 @@ class CommandLimiter {
 
   /// No ramp takes longer; 0 where all are over [s].
   double seconds_left() const;
+  /// Whether some ramp takes any time.
+  bool ramps() const;
   /// What it gives once all ramps are over.
   BodyTwist target() const;
   /// The mean over a piece, of which `taken` seconds pass [s]. The sides follow the mean of the piece.

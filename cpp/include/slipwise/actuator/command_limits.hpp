@@ -50,7 +50,11 @@ CommandLimits channel_limits(const CommandLimits& limits);
 struct SideSpeeds {
   double left, right;
 };
-SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist);
+inline SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist) {
+  const double v = limits.gain_v * twist.v;
+  const double half = 0.5 * limits.gain_omega * twist.omega * limits.track;
+  return {v - half, v + half};
+}
 
 inline constexpr double kRampPiece = 0.02;  ///< [s]
 

@@ -18,6 +18,8 @@ class InputTrack {
   /// Equal lengths, strictly increasing finite times [s]. \throws std::invalid_argument otherwise.
   InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
              std::span<const double> omega);
+  /// The same, taken over. \throws std::invalid_argument as above.
+  InputTrack(std::vector<double> t, std::vector<BodyTwist> twist);
 
   std::size_t size() const { return samples_->t.size(); }
   double time(std::size_t i) const { return samples_->t[i]; }

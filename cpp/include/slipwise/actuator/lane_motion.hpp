@@ -38,4 +38,8 @@ LaneState settled_lane(const InputTrack& inputs, const Lane& lane, double time);
 LaneMotion lane_motion(const InputTrack& inputs, const Lane& lane, const LaneState& start,
                        std::span<const double> edges);
 
+/// Its values alone.
+Eigen::VectorXd lane_values(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+                            std::span<const double> edges);
+
 }  // namespace slipwise

@@ -9,7 +9,7 @@
 
 namespace slipwise {
 
-/// A value with its derivatives by N parameters.
+/// A value with its derivatives by N parameters; by none, the value alone.
 template <int N>
 struct Sensitive {
   double value = 0.0;
@@ -26,9 +26,11 @@ template <int N>
 Sensitive<N> part_of(double input, const ChannelResponse& response, const ChannelPlaces& places, bool slow) {
   const double share = slow ? response.share() : 1.0 - response.share();
   Sensitive<N> part{.value = share * response.gain * input};
-  part.slope[places.gain] = share * input;
-  if (response.has_slow_part()) {
-    part.slope[places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
+  if constexpr (N > 0) {
+    part.slope[places.gain] = share * input;
+    if (response.has_slow_part()) {
+      part.slope[places.slow_share] = (slow ? 1.0 : -1.0) * response.gain * input;
+    }
   }
   return part;
 }
@@ -38,6 +40,10 @@ template <int N>
 Sensitive<N> advance(Sensitive<N>& state, const Sensitive<N>& input, const LagDecay& decay, Eigen::Index lag_index,
                      const Eigen::Matrix<double, 1, N>& duration_slope) {
   const auto step = linearize_lag_step(state.value, input.value, decay);
+  if constexpr (N == 0) {
+    state.value = step.value.output;
+    return {step.value.integral, {}};
+  }
   Sensitive<N> integral{step.value.integral, step.by_duration.integral * duration_slope +
                                                  step.by_output.integral * state.slope +
                                                  step.by_input.integral * input.slope};

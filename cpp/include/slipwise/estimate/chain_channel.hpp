@@ -3,7 +3,9 @@
 // (derivations.md, section 4).
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -53,12 +55,18 @@ class ChainChannel {
   Lane lane(const Eigen::VectorXd& state, std::size_t i) const;
   bool begin(const InputTrack& inputs, const WheelMeans& seen, const Eigen::VectorXd& chain);
   void lose_track();
-  Passage foretell(const InputTrack& inputs, const WheelMeans& seen, const Eigen::VectorXd& state) const;
+  Passage foretell(const InputTrack& inputs, const WheelMeans& seen, const DriveNoiseMeans& noise,
+                   const Eigen::VectorXd& state) const;
+  Eigen::VectorXd foretell_values(const InputTrack& inputs, const WheelMeans& seen, const DriveNoiseMeans& noise,
+                                  const Eigen::VectorXd& state) const;
+  DriveNoiseMeans noise_means(const WheelMeans& seen) const;
   Eigen::VectorXd measured(const WheelMeans& seen) const;
   double mean_nis(const WheelMeans& seen, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) const;
   double inflation(double nis, Eigen::Index count) const;
-  void learn_size(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance, const Eigen::MatrixXd& noise);
-  Eigen::MatrixXd bending(const Foretell& foretell, const PassagePoint& point) const;
+  void learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
+                  const Eigen::MatrixXd& noise);
+  using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
+  Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
   Pass pass(std::span<const Past> past, const Eigen::VectorXd& point) const;
 

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -64,6 +65,14 @@ struct ScoredDrive {
   DriveLoss loss;
 };
 
+/// A drive with all that its loss was made of.
+struct FittedDrive : ScoredDrive {
+  std::vector<InputTrack> tracks;  ///< the commands behind its limits
+  Eigen::MatrixXd error;           ///< measured less explained [samples, speed and yaw rate]
+  Eigen::Vector2d scale;           ///< of each column
+  Eigen::MatrixXd weight;          ///< of each error
+};
+
 class LimitedDriveFit {
  public:
   /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
@@ -71,10 +80,12 @@ class LimitedDriveFit {
 
   /// No limits, and the chain that is believed in before any data.
   LimitedDrive start() const;
-  DriveLoss loss(const LimitedDrive& drive) const;
+  DriveLoss loss(const LimitedDrive& drive) const { return fitted(drive).loss; }
   ScoredDrive scored(const LimitedDrive& drive) const { return {drive, loss(drive)}; }
-  /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held.
-  LimitedDrive refine(const LimitedDrive& drive, int iterations) const;
+  /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held. Steps gain less and
+  /// less: it stops where all that are left, if they gained as much as the last, came to no less than `wanted`.
+  ScoredDrive refine(const LimitedDrive& drive, int iterations,
+                     double wanted = std::numeric_limits<double>::infinity()) const;
   /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
   /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
@@ -87,12 +98,20 @@ class LimitedDriveFit {
   std::size_t samples() const { return samples_; }
 
  private:
-  struct Residuals;
+  /// The normal equations of a step.
+  struct Normal {
+    Eigen::MatrixXd information;
+    Eigen::VectorXd pull;
+  };
   std::vector<InputTrack> limited(const CommandLimits& limits) const;
-  /// Measured less explained [samples, speed and yaw rate], with the commands of each record limited.
-  Eigen::MatrixXd errors(const LimitedDrive& drive, std::span<const InputTrack> limited) const;
-  Residuals residuals(const LimitedDrive& drive) const;
-  Eigen::MatrixXd jacobian(const LimitedDrive& drive, const std::vector<int>& free, const Residuals& at) const;
+  /// Measured less explained in channel `c`, with the commands of each record limited.
+  void put_errors(const LimitedDrive& drive, std::span<const InputTrack> tracks, int c,
+                  Eigen::Ref<Eigen::VectorXd> errors) const;
+  FittedDrive fitted(const LimitedDrive& drive) const;
+  Eigen::MatrixXd jacobian(const FittedDrive& at, const std::vector<int>& free) const;
+  Normal normal(const FittedDrive& at, const std::vector<int>& free) const;
+  /// Goes down one step, if there is one.
+  void step(FittedDrive& best, const Normal& normal, const std::vector<int>& free, double& damping) const;
   double prior_loss(const LimitedDrive& drive) const;
 
   std::span<const DriveRecord> records_;

@@ -36,8 +36,8 @@ struct PassagePoint {
 Eigen::MatrixXd innovation_covariance(const Estimate& prior, const Passage& at);
 
 /// The most probable state at the start, given the prior and what was measured: Gauss-Newton in the dual form of the
-/// IEKF. Where not even the first step helps, the prior's mean.
-PassagePoint settle(const Estimate& prior, const Foretell& foretell, const Eigen::VectorXd& measured,
+/// IEKF, from `expected`, the passage of the prior's mean. Where not even the first step helps, that mean.
+PassagePoint settle(const Estimate& prior, Passage expected, const Foretell& foretell, const Eigen::VectorXd& measured,
                     const IekfSettings& settings);
 
 /// The state at the start given what was measured, its covariance alone.
