@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
+#include "slipwise/estimate/sandwich.hpp"
 
 namespace slipwise {
 namespace {
@@ -28,6 +29,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
     : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
+  stated_ = Eigen::VectorXd::Ones(model_.size());
 }
 
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
@@ -61,10 +63,15 @@ void CausalFilter::forget(double share) {
   estimate_.covariance.topRows(slip) *= keep;
   estimate_.covariance.leftCols(slip) *= keep;
   estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  stated_.setOnes();
   noise_scale_.hurry();
   before_ = estimate_;
   kept_.clear();
   since_ = 0;
+}
+
+Estimate CausalFilter::stated() const {
+  return {estimate_.mean, stated_.asDiagonal() * estimate_.covariance * stated_.asDiagonal()};
 }
 
 Eigen::Matrix3d CausalFilter::expected_noise(const InputTrack& inputs, const Segment& segment) const {
@@ -102,6 +109,9 @@ void CausalFilter::relearn() {
     return;
   }
   estimate_ = std::move(fit.estimate);
+  if (settings_.noise.adapt) {
+    stated_ = sandwich_factors(model_, before_, estimate_, data, settings_.noise.prior_segments);
+  }
   noise_scale_.restart();
   for (const Kept& kept : kept_) {
     noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,

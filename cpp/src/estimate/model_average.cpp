@@ -207,7 +207,7 @@ AverageState ModelAverage::state() const {
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
     mean(places) = filters_[i].estimate().mean;
     state.estimate.mean += weight * mean;
-    state.estimate.covariance(places, places) += weight * filters_[i].estimate().covariance;
+    state.estimate.covariance(places, places) += weight * filters_[i].stated().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
     state.prior_std(places) = filters_[i].prior_std();
   }
@@ -228,7 +228,7 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
       continue;
     }
     const double weight = weights_[static_cast<Eigen::Index>(i)];
-    const Estimate& estimate = filters_[i].estimate();
+    const Estimate estimate = filters_[i].stated();
     having(places).array() += weight;
     mean(places) += weight * estimate.mean;
     square(places) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());

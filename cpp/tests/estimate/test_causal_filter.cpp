@@ -103,6 +103,45 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
   }
 }
 
+/// Mean square of errors over stated standard deviations, of V's and w's share, over drives whose noise is white and of
+/// one size, told as a fraction of the motion and ten times too large.
+Eigen::Vector2d squared_sigmas(bool adapt, bool stated) {
+  const MotionModel model(named_basis("edd-2"), {});
+  constexpr int kDrives = 150;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (int i = 0; i < kDrives; ++i) {
+    const Eigen::Vector2d truth(-0.05, -0.3);
+    const auto seed = 300 + static_cast<std::uint64_t>(i);
+    const auto drive = tests::simulate_drive(
+        model, truth, {.seed = seed, .windows = 128, .window = 2.0, .noise = kTrueNoise, .shared_poses = false});
+    CausalFilterSettings settings;
+    settings.noise.adapt = adapt;
+    if (!adapt) {
+      settings.noise.shape = kTrueNoise;
+    }
+    CausalFilter filter(model, settings);
+    for (const Segment& segment : drive.segments) {
+      filter.learn(drive.inputs, segment, kSpeeds);
+    }
+    const Estimate found = stated ? filter.stated() : filter.estimate();
+    mean += (found.mean - truth).cwiseAbs2().cwiseQuotient(found.covariance.diagonal()) / kDrives;
+  }
+  return mean;
+}
+
+TEST_CASE("standard deviations stated are true though noise is not of the shape told") {
+  const Eigen::Vector2d plain = squared_sigmas(true, false);
+  const Eigen::Vector2d stated = squared_sigmas(true, true);
+  CHECK(plain.maxCoeff() < 0.75);  // too cautious
+  for (const double square : stated) {
+    CHECK(square == doctest::Approx(1.0).epsilon(0.25));
+  }
+}
+
+TEST_CASE("noise that is known is not judged by residuals") {
+  CHECK(squared_sigmas(false, false) == squared_sigmas(false, true));
+}
+
 TEST_CASE("what is learned anew after a change of ground is the new ground") {
   const MotionModel model(named_basis("edd-2"), {});
   CausalFilterSettings settings;

@@ -34,7 +34,10 @@ class CausalFilter {
   void forget(double share);
 
   const MotionModel& model() const { return model_; }
+  /// What learning goes on from: the noise is taken to be of the shape given.
   const Estimate& estimate() const { return estimate_; }
+  /// The same with a covariance that also holds where it is not.
+  Estimate stated() const;
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Learned factor of the noise variances of (x, y, theta).
@@ -62,6 +65,7 @@ class CausalFilter {
   std::vector<Kept> kept_;  ///< the first since the start, or since the ground changed
   std::size_t since_ = 0;   ///< segments since then
   Eigen::VectorXd slip_std_;
+  Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the last fit's residuals show them
   NoiseScale noise_scale_;
 };
 

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a fit really scatters where its residuals are not as large, segment by segment, as their noise says.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "slipwise/estimate/batch.hpp"
+#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/motion/motion_model.hpp"
+
+namespace slipwise {
+
+/// Factors of the standard deviations of `fitted`, the fit of `data` after `before`: the sandwich estimator (Huber
+/// 1967, White 1980), where the stated noise of each datum counts as much as `prior_data` residuals in all.
+Eigen::VectorXd sandwich_factors(const MotionModel& model, const Estimate& before, const Estimate& fitted,
+                                 std::span<const BatchDatum> data, double prior_data);
+
+}  // namespace slipwise

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The covariance of an estimator under the residuals that it left, beside the one under the noise that it was told.
+#include "slipwise/estimate/sandwich.hpp"
+
+#include <Eigen/Cholesky>
+
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+
+Eigen::VectorXd sandwich_factors(const MotionModel& model, const Estimate& before, const Estimate& fitted,
+                                 std::span<const BatchDatum> data, double prior_data) {
+  const Eigen::MatrixXd& bread = fitted.covariance;
+  const auto count = static_cast<double>(data.size());
+  Eigen::MatrixXd filling = before.covariance.llt().solve(Eigen::MatrixXd::Identity(bread.rows(), bread.cols()));
+  for (const BatchDatum& datum : data) {
+    const auto at = linearize_segment(model, fitted.mean, *datum.inputs, datum.segment);
+    const Eigen::Vector3d residual = datum.segment.measured.vector() - at.predicted.vector();
+    const Eigen::Matrix3d open = at.by_parameter * bread * at.by_parameter.transpose();
+    const Eigen::Matrix3d seen = residual * residual.transpose() + open;
+    const Eigen::Matrix3d noise = (count * seen + prior_data * datum.noise) / (count + prior_data);
+    const Eigen::MatrixXd weighed = datum.noise.llt().solve(at.by_parameter);
+    filling += weighed.transpose() * noise * weighed;
+  }
+  const Eigen::VectorXd variance = (bread * filling * bread).diagonal();
+  return variance.cwiseQuotient(bread.diagonal()).cwiseSqrt();
+}
+
+}  // namespace slipwise
