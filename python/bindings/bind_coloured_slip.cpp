@@ -34,11 +34,8 @@ void bind_coloured_slip(nb::module_& m) {
       .def(nb::init<const ColouredSlipSettings&>(), "settings"_a)
       .def(nb::init<const WanderLaw&>(), "law"_a)
       .def(nb::init<const ColouredSlip&>(), "other"_a)
-      .def(
-          "learn",
-          [](ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
-             const std::vector<Segment>& segments) { slip.learn(belief, inputs, segments); },
-          "belief"_a, "inputs"_a, "segments"_a, "Weighs the candidates by the last segment, foretold from the others.")
+      .def("learn", &ColouredSlip::learn, "belief"_a, "inputs"_a, "now"_a, "segment"_a,
+           "Weighs the candidates by a segment, foretold from where slip was.")
       .def(
           "now",
           [](const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,

@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "slipwise/segment/integrate_segment.hpp"
-
 namespace slipwise {
 namespace {
 
@@ -22,6 +20,7 @@ struct NormalEquations {
   Eigen::MatrixXd information;
   Eigen::VectorXd gradient;  ///< of half the cost, downhill
   double cost;
+  std::vector<SegmentLinearization> at;  ///< the data
 };
 
 struct HuberLoss {
@@ -68,14 +67,23 @@ class BatchProblem {
         prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
 
   NormalEquations linearize(const Eigen::VectorXd& mean) const {
+    std::vector<SegmentLinearization> at;
+    at.reserve(data_.size());
+    for (const BatchDatum& datum : data_) {
+      at.push_back(linearize_segment(model_, mean, *datum.inputs, datum.segment));
+    }
+    return normal_equations(mean, std::move(at));
+  }
+
+  NormalEquations normal_equations(const Eigen::VectorXd& mean, std::vector<SegmentLinearization> data_at) const {
     const Eigen::VectorXd back = prior_.mean - mean;
-    NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back)};
+    NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back),
+                              std::move(data_at)};
     Eigen::Vector3d r = Eigen::Vector3d::Zero();
     Jacobian by_parameter = Jacobian::Zero(3, model_.size());
     for (std::size_t i = 0; i < data_.size(); ++i) {
-      const Segment& segment = data_[i].segment;
-      const auto at = linearize_segment(model_, mean, *data_[i].inputs, segment);
-      r = segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
+      const SegmentLinearization& at = equations.at[i];
+      r = data_[i].segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
       by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
       const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
       const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), huber_);
@@ -135,13 +143,17 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
 }  // namespace
 
 BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
-                   const BatchSettings& settings) {
+                   const BatchSettings& settings, std::vector<SegmentLinearization> at_start) {
   check(model, prior, data, settings.start);
+  if (!at_start.empty() && at_start.size() != data.size()) {
+    throw std::invalid_argument("of all data or of none the linearisation at the start must be given");
+  }
   const BatchProblem problem(model, prior, data, settings.huber);
   Eigen::VectorXd mean = settings.start.size() > 0 ? settings.start : prior.mean;
-  NormalEquations now = problem.linearize(mean);
+  NormalEquations now =
+      at_start.empty() ? problem.linearize(mean) : problem.normal_equations(mean, std::move(at_start));
   double damping = 1e-3;
-  BatchFit fit{prior, now.cost, 0, Status::NotConverged};
+  BatchFit fit{prior, now.cost, 0, Status::NotConverged, {}};
   while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
     ++fit.iterations;
     Eigen::MatrixXd damped = now.information;
@@ -159,6 +171,7 @@ BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<co
     damping = std::max(damping / 10.0, 1e-12);
   }
   fit.cost = now.cost;
+  fit.at = std::move(now.at);
   fit.estimate = {mean, now.information.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))};
   return fit;
 }

@@ -79,13 +79,20 @@ Eigen::Matrix3d CausalFilter::expected_noise(const InputTrack& inputs, const Seg
   return slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
 }
 
+/// `at` is the segment at the estimate.
+void CausalFilter::learn_noise(const SegmentLinearization& at, const Segment& segment) {
+  const MotionNoise& shape = settings_.noise.shape;
+  const Eigen::Matrix3d expected = slip_covariance(at.path, shape) + pose_noise_covariance(segment.measured, shape);
+  noise_scale_.learn(at, estimate_.covariance, segment.measured, expected.diagonal());
+}
+
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
-void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at) {
   if (since_ == kLast) {
     kept_ = {};
     return;
   }
-  if (linearize_segment(model_, estimate_.mean, inputs, segment).by_parameter.isZero(0.0)) {
+  if (at.by_parameter.isZero(0.0)) {
     return;
   }
   ++since_;
@@ -95,16 +102,23 @@ void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
   }
 }
 
+/// What is kept, but for what the gate leaves out.
+struct CausalFilter::KeptData {
+  std::vector<BatchDatum> data;
+  std::vector<SegmentLinearization> at;  ///< at the estimate
+  std::vector<std::size_t> places;       ///< among what is kept
+};
+
 /// The first segments were learned with a first guess of the noise, and linearised where little was known. Where the
 /// fit does not settle, what was learned one by one stands.
 void CausalFilter::relearn() {
-  const std::vector<BatchDatum> data = kept_data();
-  if (data.empty() || before_.covariance.llt().info() != Eigen::Success) {
+  KeptData kept = kept_data();
+  if (kept.data.empty() || before_.covariance.llt().info() != Eigen::Success) {
     return;
   }
   constexpr double kWeighed = std::numeric_limits<double>::infinity();
-  BatchFit fit =
-      batch_fit(model_, before_, data, {.tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean});
+  const BatchSettings settings{.tolerance = kTolerance, .huber = kWeighed, .start = estimate_.mean};
+  BatchFit fit = batch_fit(model_, before_, kept.data, settings, std::move(kept.at));
   if (fit.status != Status::Converged) {
     return;
   }
@@ -113,20 +127,25 @@ void CausalFilter::relearn() {
     stated_ = sandwich_factors(model_, before_, estimate_, data, settings_.noise.prior_segments);
   }
   noise_scale_.restart();
-  for (const Kept& kept : kept_) {
-    noise_scale_.learn(model_, estimate_, kept.inputs, kept.segment,
-                       expected_noise(kept.inputs, kept.segment).diagonal());
+  std::size_t fitted = 0;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const auto& [inputs, segment] = kept_[i];
+    if (fitted < kept.places.size() && kept.places[fitted] == i) {
+      learn_noise(fit.at[fitted++], segment);
+    } else {
+      learn_noise(linearize_segment(model_, estimate_.mean, inputs, segment), segment);
+    }
   }
 }
 
 /// Weighed by the rule of the IEKF. From wheels, neighbours share the noise of the pose where they meet; from commands,
 /// what is not known of the drive there is far more.
-std::vector<BatchDatum> CausalFilter::kept_data() const {
-  std::vector<BatchDatum> data;
+CausalFilter::KeptData CausalFilter::kept_data() const {
+  KeptData data;
   const Segment* last = nullptr;
-  for (const Kept& kept : kept_) {
-    const Segment& segment = kept.segment;
-    const auto at = linearize_segment(model_, estimate_.mean, kept.inputs, segment);
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const auto& [inputs, segment] = kept_[i];
+    auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
     const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, settings_.noise.shape, noise_scale_.value());
     const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
     const Eigen::Matrix3d covariance = at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
@@ -141,7 +160,9 @@ std::vector<BatchDatum> CausalFilter::kept_data() const {
                                  noise_scale_.value());
     }
     const double larger = std::max(std::sqrt(nis) / settings_.iekf.huber, 1.0);
-    data.push_back({.inputs = &kept.inputs, .segment = segment, .noise = noise * larger, .shared = shared});
+    data.data.push_back({.inputs = &inputs, .segment = segment, .noise = noise * larger, .shared = shared});
+    data.at.push_back(std::move(at));
+    data.places.push_back(i);
     last = &segment;
   }
   return data;
@@ -153,8 +174,8 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
   IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, scaled_covariance(expected, noise_scale_.value()),
                                   settings_.iekf);
   estimate_ = update.estimate;
-  noise_scale_.learn(model_, estimate_, inputs, segment, expected.diagonal());
-  keep(inputs, segment);
+  noise_scale_.learn(update.at, estimate_.covariance, segment.measured, expected.diagonal());
+  keep(inputs, segment, update.at);
   return update;
 }
 

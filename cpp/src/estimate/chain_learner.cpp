@@ -4,6 +4,7 @@
 
 #include <array>
 #include <bit>
+#include <utility>
 
 #include "slipwise/estimate/prior.hpp"
 
@@ -30,7 +31,7 @@ ChainLearner::ChainLearner(const CausalFilterSettings& settings)
     const Estimate own{prior.mean(places), prior.covariance(places, places)};
     Bank bank{.places = std::move(places), .rivals = {}, .weights = {}};
     for (const DriveNoise& shape : kShapes) {
-      bank.rivals.emplace_back(parts, own, shape, settings.iekf);
+      bank.rivals.emplace_back(ChannelModel{parts, own, shape, settings.iekf});
     }
     bank.weights = Eigen::VectorXd::Constant(std::ssize(kShapes), 1.0 / static_cast<double>(kShapes.size()));
     banks_.push_back(std::move(bank));
@@ -40,12 +41,12 @@ ChainLearner::ChainLearner(const CausalFilterSettings& settings)
 }
 
 /// The NIS of the chain without a deviation. A window that all leave out weighs none of them.
-double ChainLearner::Bank::learn(const InputTrack& inputs, const WheelMeans& seen, std::size_t learned) {
+double ChainLearner::Bank::learn(const ChannelWindow& window, std::size_t learned) {
   Eigen::VectorXd scores(weights.size());
   double nis = 0.0;
   bool left_out = true;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(inputs, seen);
+    const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(window);
     scores[i] = update.log_score;
     nis = i == 0 ? update.nis : nis;
     left_out = left_out && update.status == Status::Rejected;
@@ -58,7 +59,7 @@ double ChainLearner::Bank::learn(const InputTrack& inputs, const WheelMeans& see
   return nis;
 }
 
-void ChainLearner::Bank::relearn(std::span<const ChainChannel::Past> past) {
+void ChainLearner::Bank::relearn(std::span<const ChannelWindow> past) {
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     if (weights[static_cast<Eigen::Index>(i)] > kHeard) {
       rivals[i].relearn(past);
@@ -82,16 +83,16 @@ Estimate ChainLearner::Bank::mixture() const {
 }
 
 ChainUpdate ChainLearner::learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end) {
-  const WheelMeans seen = wheel_means(wheels, start, end, kInterval);
+  ChannelWindow window{inputs, wheel_means(wheels, start, end, kInterval)};
   ChainUpdate update{.nis = 0.0};
   for (Bank& bank : banks_) {
-    update.nis += bank.learn(inputs, seen, learned_);
+    update.nis += bank.learn(window, learned_);
   }
   ++learned_;
   if (learned_ > kLast) {
     return update;
   }
-  past_.push_back({inputs, seen});
+  past_.push_back(std::move(window));
   if (learned_ >= kFirst && std::has_single_bit(learned_)) {
     for (Bank& bank : banks_) {
       bank.relearn(past_);

@@ -18,7 +18,7 @@ namespace {
 
 SeenSlip see(const MotionBelief& belief, const WanderingTerms& terms, const InputTrack& inputs,
              const Segment& segment) {
-  const auto at = linearize_segment(belief.model, belief.estimate.mean, inputs, segment);
+  const auto at = linearize_slip(belief.model, belief.estimate.mean, inputs, segment);
   Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
   innovation.z() = wrap_angle(innovation.z());
   return {segment.start, segment.end, innovation,
@@ -92,17 +92,17 @@ ColouredSlip::ColouredSlip(WanderLaw law) : law_(std::move(law)) {
   prior_ = law_.weights;
 }
 
-void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> segments) {
+void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now,
+                         const Segment& segment) {
   const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
-  if (terms.places.empty() || segments.empty()) {
+  check_fits(now, law_, terms);
+  if (terms.places.empty()) {
     return;
   }
-  const std::vector<SeenSlip> seen = see_all(belief, terms, inputs, segments);
-  const SeenSlip& next = seen.back();
-  const auto before = std::span(seen).first(seen.size() - 1);
+  const SeenSlip next = see(belief, terms, inputs, segment);
   Eigen::VectorXd scores(law_.weights.size());
   for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
-    const auto deviation = followed(law_.candidates[i], terms, before).mean_over(next.start, next.end).first;
+    const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
     const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
     const double nis = innovation.dot(next.noise.llt().solve(innovation));
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
@@ -114,7 +114,7 @@ void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, s
 SlipNow ColouredSlip::now(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent) const {
   const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
   SlipNow now;
-  if (terms.places.empty()) {
+  if (terms.places.empty() || law_.candidates.empty()) {
     return now;
   }
   const std::vector<SeenSlip> seen = see_all(belief, terms, inputs, recent);

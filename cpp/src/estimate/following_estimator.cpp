@@ -49,7 +49,8 @@ IekfUpdate FollowingEstimator::learn(const InputTrack& inputs, const Segment& se
   const Eigen::Matrix3d expected =
       segment_noise(path, segment.measured, settings_.noise.shape, Eigen::Vector3d::Ones());
   IekfUpdate update = estimator_.learn(inputs, segment);
-  noise_scale_.learn(model(), running(), inputs, segment, expected.diagonal());
+  noise_scale_.learn(linearize_segment(model(), running().mean, inputs, segment), running().covariance,
+                     segment.measured, expected.diagonal());
   estimator_.scale_noise(noise_scale_.value());
   return update;
 }

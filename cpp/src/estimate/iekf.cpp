@@ -156,7 +156,8 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
                     .innovation_covariance = innovation_covariance(prior.covariance, now.at.by_parameter, noise),
                     .nis = 0.0,
                     .weight = 1.0,
-                    .status = Status::Converged};
+                    .status = Status::Converged,
+                    .at = now.at};
   update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
@@ -184,6 +185,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
   const Eigen::VectorXd carry = (model.even_slopes(prior.mean).array() / model.even_slopes(now.mean).array()).min(most);
   update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
+  update.at = std::move(now.at);
   return update;
 }
 

@@ -11,14 +11,13 @@ constexpr double kLeastShare = 0.1;  // of a squared error that is noise, howeve
 
 }  // namespace
 
-void NoiseScale::learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
-                       const Segment& segment, const Eigen::Vector3d& expected) {
+void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
+                       const Eigen::Vector3d& expected) {
   if (!settings_.adapt) {
     return;
   }
-  const auto at = linearize_segment(model, estimate.mean, inputs, segment);
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
+  const Eigen::Vector3d residual = measured.vector() - at.predicted.vector();
+  const Eigen::Matrix3d open = at.by_parameter * covariance * at.by_parameter.transpose();
   follow(residual.cwiseAbs2() + open.diagonal(), expected);
 }
 

@@ -100,11 +100,19 @@ struct SensitivitySums {
     }
   }
 
-  /// J = Phi(n, 0) times the sums, carried from the robot to the sensor.
+  /// Phi(n, 0), carried from the robot to the sensor.
+  static Eigen::Matrix3d at_sensor(const SegmentPath& path) {
+    const Pose2& end = path.poses.back();
+    return sensor_by_robot(end, path.sensor) * transition(Pose2{}, end);
+  }
+
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_slip(const SegmentPath& path) const { return at_sensor(path) * slip; }
+
+  /// J = Phi(n, 0) times the sums.
   Eigen::Matrix<double, 3, Eigen::Dynamic> at(const SegmentPath& path, const MotionModel& model,
                                               const CommandChain& at) const {
     const Pose2& end = path.poses.back();
-    const Eigen::Matrix3d phi = sensor_by_robot(end, path.sensor) * transition(Pose2{}, end);
+    const Eigen::Matrix3d phi = at_sensor(path);
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
     jacobian.leftCols(model.slip_size()) = phi * slip;
     if (model.chain_size() > 0) {
@@ -116,6 +124,39 @@ struct SensitivitySums {
     return jacobian;
   }
 };
+
+/// By the slip parameters, and by the others too where these are asked for.
+SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                const InputTrack& inputs, const Segment& segment, bool all) {
+  model.check(parameters);
+  const CommandChain chain = model.chain(parameters);
+  const bool by_chain = all && model.chain_size() > 0;
+  const auto alpha = parameters.head(model.slip_size());
+  DriveSteps drive = by_chain ? linearize_drive_steps(inputs, chain, window_of(segment))
+                              : drive_steps(inputs, chain, window_of(segment));
+  const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
+  GrowingPath path(segment, drive.steps.size());
+  SensitivitySums sums(model);
+  std::vector<double> features(model.basis().size());
+  for (std::size_t k = 0; k < drive.steps.size(); ++k) {
+    const DriveStep& step = drive.steps[k];
+    model.basis().features(slip_state(step, gravity_of(segment)), features);
+    const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
+    const Eigen::Vector3d tangent = tangent_of(step, slip);
+    const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
+    sums.add_slip(model.basis(), by_tangent, features, step.duration);
+    if (by_chain) {
+      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
+      if (!learned.isZero(0.0)) {
+        sums.chain += by_tangent * tangent_by(step, learned, along, slip);
+      }
+    }
+  }
+  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
+  const Pose2 predicted = finished.sensor_motion();
+  auto by_parameter = all ? sums.at(finished, model, chain) : sums.by_slip(finished);
+  return {std::move(finished), predicted, std::move(by_parameter)};
+}
 
 }  // namespace
 
@@ -146,34 +187,12 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment) {
-  model.check(parameters);
-  const CommandChain chain = model.chain(parameters);
-  const bool chain_learned = model.chain_size() > 0;
-  const auto alpha = parameters.head(model.slip_size());
-  DriveSteps drive = chain_learned ? linearize_drive_steps(inputs, chain, window_of(segment))
-                                   : drive_steps(inputs, chain, window_of(segment));
-  const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
-  GrowingPath path(segment, drive.steps.size());
-  SensitivitySums sums(model);
-  std::vector<double> features(model.basis().size());
-  for (std::size_t k = 0; k < drive.steps.size(); ++k) {
-    const DriveStep& step = drive.steps[k];
-    model.basis().features(slip_state(step, gravity_of(segment)), features);
-    const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
-    const Eigen::Vector3d tangent = tangent_of(step, slip);
-    const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
-    sums.add_slip(model.basis(), by_tangent, features, step.duration);
-    if (chain_learned) {
-      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
-      if (!learned.isZero(0.0)) {
-        sums.chain += by_tangent * tangent_by(step, learned, along, slip);
-      }
-    }
-  }
-  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
-  const Pose2 predicted = finished.sensor_motion();
-  auto by_parameter = sums.at(finished, model, chain);
-  return {std::move(finished), predicted, std::move(by_parameter)};
+  return linearized(model, parameters, inputs, segment, true);
+}
+
+SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                    const InputTrack& inputs, const Segment& segment) {
+  return linearized(model, parameters, inputs, segment, false);
 }
 
 }  // namespace slipwise

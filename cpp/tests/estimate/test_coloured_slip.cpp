@@ -45,14 +45,20 @@ std::vector<Segment> drive(const MotionModel& model, const InputTrack& inputs, i
   return segments;
 }
 
-std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdiff_t i, std::ptrdiff_t with) {
+std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdiff_t i) {
   const std::ptrdiff_t first = std::max<std::ptrdiff_t>(0, i - kRecent);
-  return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first + with));
+  return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first));
 }
 
 ExpectedPose expected(const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
                       std::span<const Segment> recent, const Segment& segment) {
   return slip.predict(belief, inputs, slip.now(belief, inputs, recent), segment);
+}
+
+void learn(ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
+           const std::vector<Segment>& segments, std::ptrdiff_t i) {
+  const SlipNow now = slip.now(belief, inputs, before(segments, i));
+  slip.learn(belief, inputs, now, segments[static_cast<std::size_t>(i)]);
 }
 
 struct Followed {
@@ -67,14 +73,14 @@ Followed follow(const MotionBelief& belief, const InputTrack& inputs, const std:
   for (std::ptrdiff_t i = 0; i < std::ssize(segments); ++i) {
     const Segment& next = segments[static_cast<std::size_t>(i)];
     if (2 * i >= std::ssize(segments)) {
-      const ExpectedPose with = expected(found.slip, belief, inputs, before(segments, i, 0), next);
+      const ExpectedPose with = expected(found.slip, belief, inputs, before(segments, i), next);
       const ExpectedPose plain = expected(found.slip, belief, inputs, {}, next);
       const Eigen::Vector3d error = next.measured.vector() - with.pose;
       found.error += std::pow(error.z(), 2);
       found.plain_error += std::pow(next.measured.theta - plain.pose.z(), 2);
       found.nis += error.dot(with.covariance.llt().solve(error)) * 2.0 / static_cast<double>(segments.size());
     }
-    found.slip.learn(belief, inputs, before(segments, i, 1));
+    learn(found.slip, belief, inputs, segments, i);
   }
   return found;
 }
@@ -143,9 +149,9 @@ TEST_CASE("a model without linear terms is predicted as it is") {
       plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise, Eigen::Vector3d::Ones()};
   const auto segments = drive(s.model, s.inputs, 13, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
   ColouredSlip slip(ColouredSlipSettings{});
-  slip.learn(belief, s.inputs, segments);
+  learn(slip, belief, s.inputs, segments, 12);
   const auto at = linearize_segment(plain, Eigen::VectorXd(0), s.inputs, segments.back());
-  CHECK(expected(slip, belief, s.inputs, before(segments, 12, 0), segments.back()).pose == at.predicted.vector());
+  CHECK(expected(slip, belief, s.inputs, before(segments, 12), segments.back()).pose == at.predicted.vector());
 }
 
 TEST_CASE("a law that is read back predicts to the last bit as the one learned, and what is usual is its covariance") {
@@ -154,10 +160,10 @@ TEST_CASE("a law that is read back predicts to the last bit as the one learned, 
   const auto segments = drive(s.model, s.inputs, 40, [](int i) { return Eigen::Vector2d(-0.1, i < 20 ? -0.3 : -0.2); });
   ColouredSlip slip(ColouredSlipSettings{});
   for (std::ptrdiff_t i = 0; i < 39; ++i) {
-    slip.learn(belief, s.inputs, before(segments, i, 1));
+    learn(slip, belief, s.inputs, segments, i);
   }
   const ColouredSlip read(slip.law());
-  for (const auto& recent : {before(segments, 39, 0), std::span<const Segment>{}}) {
+  for (const auto& recent : {before(segments, 39), std::span<const Segment>{}}) {
     const ExpectedPose one = expected(slip, belief, s.inputs, recent, segments.back());
     const ExpectedPose other = expected(read, belief, s.inputs, recent, segments.back());
     CHECK(one.pose == other.pose);

@@ -42,16 +42,16 @@ class StartPass:
 
     def _learn(self, i: int) -> None:
         windows = self._windows
-        before = replace(self._believed(i), coloured=self._coloured, start=self._start)
-        known = motion_belief(before, self._shape)
+        before = replace(self._believed(i), coloured=self._coloured)
+        known, coloured = motion_belief(before, self._shape), _coloured(before)
         track, segment = windows.track(i, before.limited), windows.segments[i]
         recent = windows.recent(i, int(windows.position[i]), float(windows.start[i]))
+        now = coloured.now(known, track, recent)
         if self._start is not None:
-            expected = expected_from_measured(before, self._shape, track, segment, recent)
-            seen = windows.seen(i, self._start.reach)
-            self._start.learn(known, track, seen, segment, expected)
+            expected = coloured.predict(known, track, now, segment)
+            self._start.learn(known, track, windows.seen(i, self._start.reach), segment, expected)
         if self._coloured is not None:
-            self._coloured.learn(known, track, [*recent, segment])
+            self._coloured.learn(known, track, now, segment)
 
 
 def motion_belief(belief: Belief, shape: _core.MotionNoise) -> _core.MotionBelief:
@@ -70,6 +70,10 @@ def expected_from_measured(
     recent: list[_core.Segment],
 ) -> _core.ExpectedPose:
     """Predict a window from the pose measured at its start, following slip that wanders through `recent`."""
-    known = motion_belief(belief, shape)
-    coloured = belief.coloured or _core.ColouredSlip(_core.WanderLaw([], np.empty(0)))
+    known, coloured = motion_belief(belief, shape), _coloured(belief)
     return coloured.predict(known, track, coloured.now(known, track, recent), segment)
+
+
+def _coloured(belief: Belief) -> _core.ColouredSlip:
+    """Return how slip wanders about the belief; where that is not learned, it does not."""
+    return belief.coloured or _core.ColouredSlip(_core.WanderLaw([], np.empty(0)))

@@ -4,11 +4,12 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
 #include "slipwise/estimate/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
-#include "slipwise/segment/segment.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 
@@ -34,10 +35,12 @@ struct BatchFit {
   double cost;     ///< robust MAP cost at the estimate
   int iterations;  ///< used
   Status status;
+  std::vector<SegmentLinearization> at;  ///< the data, at the estimate
 };
 
+/// `at_start` are the data at the search's start, where they were linearised there before.
 /// \throws std::invalid_argument when sizes do not fit or there is no datum.
 BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
-                   const BatchSettings& settings = {});
+                   const BatchSettings& settings = {}, std::vector<SegmentLinearization> at_start = {});
 
 }  // namespace slipwise

@@ -52,9 +52,11 @@ class CausalFilter {
 
   void follow(const ReferenceSpeeds& speeds);
   Eigen::Matrix3d expected_noise(const InputTrack& inputs, const Segment& segment) const;
-  void keep(const InputTrack& inputs, const Segment& segment);
+  void learn_noise(const SegmentLinearization& at, const Segment& segment);
+  void keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at);
   void relearn();
-  std::vector<BatchDatum> kept_data() const;
+  struct KeptData;
+  KeptData kept_data() const;
 
   MotionModel model_;
   CausalFilterSettings settings_;

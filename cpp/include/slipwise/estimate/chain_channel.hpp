@@ -10,15 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/actuator/lane_motion.hpp"
-#include "slipwise/estimate/drive_noise.hpp"
+#include "slipwise/estimate/chain_pass.hpp"
 #include "slipwise/estimate/passage.hpp"
-#include "slipwise/estimate/wheel_means.hpp"
 
 namespace slipwise {
-
-/// Log lag, log delay [ln s], gain, slow share [-], log slow lag [ln s].
-inline constexpr Eigen::Index kChannelParameters = 5;
 
 /// How a window of wheel speeds was foretold.
 struct ChannelUpdate {
@@ -27,54 +22,38 @@ struct ChannelUpdate {
   Status status = Status::Converged;
 };
 
-/// State [parameters; per lane: fast part, slow part, deviation from the chain].
+/// State [parameters; per lane that is followed: fast part, slow part, deviation from the chain].
 class ChainChannel {
  public:
-  /// A window as it was learned.
-  struct Past {
-    InputTrack inputs;
-    WheelMeans seen;
-  };
-
-  /// `parts` are the lanes that share the parameters, `noise` is a shape whose size is learned.
-  ChainChannel(std::vector<double BodyTwist::*> parts, Estimate prior, const DriveNoise& noise,
-               const IekfSettings& iekf);
+  explicit ChainChannel(ChannelModel model);
 
   /// Learns a window. It goes on from the last one where it begins at its end; otherwise nothing is known of the drive.
-  ChannelUpdate learn(const InputTrack& inputs, const WheelMeans& seen);
+  ChannelUpdate learn(const ChannelWindow& window);
   /// Learns all windows so far anew from the prior, linearised at the parameters that all of them lead to together.
-  void relearn(std::span<const Past> past);
+  void relearn(std::span<const ChannelWindow> past);
 
   Estimate estimate() const;  ///< of the parameters
   /// Variance of one wheel speed's noise, as learned [(m/s)^2 or (rad/s)^2].
   double noise_variance() const { return size_; }
 
  private:
-  struct Pass;
-
   Lane lane(const Eigen::VectorXd& state, std::size_t i) const;
-  bool begin(const InputTrack& inputs, const WheelMeans& seen, const Eigen::VectorXd& chain);
+  bool begin(const ChannelWindow& window);
   void lose_track();
-  Passage foretell(const InputTrack& inputs, const WheelMeans& seen, const DriveNoiseMeans& noise,
-                   const Eigen::VectorXd& state) const;
-  Eigen::VectorXd foretell_values(const InputTrack& inputs, const WheelMeans& seen, const DriveNoiseMeans& noise,
+  Passage foretell(const ChannelWindow& window, const DriveNoiseMeans& noise, const Eigen::VectorXd& state) const;
+  Eigen::VectorXd foretell_values(const ChannelWindow& window, const DriveNoiseMeans& noise,
                                   const Eigen::VectorXd& state) const;
   DriveNoiseMeans noise_means(const WheelMeans& seen) const;
   Eigen::VectorXd measured(const WheelMeans& seen) const;
   double mean_nis(const WheelMeans& seen, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) const;
-  double inflation(double nis, Eigen::Index count) const;
   void learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
                   const Eigen::MatrixXd& noise);
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
-  Pass pass(std::span<const Past> past, const Eigen::VectorXd& point) const;
 
-  std::vector<double BodyTwist::*> parts_;
-  std::vector<bool> live_;  ///< lanes of which something is known
-  DriveNoise noise_;
-  IekfSettings iekf_;
-  Estimate prior_;
+  ChannelModel model_;
+  std::vector<std::size_t> live_;  ///< lanes that are followed, by their places among the parts
   Estimate joint_;
   double until_ = -std::numeric_limits<double>::infinity();  ///< [s]
   double size_;

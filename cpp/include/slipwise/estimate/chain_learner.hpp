@@ -39,8 +39,8 @@ class ChainLearner {
     std::vector<ChainChannel> rivals;
     Eigen::VectorXd weights;
 
-    double learn(const InputTrack& inputs, const WheelMeans& seen, std::size_t learned);
-    void relearn(std::span<const ChainChannel::Past> past);
+    double learn(const ChannelWindow& window, std::size_t learned);
+    void relearn(std::span<const ChannelWindow> past);
     Estimate mixture() const;
   };
 
@@ -48,7 +48,7 @@ class ChainLearner {
   Eigen::VectorXd prior_std_;
   std::vector<Bank> banks_;
   std::size_t learned_ = 0;
-  std::vector<ChainChannel::Past> past_;
+  std::vector<ChannelWindow> past_;
 };
 
 }  // namespace slipwise

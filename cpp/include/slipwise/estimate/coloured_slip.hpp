@@ -54,8 +54,9 @@ class ColouredSlip {
   /// \throws std::invalid_argument when the law's numbers contradict each other.
   explicit ColouredSlip(WanderLaw law);
 
-  /// Weighs the candidates by the last of `segments`, foretold from those before it. All in the order of time.
-  void learn(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> segments);
+  /// Weighs the candidates by `segment`, foretold from `now`, which is as `predict` takes it.
+  /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
+  void learn(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now, const Segment& segment);
   /// What `recent` segments, in the order of time, say of the slip after them; without any, what is usual.
   SlipNow now(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent) const;
   /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.

@@ -7,7 +7,7 @@
 #include "slipwise/actuator/input_track.hpp"
 #include "slipwise/estimate/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
-#include "slipwise/segment/segment.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
 
@@ -27,6 +27,7 @@ struct IekfUpdate {
   double nis;                             ///< innovation^T S^-1 innovation
   double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where left out
   Status status;
+  SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
 };
 
 /// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.

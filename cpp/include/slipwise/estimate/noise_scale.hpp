@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "slipwise/estimate/estimate.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
@@ -31,7 +30,8 @@ class NoiseScale {
   const Eigen::Vector3d& value() const { return value_; }
   /// One step of expectation-maximisation: the residual after the update plus what the parameters leave open.
   /// `expected` are the variances of the shape. Does nothing where the settings say that the noise is known.
-  void learn(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs, const Segment& segment,
+  /// `at` is the segment at the estimate whose covariance is given.
+  void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
              const Eigen::Vector3d& expected);
   /// Follows the next residuals as fast as those of the first segments, from the present value.
   void hurry() { segments_ = std::min(segments_, settings_.prior_segments); }

@@ -45,5 +45,8 @@ struct SegmentLinearization {
 /// Value and exact derivative in one pass (prefix scan of derivations.md, section 3).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment);
+/// The same by the slip parameters alone, which come first: cheaper where the chain is learned too.
+SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                    const InputTrack& inputs, const Segment& segment);
 
 }  // namespace slipwise

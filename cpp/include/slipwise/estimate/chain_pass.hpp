@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// All windows of one channel learned about one point of its chain parameters, and how probable that point is.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "slipwise/estimate/iekf.hpp"
+#include "slipwise/estimate/lane_passage.hpp"
+
+namespace slipwise {
+
+/// Lanes that share their parameters, what is believed of these beforehand, and what else moves the wheels.
+struct ChannelModel {
+  std::vector<double BodyTwist::*> parts;
+  Estimate prior;
+  DriveNoise noise;   ///< a shape, whose size is learned
+  IekfSettings iekf;  ///< gate and Huber's bound
+};
+
+inline constexpr double kSameStamp = 1e-6;  ///< [s] windows closer than this meet
+
+/// -2 log density under a Student t of `count` values, without constants.
+double student_cost(double nis, double log_determinant, Eigen::Index count);
+
+/// By how much the noise of a window is larger than usual, by the rule of the IEKF; none where it is left out.
+double noise_inflation(double nis, Eigen::Index count, const IekfSettings& settings);
+
+struct ChainPass {
+  double cost;                    ///< -2 log posterior of the point, exact but for weights of outliers
+  Estimate joint;                 ///< [parameters; per lane that is followed at the end: its state]
+  std::vector<std::size_t> live;  ///< these lanes, by their places among the parts
+  double until = -std::numeric_limits<double>::infinity();  ///< [s] the end
+};
+
+/// For given parameters the chain is linear in its state, and the lanes are independent: small filters follow them
+/// exactly, and their likelihood is that of the parameters. How their innovations move with the parameters tells these
+/// (Friedland 1969): the joint filter, linearised along the way. `size` is that of the noise; `noise` has one for each
+/// window.
+ChainPass chain_pass(const ChannelModel& model, double size, std::span<const ChannelWindow> past,
+                     std::span<const DriveNoiseMeans> noise, const ChannelParameters& point);
+
+}  // namespace slipwise
