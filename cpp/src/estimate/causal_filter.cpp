@@ -122,10 +122,10 @@ void CausalFilter::relearn() {
   if (fit.status != Status::Converged) {
     return;
   }
-  estimate_ = std::move(fit.estimate);
   if (settings_.noise.adapt) {
-    stated_ = sandwich_factors(model_, before_, estimate_, data, settings_.noise.prior_segments);
+    stated_ = sandwich_factors(before_, fit, kept.data, settings_.noise.prior_segments);
   }
+  estimate_ = std::move(fit.estimate);
   noise_scale_.restart();
   std::size_t fitted = 0;
   for (std::size_t i = 0; i < kept_.size(); ++i) {

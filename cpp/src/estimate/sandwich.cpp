@@ -4,17 +4,16 @@
 
 #include <Eigen/Cholesky>
 
-#include "slipwise/segment/integrate_segment.hpp"
-
 namespace slipwise {
 
-Eigen::VectorXd sandwich_factors(const MotionModel& model, const Estimate& before, const Estimate& fitted,
-                                 std::span<const BatchDatum> data, double prior_data) {
-  const Eigen::MatrixXd& bread = fitted.covariance;
+Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data,
+                                 double prior_data) {
+  const Eigen::MatrixXd& bread = fit.estimate.covariance;
   const auto count = static_cast<double>(data.size());
   Eigen::MatrixXd filling = before.covariance.llt().solve(Eigen::MatrixXd::Identity(bread.rows(), bread.cols()));
-  for (const BatchDatum& datum : data) {
-    const auto at = linearize_segment(model, fitted.mean, *datum.inputs, datum.segment);
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const BatchDatum& datum = data[i];
+    const SegmentLinearization& at = fit.at[i];
     const Eigen::Vector3d residual = datum.segment.measured.vector() - at.predicted.vector();
     const Eigen::Matrix3d open = at.by_parameter * bread * at.by_parameter.transpose();
     const Eigen::Matrix3d seen = residual * residual.transpose() + open;

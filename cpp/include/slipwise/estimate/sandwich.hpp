@@ -7,13 +7,12 @@
 
 #include "slipwise/estimate/batch.hpp"
 #include "slipwise/estimate/estimate.hpp"
-#include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise {
 
-/// Factors of the standard deviations of `fitted`, the fit of `data` after `before`: the sandwich estimator (Huber
-/// 1967, White 1980), where the stated noise of each datum counts as much as `prior_data` residuals in all.
-Eigen::VectorXd sandwich_factors(const MotionModel& model, const Estimate& before, const Estimate& fitted,
-                                 std::span<const BatchDatum> data, double prior_data);
+/// Factors of the standard deviations of `fit`, that of `data` after `before`: the sandwich estimator (Huber 1967,
+/// White 1980), where the stated noise of each datum counts as much as `prior_data` residuals in all.
+Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data,
+                                 double prior_data);
 
 }  // namespace slipwise
