@@ -4,15 +4,16 @@
 For each seed a robot's parameters are drawn from the prior and a drive is simulated, without the core's
 chain. Then it is learned: from commands alone, with the settings that users have and once more with the true
 shape of the noise, whose size is learned; and from commands and wheel speeds in cascade. A few drives are
-simulated with rigid-body physics (MuJoCo), behind whose commands there is a known lag and delay. A dull drive
-(constant speed, straight on) must be said not to determine what it cannot show.
+simulated with rigid-body physics (MuJoCo), behind whose commands there is a known lag and delay; a heavy body
+on tyres follows its wheels later still, by as much as its exact states show. A dull drive (constant speed,
+straight on) must be said not to determine what it cannot show.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -20,6 +21,8 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
@@ -30,6 +33,7 @@ from slipwise.calibration.learner import Belief
 from slipwise.logs import Inputs, Log, Poses
 from slipwise.simulation import LandTamer, Scenario, simulate
 from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise.simulation.truth import Truth
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +55,7 @@ TRUE_NOISE = {
 PHYSICS_BASIS = "drive-5"  # real slip is not edd-2: sideways slip in curves would pass for a lever arm
 PHYSICS_LATE = 0.05  # s that poses are stamped late
 PHYSICS_SENSOR = (1.5, -0.3, 0.1)  # m, m, rad
+FINE = 0.001  # s, steps of the exact answer to commands
 
 
 @dataclass(frozen=True)
@@ -176,17 +181,40 @@ def from_wheels_too(seed: int, seconds: float = SECONDS) -> list[Found]:
 def in_physics(seed: int) -> list[Found]:
     """Learn the chain and the sensor of a simulated Land Tamer from its commands."""
     vehicle = LandTamer()
-    scenario = Scenario(duration=SECONDS, vehicle=vehicle, pose_delay=PHYSICS_LATE)
-    (run,) = simulate(scenario, seed=seed).log.runs
+    simulation = simulate(Scenario(duration=SECONDS, vehicle=vehicle, pose_delay=PHYSICS_LATE), seed=seed)
+    (run,) = simulation.log.runs
     log = Log(runs=(replace(run, wheels=None, poses=_seen(run.poses, PHYSICS_SENSOR)),))
     settings = make_settings(LEARN | {"basis": PHYSICS_BASIS})
     model = calibrate(log, input_name="command", settings=settings).model
     true = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), PHYSICS_SENSOR, strict=True))
-    for channel in ("v", "omega"):
-        true[f"log_lag_{channel}"] = float(np.log(vehicle.command_lag))
-        true[f"log_delay_{channel}"] = float(np.log(vehicle.command_delay + PHYSICS_LATE))
+    for channel, (lag, delay) in shown_responses(simulation.truth, run.commands, vehicle).items():
+        true[f"log_lag_{channel}"] = float(np.log(lag))
+        true[f"log_delay_{channel}"] = float(np.log(delay + PHYSICS_LATE))
     known = [p for p in model.content.parameters if p.name in true]
     return [Found(p.name, true[p.name], p.value, p.std, p.prior_std) for p in known]
+
+
+def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str, tuple[float, float]]:
+    """Lag and delay [s] of speed and yaw rate by which a body's exact twist follows its commands best.
+
+    The wheels have the vehicle's lag and delay. The body has some 25 ms more: its mass on soft tyres.
+    """
+    t = np.arange(0.0, truth.t[-1] + FINE / 2, FINE)
+    held = np.searchsorted(told.t, t, side="right") - 1
+
+    def answer(wish: Floats, lag: float, delay: float) -> Floats:
+        keep = np.exp(-FINE / lag)
+        return np.interp(truth.t - delay, t + FINE, lfilter([1.0 - keep], [1.0, -keep], wish[held]))
+
+    def misfit(lag_delay: Floats, slips: Callable[[Floats, Floats], Sequence[Floats]], twist: Floats) -> Floats:
+        v, omega = answer(told.v, *lag_delay), answer(told.omega, *lag_delay)
+        terms = np.stack(slips(v, omega), axis=1)
+        return terms @ np.linalg.lstsq(terms, twist, rcond=None)[0] - twist
+
+    start = (vehicle.command_lag, vehicle.command_delay)
+    of_v = least_squares(misfit, start, args=(lambda v, _: (v,), truth.vx)).x
+    of_omega = least_squares(misfit, start, args=(lambda v, w: (w, v, v * w), truth.omega)).x
+    return {"v": tuple(of_v), "omega": tuple(of_omega)}
 
 
 def _seen(poses: Poses, sensor: tuple[float, float, float]) -> Poses:

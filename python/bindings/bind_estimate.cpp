@@ -237,7 +237,10 @@ void bind_estimate(nb::module_& m) {
   bind_slip_ratios(m);
   bind_slip_rate_fit(m);
   bind_noise_fit(m);
-  m.def("iekf_update", &iekf_update, "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
+  m.def("iekf_update",
+        nb::overload_cast<const MotionModel&, const Estimate&, const InputTrack&, const Segment&,
+                          const Eigen::Matrix3d&, const IekfSettings&>(&iekf_update),
+        "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
   m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
   m.def(
       "prior_estimate",

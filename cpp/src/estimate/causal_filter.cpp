@@ -18,6 +18,7 @@ namespace {
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
 constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
+constexpr std::size_t kHeeded = 64;             // segments from which only what is heard is learned anew
 constexpr double kTolerance = 1e-5;             // of the cost: far less than a standard deviation
 constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
 
@@ -74,20 +75,18 @@ Estimate CausalFilter::stated() const {
   return {estimate_.mean, stated_.asDiagonal() * estimate_.covariance * stated_.asDiagonal()};
 }
 
-Eigen::Matrix3d CausalFilter::expected_noise(const InputTrack& inputs, const Segment& segment) const {
-  const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
-  return slip_covariance(path, settings_.noise.shape) + pose_noise_covariance(segment.measured, settings_.noise.shape);
+Eigen::Matrix3d CausalFilter::expected_noise(const SegmentLinearization& at, const Segment& segment) const {
+  const MotionNoise& shape = settings_.noise.shape;
+  return slip_covariance(at.path, shape) + pose_noise_covariance(segment.measured, shape);
 }
 
 /// `at` is the segment at the estimate.
 void CausalFilter::learn_noise(const SegmentLinearization& at, const Segment& segment) {
-  const MotionNoise& shape = settings_.noise.shape;
-  const Eigen::Matrix3d expected = slip_covariance(at.path, shape) + pose_noise_covariance(segment.measured, shape);
-  noise_scale_.learn(at, estimate_.covariance, segment.measured, expected.diagonal());
+  noise_scale_.learn(at, estimate_.covariance, segment.measured, expected_noise(at, segment).diagonal());
 }
 
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
-void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at) {
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at, bool heard) {
   if (since_ == kLast) {
     kept_ = {};
     return;
@@ -97,7 +96,7 @@ void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, const 
   }
   ++since_;
   kept_.push_back({inputs, segment});
-  if (since_ >= kFirst && std::has_single_bit(since_)) {
+  if (since_ >= kFirst && std::has_single_bit(since_) && (heard || since_ < kHeeded)) {
     relearn();
   }
 }
@@ -123,7 +122,7 @@ void CausalFilter::relearn() {
     return;
   }
   if (settings_.noise.adapt) {
-    stated_ = sandwich_factors(before_, fit, kept.data, settings_.noise.prior_segments);
+    stated_ = sandwich_factors(before_, fit, kept.data);
   }
   estimate_ = std::move(fit.estimate);
   noise_scale_.restart();
@@ -168,14 +167,16 @@ CausalFilter::KeptData CausalFilter::kept_data() const {
   return data;
 }
 
-IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
+IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds,
+                               bool heard) {
   follow(speeds);
-  const Eigen::Matrix3d expected = expected_noise(inputs, segment);
-  IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, scaled_covariance(expected, noise_scale_.value()),
-                                  settings_.iekf);
+  auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
+  const Eigen::Matrix3d expected = expected_noise(at, segment);
+  const Eigen::Matrix3d noise = scaled_covariance(expected, noise_scale_.value());
+  IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_.iekf);
   estimate_ = update.estimate;
   noise_scale_.learn(update.at, estimate_.covariance, segment.measured, expected.diagonal());
-  keep(inputs, segment, update.at);
+  keep(inputs, segment, update.at, heard);
   return update;
 }
 

@@ -14,16 +14,28 @@
 namespace slipwise {
 namespace {
 
-constexpr double kFirstSize = 0.1 * 0.1;                // [(m/s)^2, (rad/s)^2]
-constexpr double kLeastSize = 1e-4 * 1e-4;              // nothing is computed or sampled more exactly
-constexpr double kFirstWindows = 3.0, kMemory = 40.0;   // as in NoiseSettings
-constexpr double kMostGain = 8.0;                       // of a window's noise over the expected
-constexpr double kStraight = 0.03, kUnknown = 1.0;      // as in iekf_update
-constexpr double kSettled = 0.1;                        // in standard deviations
-constexpr std::array<Eigen::Index, 3> kTimes{0, 1, 4};  // parameters that are logarithms of times
+constexpr double kFirstSize = 0.1 * 0.1;               // [(m/s)^2, (rad/s)^2]
+constexpr double kLeastSize = 1e-4 * 1e-4;             // nothing is computed or sampled more exactly
+constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
+constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
+constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
+constexpr double kSettled = 0.1;                       // in standard deviations
+constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowShare = 3, kSlowLag = 4;
+constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
+constexpr double kApart = 1.4;                        // in the logarithm: lags closer than that may pass for each other
 
 /// Of the state of the lane that is followed as the i-th.
 Eigen::Index place(std::size_t i) { return kChannelParameters + kLaneStates * static_cast<Eigen::Index>(i); }
+
+/// All in one lag, and a slower one beside it.
+ChannelParameters without_slow_part(ChannelParameters chain) {
+  const double share = chain[kSlowShare];
+  const double lag = (1.0 - share) * std::exp(chain[kLag]) + share * std::exp(chain[kSlowLag]);
+  chain[kLag] = lag > 0.0 ? std::log(lag) : chain[kLag];
+  chain[kSlowShare] = 0.0;
+  chain[kSlowLag] = chain[kLag] + kApart;
+  return chain;
+}
 
 }  // namespace
 
@@ -182,7 +194,7 @@ void ChainChannel::carry_times(const Estimate& before) {
   }
 }
 
-ChannelUpdate ChainChannel::learn(const ChannelWindow& window) {
+ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
   if (!begin(window)) {
     return {};
   }
@@ -208,8 +220,11 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window) {
   if (larger > 0.0) {
     update.status = larger > 1.0 ? Status::Downweighted : Status::Converged;
     expected.noise *= larger;
-    PassagePoint point = settle(joint_, std::move(expected), weighed, z, model_.iekf);
-    point.at.noise += bending(values, point);
+    PassagePoint point{joint_.mean, std::move(expected)};
+    if (carefully) {
+      point = settle(joint_, std::move(point.at), weighed, z, model_.iekf);
+      point.at.noise += bending(values, point);
+    }
     const Estimate before = joint_;
     joint_ = end_estimate(before, point, z);
     carry_times(before);
@@ -221,12 +236,9 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window) {
   return update;
 }
 
-void ChainChannel::relearn(std::span<const ChannelWindow> past) {
-  std::vector<DriveNoiseMeans> noise;
-  for (const ChannelWindow& window : past) {
-    noise.push_back(noise_means(window.seen));
-  }
-  ChannelParameters point = joint_.mean.head<kChannelParameters>();
+/// From a start to where all windows lead to together: Gauss-Newton, whose steps are halved until they help.
+ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
+                            ChannelParameters point) const {
   ChainPass best = chain_pass(model_, size_, past, noise, point);
   for (int i = 0; i < model_.iekf.iterations; ++i) {
     const ChannelParameters full = best.joint.mean.head<kChannelParameters>() - point;
@@ -246,6 +258,22 @@ void ChainChannel::relearn(std::span<const ChannelWindow> past) {
     }
     if (!better) {
       break;
+    }
+  }
+  return best;
+}
+
+void ChainChannel::relearn(std::span<const ChannelWindow> past) {
+  std::vector<DriveNoiseMeans> noise;
+  for (const ChannelWindow& window : past) {
+    noise.push_back(noise_means(window.seen));
+  }
+  ChainPass best = fit(past, noise, joint_.mean.head<kChannelParameters>());
+  const ChannelParameters found = best.joint.mean.head<kChannelParameters>();
+  if (found[kSlowLag] < found[kLag] + kApart) {
+    ChainPass other = fit(past, noise, without_slow_part(found));
+    if (other.cost < best.cost) {
+      best = std::move(other);
     }
   }
   joint_ = std::move(best.joint);

@@ -2,8 +2,9 @@
 // Banks of filters, weighed by how well they foretell wheel speeds.
 #include "slipwise/estimate/chain_learner.hpp"
 
+#include <algorithm>
 #include <array>
-#include <bit>
+#include <cmath>
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
@@ -18,13 +19,14 @@ constexpr std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time
                                              {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 5.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 25.0}}};
-constexpr std::size_t kFirst = 4, kLast = 256;  // windows after which, and each doubling, all are learned anew
-constexpr double kHeard = 0.01;                 // weight from which a rival learns anew
+constexpr std::size_t kFirst = 4, kLast = 256;  // windows from which and up to which all are learned anew
+constexpr double kGrowth = 1.25;                // of their number, until that is done again
+constexpr double kHeard = 0.01;                 // weight from which a rival learns anew and has a say
 
 }  // namespace
 
-ChainLearner::ChainLearner(const CausalFilterSettings& settings)
-    : model_({"none", {}, {}, {}}, {.dynamics = true, .response = true}) {
+ChainLearner::ChainLearner(const CausalFilterSettings& settings, std::size_t waiting)
+    : model_({"none", {}, {}, {}}, {.dynamics = true, .response = true}), next_(std::clamp(waiting, kFirst, kLast)) {
   const Estimate prior = prior_estimate(model_, {.v = 1.0, .omega = 1.0}, settings.prior);
   prior_std_ = prior.covariance.diagonal().cwiseSqrt();
   const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {
@@ -46,7 +48,7 @@ double ChainLearner::Bank::learn(const ChannelWindow& window, std::size_t learne
   double nis = 0.0;
   bool left_out = true;
   for (Eigen::Index i = 0; i < weights.size(); ++i) {
-    const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(window);
+    const ChannelUpdate update = rivals[static_cast<std::size_t>(i)].learn(window, weights[i] > kHeard);
     scores[i] = update.log_score;
     nis = i == 0 ? update.nis : nis;
     left_out = left_out && update.status == Status::Rejected;
@@ -67,17 +69,20 @@ void ChainLearner::Bank::relearn(std::span<const ChannelWindow> past) {
   }
 }
 
-/// Mean and covariance of the weighed rivals.
+/// Mean and covariance of the weighed rivals. One that is as good as refuted has no say: weight is dealt out anew at
+/// each window, and a thousandth of a rival that knows a gain to 0.03 would hide that the others know it to 0.0003.
 Estimate ChainLearner::Bank::mixture() const {
+  const Eigen::VectorXd heard = (weights.array() > kHeard).select(weights, 0.0);
+  const Eigen::VectorXd says = heard / heard.sum();
   Estimate all{Eigen::VectorXd::Zero(kChannelParameters),
                Eigen::MatrixXd::Zero(kChannelParameters, kChannelParameters)};
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    all.mean += weights[static_cast<Eigen::Index>(i)] * rivals[i].estimate().mean;
+    all.mean += says[static_cast<Eigen::Index>(i)] * rivals[i].estimate().mean;
   }
   for (std::size_t i = 0; i < rivals.size(); ++i) {
     const Estimate own = rivals[i].estimate();
     const Eigen::VectorXd away = own.mean - all.mean;
-    all.covariance += weights[static_cast<Eigen::Index>(i)] * (own.covariance + away * away.transpose());
+    all.covariance += says[static_cast<Eigen::Index>(i)] * (own.covariance + away * away.transpose());
   }
   return all;
 }
@@ -93,7 +98,8 @@ ChainUpdate ChainLearner::learn(const InputTrack& inputs, const InputTrack& whee
     return update;
   }
   past_.push_back(std::move(window));
-  if (learned_ >= kFirst && std::has_single_bit(learned_)) {
+  if (learned_ >= next_) {
+    next_ = static_cast<std::size_t>(std::ceil(kGrowth * static_cast<double>(learned_)));
     for (Bank& bank : banks_) {
       bank.relearn(past_);
     }

@@ -144,11 +144,11 @@ Eigen::VectorXd DelayedState::settled(const InputTrack& inputs, const Segment& s
   Segment seen = segment;
   seen.measured = between(pose(), end);
   const Estimate before = estimate();
-  const SegmentPath path = integrate_segment(model_, before.mean, inputs, seen);
+  auto at = linearize_segment(model_, before.mean, inputs, seen);
+  const Eigen::Matrix3d noise = segment_noise(at.path, seen.measured, noise_, scale_);
   IekfSettings settings = iekf_;
   settings.gate = std::numeric_limits<double>::infinity();
-  return iekf_update(model_, before, inputs, seen, segment_noise(path, seen.measured, noise_, scale_), settings)
-      .estimate.mean;
+  return iekf_update(model_, before, inputs, seen, std::move(at), noise, settings).estimate.mean;
 }
 
 void DelayedState::learn_weighed(const InputTrack& inputs, const Segment& segment, const Pose2& end, double weight) {

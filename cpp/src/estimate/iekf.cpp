@@ -42,6 +42,12 @@ class MapProblem {
              const Eigen::Matrix3d& noise)
       : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise) {}
 
+  /// The prior's mean, where the segment is linearised `at`.
+  Iterate begin(SegmentLinearization at) const {
+    const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
+    return {Eigen::VectorXd::Zero(prior_.mean.size()), prior_.mean, std::move(at), r, r.dot(noise_.llt().solve(r))};
+  }
+
   Iterate evaluate(Eigen::VectorXd dual) const {
     const Eigen::VectorXd away = prior_.covariance * dual;
     Eigen::VectorXd mean = prior_.mean + away;
@@ -149,8 +155,16 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
-  const MapProblem first(model, prior, inputs, segment, noise);
-  Iterate now = first.evaluate(Eigen::VectorXd::Zero(model.size()));
+  return iekf_update(model, prior, inputs, segment, linearize_segment(model, prior.mean, inputs, segment), noise,
+                     settings);
+}
+
+// NOLINTNEXTLINE(readability-function-size): the same, and what is at hand already.
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
+                       const IekfSettings& settings) {
+  check(model, prior, segment, noise);
+  Iterate now = MapProblem(model, prior, inputs, segment, noise).begin(std::move(at_prior));
   IekfUpdate update{.estimate = prior,
                     .innovation = now.innovation,
                     .innovation_covariance = innovation_covariance(prior.covariance, now.at.by_parameter, noise),
@@ -170,7 +184,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
   }
   const Eigen::Matrix3d weighted_noise = noise / update.weight;
   const MapProblem problem(model, prior, inputs, segment, weighted_noise);
-  now.cost = now.innovation.dot(weighted_noise.llt().solve(now.innovation));
+  now = problem.begin(std::move(now.at));
   if (!problem.minimize(now, settings)) {  // nothing was learned: the prior stands
     update.weight = 0.0;
     update.status = Status::NotConverged;

@@ -13,9 +13,9 @@ IekfEstimator::IekfEstimator(MotionModel model, Estimate prior, const EstimatorS
     : model_(std::move(model)), settings_(settings.iekf), noise_(settings.noise), estimate_(std::move(prior)) {}
 
 IekfUpdate IekfEstimator::learn(const InputTrack& inputs, const Segment& segment) {
-  const SegmentPath path = integrate_segment(model_, estimate_.mean, inputs, segment);
-  IekfUpdate update =
-      iekf_update(model_, estimate_, inputs, segment, segment_noise(path, segment.measured, noise_, scale_), settings_);
+  auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
+  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, scale_);
+  IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_);
   estimate_ = update.estimate;
   return update;
 }

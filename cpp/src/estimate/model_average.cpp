@@ -15,6 +15,7 @@ namespace slipwise {
 namespace {
 
 constexpr double kChanged = 0.2;  // weight of the models that forgot, at first: most disturbances of real drives pass
+constexpr double kHeard = 0.01;   // weight from which a model has a say
 
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
@@ -118,8 +119,9 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   std::vector<IekfUpdate> updates;
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
-  for (CausalFilter& filter : filters_) {
-    updates.push_back(filter.learn(inputs, segment, speeds_.reference()));
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const bool heard = weights_[static_cast<Eigen::Index>(i)] > kHeard;
+    updates.push_back(filters_[i].learn(inputs, segment, speeds_.reference(), heard));
     innovations.push_back(updates.back().innovation);
     covariances.push_back(updates.back().innovation_covariance);
   }

@@ -5,9 +5,15 @@
 #include <Eigen/Cholesky>
 
 namespace slipwise {
+namespace {
 
-Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data,
-                                 double prior_data) {
+/// Residuals as many as the stated noise counts for: fewer, and a few segments that tell much and fit by chance look
+/// as if they knew more than they do.
+constexpr double kStated = 20.0;
+
+}  // namespace
+
+Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data) {
   const Eigen::MatrixXd& bread = fit.estimate.covariance;
   const auto count = static_cast<double>(data.size());
   Eigen::MatrixXd filling = before.covariance.llt().solve(Eigen::MatrixXd::Identity(bread.rows(), bread.cols()));
@@ -17,7 +23,7 @@ Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, st
     const Eigen::Vector3d residual = datum.segment.measured.vector() - at.predicted.vector();
     const Eigen::Matrix3d open = at.by_parameter * bread * at.by_parameter.transpose();
     const Eigen::Matrix3d seen = residual * residual.transpose() + open;
-    const Eigen::Matrix3d noise = (count * seen + prior_data * datum.noise) / (count + prior_data);
+    const Eigen::Matrix3d noise = (count * seen + kStated * datum.noise) / (count + kStated);
     const Eigen::MatrixXd weighed = datum.noise.llt().solve(at.by_parameter);
     filling += weighed.transpose() * noise * weighed;
   }

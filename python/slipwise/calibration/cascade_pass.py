@@ -74,9 +74,9 @@ class CascadePass:
         """Put limits in front of the chain, and learn it anew from the last of its windows."""
         drive = self._chain_windows.drive
         runs = tuple(replace(run, track=limited.track(k)) for k, run in enumerate(drive))
-        first = max(self._chain.learned - RECENT_CHAIN_WINDOWS, 0)
+        waiting = min(self._chain.learned, RECENT_CHAIN_WINDOWS)
         self._limited = limited
-        self._learn_chain(replace(self._chain_windows, drive=runs), first)
+        self._learn_chain(replace(self._chain_windows, drive=runs), self._chain.learned - waiting, waiting)
 
     @property
     def chain_fails(self) -> bool:
@@ -86,9 +86,9 @@ class CascadePass:
     def _see(self, _i: int, _update: _core.IekfUpdate, _belief: Belief) -> None:
         self.change = max(self.change, self._average.change, key=lambda test: (test.alarm, test.log_odds))
 
-    def _learn_chain(self, windows: WindowSet, first: int = 0) -> None:
-        """Begin anew with window `first`."""
-        self._watched = _WatchedChain(_core.ChainLearner(self._settings.filter_settings()))
+    def _learn_chain(self, windows: WindowSet, first: int = 0, waiting: int = 0) -> None:
+        """Begin anew with window `first`, `waiting` windows being known."""
+        self._watched = _WatchedChain(_core.ChainLearner(self._settings.filter_settings(), waiting))
         self._chain = CausalPass(self._watched, windows, pace=self._windows, first=first)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:

@@ -26,8 +26,9 @@ class CausalFilter {
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
   /// Learns one segment. `speeds` are those seen up to the segment's end. After 8, 16, ... 256 segments all of them are
-  /// learned anew; the update returned is that of the segment alone.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
+  /// learned anew, but not so many for a filter to whose predictions nobody listens (`heard`). The update returned is
+  /// that of the segment alone.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds, bool heard = true);
 
   /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
   /// robot's, not the ground's: they stay as learned.
@@ -51,9 +52,9 @@ class CausalFilter {
   };
 
   void follow(const ReferenceSpeeds& speeds);
-  Eigen::Matrix3d expected_noise(const InputTrack& inputs, const Segment& segment) const;
+  Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment) const;
   void learn_noise(const SegmentLinearization& at, const Segment& segment);
-  void keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at);
+  void keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at, bool heard);
   void relearn();
   struct KeptData;
   KeptData kept_data() const;

@@ -28,7 +28,7 @@ class ChainChannel {
   explicit ChainChannel(ChannelModel model);
 
   /// Learns a window. It goes on from the last one where it begins at its end; otherwise nothing is known of the drive.
-  ChannelUpdate learn(const ChannelWindow& window);
+  ChannelUpdate learn(const ChannelWindow& window, bool carefully = true);
   /// Learns all windows so far anew from the prior, linearised at the parameters that all of them lead to together.
   void relearn(std::span<const ChannelWindow> past);
 
@@ -51,6 +51,8 @@ class ChainChannel {
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
+  ChainPass fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
+                ChannelParameters point) const;
 
   ChannelModel model_;
   std::vector<std::size_t> live_;  ///< lanes that are followed, by their places among the parts

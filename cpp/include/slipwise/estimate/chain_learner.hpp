@@ -22,8 +22,9 @@ struct ChainUpdate {
 /// how well they foretell the wheels; the belief is their mixture.
 class ChainLearner {
  public:
-  /// Priors, gate and Huber's bound are those of `settings`.
-  explicit ChainLearner(const CausalFilterSettings& settings);
+  /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, nothing is
+  /// learned anew before they are all learned.
+  explicit ChainLearner(const CausalFilterSettings& settings, std::size_t waiting = 0);
 
   /// Learns the wheel speeds from `start` to `end` [s], in input stamps. Nothing later is used.
   /// \throws std::invalid_argument when the end is not after the start.
@@ -48,6 +49,7 @@ class ChainLearner {
   Eigen::VectorXd prior_std_;
   std::vector<Bank> banks_;
   std::size_t learned_ = 0;
+  std::size_t next_;  ///< windows after which all are learned anew
   std::vector<ChannelWindow> past_;
 };
 

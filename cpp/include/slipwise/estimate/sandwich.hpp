@@ -11,8 +11,7 @@
 namespace slipwise {
 
 /// Factors of the standard deviations of `fit`, that of `data` after `before`: the sandwich estimator (Huber 1967,
-/// White 1980), where the stated noise of each datum counts as much as `prior_data` residuals in all.
-Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data,
-                                 double prior_data);
+/// White 1980), where the stated noise counts for some residuals too (derivations.md, section 6).
+Eigen::VectorXd sandwich_factors(const Estimate& before, const BatchFit& fit, std::span<const BatchDatum> data);
 
 }  // namespace slipwise
