@@ -32,10 +32,11 @@ from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.learner import Belief
 from slipwise.logs import Inputs, Log, Poses
 from slipwise.simulation import LandTamer, Scenario, simulate
-from slipwise.simulation.known_robot import KnownRobot, known_run
+from slipwise.simulation.known_robot import KnownRobot, Pair, known_run
 from slipwise.simulation.truth import Truth
 
 Floats = NDArray[np.float64]
+Slips = Callable[[Floats, Floats], Sequence[Floats]]  # what of v and omega a twist is a sum of
 
 SECONDS, DULL_SECONDS = 240.0, 60.0
 SETTLED = 20.0  # s of driving before a dull drive is recorded
@@ -183,6 +184,7 @@ def in_physics(seed: int) -> list[Found]:
     vehicle = LandTamer()
     simulation = simulate(Scenario(duration=SECONDS, vehicle=vehicle, pose_delay=PHYSICS_LATE), seed=seed)
     (run,) = simulation.log.runs
+    assert run.commands is not None
     log = Log(runs=(replace(run, wheels=None, poses=_seen(run.poses, PHYSICS_SENSOR)),))
     settings = make_settings(LEARN | {"basis": PHYSICS_BASIS})
     model = calibrate(log, input_name="command", settings=settings).model
@@ -194,7 +196,7 @@ def in_physics(seed: int) -> list[Found]:
     return [Found(p.name, true[p.name], p.value, p.std, p.prior_std) for p in known]
 
 
-def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str, tuple[float, float]]:
+def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str, Pair]:
     """Lag and delay [s] of speed and yaw rate by which a body's exact twist follows its commands best.
 
     The wheels have the vehicle's lag and delay. The body has some 25 ms more: its mass on soft tyres.
@@ -204,16 +206,17 @@ def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str,
 
     def answer(wish: Floats, lag: float, delay: float) -> Floats:
         keep = np.exp(-FINE / lag)
-        return np.interp(truth.t - delay, t + FINE, lfilter([1.0 - keep], [1.0, -keep], wish[held]))
+        follows = lfilter([1.0 - keep], [1.0, -keep], wish[held])
+        return np.asarray(np.interp(truth.t - delay, t + FINE, follows))
 
-    def misfit(lag_delay: Floats, slips: Callable[[Floats, Floats], Sequence[Floats]], twist: Floats) -> Floats:
+    def misfit(lag_delay: Floats, slips: Slips, twist: Floats) -> Floats:
         v, omega = answer(told.v, *lag_delay), answer(told.omega, *lag_delay)
         terms = np.stack(slips(v, omega), axis=1)
-        return terms @ np.linalg.lstsq(terms, twist, rcond=None)[0] - twist
+        return np.asarray(terms @ np.linalg.lstsq(terms, twist, rcond=None)[0] - twist)
 
     start = (vehicle.command_lag, vehicle.command_delay)
-    of_v = least_squares(misfit, start, args=(lambda v, _: (v,), truth.vx)).x
-    of_omega = least_squares(misfit, start, args=(lambda v, w: (w, v, v * w), truth.omega)).x
+    of_v = least_squares(misfit, start, args=(lambda v, _: (v,), truth.vx)).x.tolist()
+    of_omega = least_squares(misfit, start, args=(lambda v, w: (w, v, v * w), truth.omega)).x.tolist()
     return {"v": tuple(of_v), "omega": tuple(of_omega)}
 
 

@@ -64,11 +64,17 @@ class MapProblem {
     return jacobian.transpose() * s.llt().solve(i.innovation - jacobian * (prior_.mean - i.mean));
   }
 
-  /// Steps towards the Gauss-Newton point, halving the step while the MAP cost grows. False when no step helps.
-  bool descend(Iterate& i, int halvings) const {
-    const Eigen::VectorXd full = gauss_newton_dual(i) - i.dual;
-    for (double step = 1.0; halvings >= 0; --halvings, step /= 2.0) {
-      Iterate next = evaluate(i.dual + step * full);
+  /// What a step in dual coordinates lowers the cost by, were the segment linear.
+  double promised(const Iterate& i, const Eigen::VectorXd& step) const {
+    const Eigen::VectorXd moved = prior_.covariance * step;
+    const Eigen::Vector3d seen = i.at.by_parameter * moved;
+    return step.dot(moved) + seen.dot(noise_.llt().solve(seen));
+  }
+
+  /// Goes a step, or half of it and so on while the MAP cost grows. False when nothing helps.
+  bool descend(Iterate& i, const Eigen::VectorXd& full, int halvings) const {
+    for (double share = 1.0; halvings >= 0; --halvings, share /= 2.0) {
+      Iterate next = evaluate(i.dual + share * full);
       if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12) + kNegligibleCost) {
         i = std::move(next);
         return true;
@@ -80,8 +86,12 @@ class MapProblem {
   /// Gauss-Newton steps until they gain little. False when not even the first one helps.
   bool minimize(Iterate& i, const IekfSettings& settings) const {
     for (int steps = 0; steps < settings.iterations; ++steps) {
+      const Eigen::VectorXd full = gauss_newton_dual(i) - i.dual;
+      if (steps > 0 && promised(i, full) < settings.tolerance) {
+        break;
+      }
       const double cost_before = i.cost;
-      if (!descend(i, settings.halvings)) {
+      if (!descend(i, full, settings.halvings)) {
         return steps > 0;
       }
       if (cost_before - i.cost < settings.tolerance) {

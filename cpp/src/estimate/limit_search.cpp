@@ -61,8 +61,15 @@ class Search {
     if (!unlimited(start.limits)) {
       settle_on(best);
     }
-    for (int round = 0; round < kRounds && add_all(best); ++round) {
+    for (int round = 0; round < kRounds; ++round) {
+      const ScoredDrive before = best;
+      if (!add_all(best)) {
+        break;
+      }
       settle_on(best);
+      if (before.loss.total - best.loss.total < kWorthMoving) {  // what was added is dropped again, and would be anew
+        return before;
+      }
     }
     return best;
   }

@@ -103,6 +103,21 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
   }
 }
 
+TEST_CASE("few segments are learned anew by a filter that nobody hears, many are not") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
+                                           {.seed = 81, .windows = 64, .window = 2.0, .noise = kTrueNoise});
+  CausalFilter heard(model, {});
+  CausalFilter unheard(model, {});
+  for (std::size_t i = 0; i < drive.segments.size(); ++i) {
+    CHECK(heard.estimate().mean == unheard.estimate().mean);
+    heard.learn(drive.inputs, drive.segments[i], kSpeeds);
+    unheard.learn(drive.inputs, drive.segments[i], kSpeeds, false);
+  }
+  CHECK(heard.estimate().mean != unheard.estimate().mean);
+  CHECK((heard.estimate().mean - unheard.estimate().mean).cwiseAbs().maxCoeff() < 0.02);
+}
+
 /// Mean square of errors over stated standard deviations, of V's and w's share, over drives whose noise is white and of
 /// one size, told as a fraction of the motion and ten times too large.
 Eigen::Vector2d squared_sigmas(bool adapt, bool stated) {

@@ -29,7 +29,7 @@ struct Drive {
 };
 
 /// Random commands, and wheel speeds that are the mean until the next one.
-Drive drive(int seed, double seconds) {
+Drive drive(int seed, double seconds, const CommandChain& chain = kTrue) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::normal_distribution<double> normal(0.0, kWheelStd);
@@ -43,8 +43,8 @@ Drive drive(int seed, double seconds) {
   for (int i = 0; i * kPeriod <= seconds; ++i) {
     edges.push_back(i * kPeriod);
   }
-  const Lane speed{&BodyTwist::v, speed_response(kTrue), kTrue.delay_v};
-  const Lane turn{&BodyTwist::omega, turn_response(kTrue), kTrue.delay_omega};
+  const Lane speed{&BodyTwist::v, speed_response(chain), chain.delay_v};
+  const Lane turn{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
   Eigen::VectorXd driven = lane_motion(commands, speed, {}, edges).value;
   Eigen::VectorXd turned = lane_motion(commands, turn, {}, edges).value;
   edges.pop_back();
@@ -83,6 +83,36 @@ TEST_CASE("the chain is found, and as well as is stated") {
   }
   CHECK(squares > 0.3);
   CHECK(squares < 2.0);
+}
+
+TEST_CASE("a robot slower than usual is not taken for one whose slow part is the faster one") {
+  CommandChain sluggish = kTrue;
+  sluggish.lag_v = 1.35;
+  sluggish.slow_lag_v = 3.4;
+  sluggish.slow_share_v = 0.7;
+  for (int seed = 20; seed < 28; ++seed) {
+    CAPTURE(seed);
+    ChainLearner learner({});
+    learn(learner, drive(seed, 240.0, sluggish), 0.0, 239.0);
+    const Estimate found = learner.estimate();
+    CHECK(found.mean[8] > found.mean[0]);  // slow lag of speed, and its lag
+  }
+}
+
+TEST_CASE("windows that waited are learned as those that came one by one") {
+  const Drive driven = drive(9, 130.0);
+  ChainLearner one_by_one({});
+  ChainLearner waited({}, 129);
+  learn(one_by_one, driven, 0.0, 129.0);
+  learn(waited, driven, 0.0, 128.0);
+  const Estimate before = waited.estimate();
+  learn(waited, driven, 128.0, 129.0);
+  const Estimate expected = one_by_one.estimate();
+  const auto away = [&](const Estimate& found) {
+    return (found.mean - expected.mean).cwiseQuotient(expected.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
+  };
+  CHECK(away(waited.estimate()) < 1.0);
+  CHECK(away(waited.estimate()) < away(before));
 }
 
 TEST_CASE("after a gap the drive's state is sought anew") {

@@ -108,6 +108,10 @@ TEST_CASE("on a linear problem the filter is the Kalman filter") {
   CHECK((update.innovation_covariance - s).norm() < 1e-12);
   CHECK(update.nis == doctest::Approx(innovation.dot(s.inverse() * innovation)).epsilon(1e-10));
   CHECK(update.weight == 1.0);
+  auto at_prior = linearize_segment(model, prior.mean, inputs, segment);
+  const IekfUpdate same = iekf_update(model, prior, inputs, segment, std::move(at_prior), noise);
+  CHECK(same.estimate.mean == update.estimate.mean);
+  CHECK(same.estimate.covariance == update.estimate.covariance);
   CHECK(update.status == Status::Converged);
 }
 

@@ -12,7 +12,7 @@ from slipwise.calibration.settings import Settings
 
 FIRST = 1000  # twists of a moving robot before the first search
 GROWTH = 3.0  # each search waits for this many times the twists of the last one
-AGAIN = 500  # fresh twists at least before a search because the last one's result fails
+GROWTH_FAILING = 2.0  # the same where the last one's result fails
 MOST = 1000  # recent twists looked at; 50 s of driving hold each kind of change many times
 
 
@@ -43,7 +43,7 @@ class LimitWatch:
         if count < self._next and not asked:
             return False
         self._next = int(np.ceil(GROWTH * count))
-        self._again = count + max(AGAIN, count // 2)
+        self._again = int(np.ceil(GROWTH_FAILING * count))
         prior = self._settings.filter_settings().prior
         track = self._settings.vehicle.track
         before = self.search if self.search is not None and self.search.found else None

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.limit_watch import AGAIN, FIRST, MOST, LimitWatch
+from slipwise.calibration.limit_watch import FIRST, GROWTH_FAILING, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.recent_twists import SPACING
 from slipwise.export.mppi_limits import with_limits
@@ -189,14 +189,16 @@ def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
     assert commands < len(drive[0].inputs) / 2
 
 
-def test_what_fails_is_looked_for_again_but_ever_more_rarely(log: Log) -> None:
-    drive = prepare_drive(log, "command")
+def test_what_fails_is_looked_for_again_but_ever_more_rarely() -> None:
+    seconds = 2.5 * SECONDS
+    commands = steps_drive(3, seconds)
+    drive = prepare_drive(driven(commands, wheels_behind(SIDES, commands, 1)), "command")
     watch = LimitWatch(drive, Settings())
-    ends = np.arange(0.0, SECONDS, 1.0)
+    ends = np.arange(0.0, seconds, 1.0)
     at = [end for end in ends.tolist() if watch.look(0, end, fails=True)]
     gaps = np.diff(at)
     assert len(at) > 3
-    assert gaps.min() >= AGAIN * SPACING
+    assert gaps.min() >= (GROWTH_FAILING - 1.0) * FIRST * SPACING
     assert gaps[-1] > 1.2 * gaps[0]
 
 
