@@ -3,7 +3,7 @@
 
 For each seed a robot's parameters are drawn from the prior and a drive is simulated, without the core's
 chain. Then it is learned: from commands alone, with the settings that users have and once more with the true
-shape of the noise, whose size is learned; and from commands and wheel speeds in cascade. A few drives are
+shape of the noise, whose size is learned; and from commands and wheel speeds in cascade. Some drives are
 simulated with rigid-body physics (MuJoCo), behind whose commands there is a known lag and delay; a heavy body
 on tyres follows its wheels later still, by as much as its exact states show. A dull drive (constant speed,
 straight on) must be said not to determine what it cannot show.
@@ -279,7 +279,7 @@ def main() -> None:
     """Run all seeds and print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=100)
-    parser.add_argument("--physics", type=int, default=5, help="drives simulated with rigid-body physics")
+    parser.add_argument("--physics", type=int, default=40, help="drives simulated with rigid-body physics")
     parser.add_argument("--json", type=Path, help="write every run's result here")
     options = parser.parse_args()
     seeds = range(options.runs)
