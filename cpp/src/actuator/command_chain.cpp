@@ -89,12 +89,14 @@ class DriveChannel {
 
   /// Settled on an input that was held for long.
   void settle(double input) {
+    moves_ = input != 0.0;
     fast_ = part_of<kChainParameters>(input, response_, places_, false);
     slow_ = response_.has_slow_part() ? part_of<kChainParameters>(input, response_, places_, true) : Value{};
   }
 
   /// The whole was measured: what the fast part does not explain is the slow part's.
   void measured(double value) {
+    moves_ = moves_ || value != 0.0;
     if (response_.has_slow_part()) {
       slow_ = {value - fast_.value, -fast_.slope};
     } else {
@@ -104,6 +106,9 @@ class DriveChannel {
 
   /// Advances over a step; returns the integral.
   double step(double input, const ChannelDecay& decay) {
+    if (rests(input)) {
+      return 0.0;
+    }
     double integral = advance(fast_, response_.fast_share() * input, decay.fast);
     if (response_.has_slow_part()) {
       integral += advance(slow_, response_.share() * response_.gain * input, decay.slow);
@@ -112,6 +117,9 @@ class DriveChannel {
   }
 
   Value linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
+    if (rests(input)) {
+      return {};
+    }
     Value integral = advance(fast_, part_of<kChainParameters>(input, response_, places_, false), decay.fast,
                              places_.lag, duration_slope);
     if (response_.has_slow_part()) {
@@ -124,9 +132,16 @@ class DriveChannel {
   }
 
  private:
+  /// Most robots never drive sideways. What has not moved, and is not told to, has no slopes either.
+  bool rests(double input) {
+    moves_ = moves_ || input != 0.0;
+    return !moves_;
+  }
+
   ChannelResponse response_;
   ChannelPlaces places_;
   Value fast_, slow_;
+  bool moves_ = false;
 };
 
 /// Walks over the delayed input changes of a window, with or without slopes.

@@ -15,6 +15,9 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
+/// Of the information's diagonal: what hardly slows the last steps, what shortens a step at all, and what leaves none.
+constexpr double kLeastDamping = 1e-4, kFelt = 0.1, kMostDamping = 1e12;
+
 /// Normal equations of the robust MAP problem at one point.
 struct NormalEquations {
   Eigen::MatrixXd information;
@@ -152,23 +155,31 @@ BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<co
   Eigen::VectorXd mean = settings.start.size() > 0 ? settings.start : prior.mean;
   NormalEquations now =
       at_start.empty() ? problem.linearize(mean) : problem.normal_equations(mean, std::move(at_start));
-  double damping = 1e-3;
+  double damping = kLeastDamping;
   BatchFit fit{prior, now.cost, 0, Status::NotConverged, {}};
   while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
     ++fit.iterations;
     Eigen::MatrixXd damped = now.information;
     damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd candidate = mean + damped.llt().solve(now.gradient);
+    const Eigen::VectorXd step = damped.llt().solve(now.gradient);
+    const double promised = step.dot(now.gradient + damping * now.information.diagonal().cwiseProduct(step));
+    const double little = settings.tolerance * now.cost;
+    if (damping == kLeastDamping && promised <= little) {
+      fit.status = Status::Converged;  // not even what a parabola promises is worth a look
+      break;
+    }
+    const Eigen::VectorXd candidate = mean + step;
     NormalEquations next = problem.linearize(candidate);
     if (!(next.cost <= now.cost)) {
-      damping *= 10.0;
-      fit.status = damping > 1e12 ? Status::Converged : fit.status;  // no downhill step is left at working precision
+      damping = std::max(10.0 * damping, kFelt);
+      fit.status = damping > kMostDamping ? Status::Converged : fit.status;  // no downhill step at working precision
       continue;
     }
-    fit.status = now.cost - next.cost <= settings.tolerance * now.cost ? Status::Converged : fit.status;
+    const double gained = now.cost - next.cost;
+    fit.status = gained <= little ? Status::Converged : fit.status;
     mean = candidate;
     now = std::move(next);
-    damping = std::max(damping / 10.0, 1e-12);
+    damping = std::max(damping * std::max(0.1, 1.0 - std::pow(2.0 * gained / promised - 1.0, 3)), kLeastDamping);
   }
   fit.cost = now.cost;
   fit.at = std::move(now.at);

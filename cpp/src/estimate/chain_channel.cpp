@@ -20,6 +20,8 @@ constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
 constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
 constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
 constexpr double kSettled = 0.1;                       // in standard deviations
+constexpr std::array kShares{1.0, 0.5, 0.25};          // of a step, until one helps
+constexpr double kLittle = 0.02;                       // what a step has to gain of -2 log posterior
 constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowShare = 3, kSlowLag = 4;
 constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
 constexpr double kApart = 1.4;                        // in the logarithm: lags closer than that may pass for each other
@@ -246,17 +248,16 @@ ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const
     if ((full.cwiseAbs() - kSettled * std).maxCoeff() <= 0.0) {
       break;
     }
-    bool better = false;
-    double share = 1.0;
-    for (int halvings = model_.iekf.halvings; halvings >= 0 && !better; --halvings, share /= 2.0) {
+    const double before = best.cost;
+    for (const double share : kShares) {
       ChainPass next = chain_pass(model_, size_, past, noise, point + share * full);
-      better = std::isfinite(next.cost) && next.cost <= best.cost;
-      if (better) {
+      if (next.cost < before) {
         point += share * full;
         best = std::move(next);
+        break;
       }
     }
-    if (!better) {
+    if (!(before - best.cost > kLittle)) {
       break;
     }
   }
