@@ -95,8 +95,10 @@ InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits
     const double next = i + 1 < commands.size() ? commands.time(i + 1) : std::numeric_limits<double>::infinity();
     hold = i > 0 ? now - commands.time(i - 1) : hold;
     if (limiter.ramps()) {
-      const double ramp = std::min(limiter.seconds_left(), kLongestRamp);
-      const double piece = std::max(hold / ramp_pieces(hold, longest_piece), ramp / kMostPieces);
+      double piece = hold / ramp_pieces(hold, longest_piece);
+      if (next - now > kMostPieces * piece) {
+        piece = std::max(piece, std::min(limiter.seconds_left(), kLongestRamp) / kMostPieces);
+      }
       for (int k = 0; k <= kMostPieces && next - now > kNoTime && limiter.ramps(); ++k) {
         const double taken = std::min(piece, next - now);
         push(now, limiter.mean_over(piece, taken));

@@ -24,6 +24,7 @@ INPUT_NAMES = ("command", "wheel")
 EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
 RECENT_WINDOWS, RECENT_SECONDS = 12, 30.0  # at most, that tell of the slip now
 LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
+STEP = 0.1  # s; a lagging drive is followed in steps of no more, so repeats within one only cost time
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,11 @@ class DriveRun:
     inputs: Inputs
     track: _core.InputTrack
     wheels: Inputs | None  # measured at the start of a prediction from commands
+
+    @cached_property
+    def changes(self) -> Inputs:
+        """The inputs as they are learned from."""
+        return without_repeats(self.inputs)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,15 +161,26 @@ def _in_time(drive: list[DriveRun]) -> list[DriveRun]:
     return drive
 
 
+def without_repeats(inputs: Inputs) -> Inputs:
+    """Leave out inputs that repeat the one held, but for one in each `STEP`."""
+    twist = np.column_stack((inputs.v, inputs.vy, inputs.omega))
+    new = np.concatenate(([True], (twist[1:] != twist[:-1]).any(axis=1)))
+    since = inputs.t[np.flatnonzero(new)[np.cumsum(new) - 1]]
+    step = np.floor((inputs.t - since) / STEP + 1e-6)
+    kept = new | (np.diff(step, prepend=0.0) != 0.0)
+    return Inputs(inputs.t[kept], inputs.v[kept], inputs.vy[kept], inputs.omega[kept])
+
+
 def input_track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
-    """Inputs for the core, which takes them for zero before the first one.
+    """Inputs for the core, without repeats; it takes them for zero before the first one.
 
     A robot has no commands before its first one, yet wheel speeds may begin while it drives: a clock offset
     lets the first window look a little before them, where the first wheel speed is the best guess.
     """
+    changes = without_repeats(inputs)
+    columns = (changes.t, changes.v, changes.vy, changes.omega)
     if not rolling:
-        return _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    columns = (inputs.t, inputs.v, inputs.vy, inputs.omega)
+        return _core.InputTrack(*columns)
     t, v, vy, omega = (np.concatenate((column[:1], column)) for column in columns)
     t[0] -= LEAD_IN
     return _core.InputTrack(t, v, vy, omega)

@@ -125,7 +125,7 @@ class RecentTwists:
 
     def _keep(self, rows: Floats) -> None:
         """Add twists of one stretch, which a long pause cuts in two."""
-        inputs = self._drive[self._position].inputs
+        inputs = self._drive[self._position].changes
         for part in np.split(rows, np.flatnonzero(np.diff(rows[:, 0]) > PAUSE) + 1):
             if not len(part):
                 continue

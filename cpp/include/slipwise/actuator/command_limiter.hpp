@@ -42,7 +42,10 @@ class LaneRamp {
   }
   /// The mean over a piece, of which `taken` seconds pass [s].
   double mean_over(double piece, double taken) {
-    if (taken == piece || state_ == target_) {
+    if (state_ == target_) {
+      return state_;
+    }
+    if (taken == piece) {
       return follow(piece) / piece;
     }
     LaneRamp whole = *this;
@@ -70,9 +73,10 @@ class LaneRamp {
     for (int phase = 0; phase < 2 && state_ != target_; ++phase) {
       const double goal = next_goal();
       const double rate = rate_towards(goal);
-      const double needed = std::abs(goal - state_) / rate;
-      const double next = needed <= seconds ? goal : state_ + std::copysign(rate * seconds, goal - state_);
-      const double taken = std::min(needed, seconds);
+      const double gap = goal - state_;
+      const bool arrives = !(std::abs(gap) > rate * seconds);
+      const double next = arrives ? goal : state_ + std::copysign(rate * seconds, gap);
+      const double taken = arrives ? std::abs(gap) / rate : seconds;
       integral += 0.5 * (state_ + next) * taken;
       state_ = next;
       seconds -= taken;
