@@ -39,7 +39,7 @@ class DriveRun:
 
     @cached_property
     def changes(self) -> Inputs:
-        """The inputs as they are learned from."""
+        """The inputs, where they are commands, as they are learned from."""
         return without_repeats(self.inputs)
 
 
@@ -172,15 +172,15 @@ def without_repeats(inputs: Inputs) -> Inputs:
 
 
 def input_track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
-    """Inputs for the core, without repeats; it takes them for zero before the first one.
+    """Inputs for the core, which takes them for zero before the first one; commands without repeats.
 
     A robot has no commands before its first one, yet wheel speeds may begin while it drives: a clock offset
     lets the first window look a little before them, where the first wheel speed is the best guess.
     """
-    changes = without_repeats(inputs)
-    columns = (changes.t, changes.v, changes.vy, changes.omega)
     if not rolling:
-        return _core.InputTrack(*columns)
+        changes = without_repeats(inputs)
+        return _core.InputTrack(changes.t, changes.v, changes.vy, changes.omega)
+    columns = (inputs.t, inputs.v, inputs.vy, inputs.omega)
     t, v, vy, omega = (np.concatenate((column[:1], column)) for column in columns)
     t[0] -= LEAD_IN
     return _core.InputTrack(t, v, vy, omega)
