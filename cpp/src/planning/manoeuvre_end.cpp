@@ -181,10 +181,16 @@ class ManoeuvreWalk {
       : chain_(model.chain()),
         held_(std::move(held)),
         v_(speed_response(model.chain()), start.drive.v, {told.v, 0.0}, fast_of(start, &BodyTwist::v)),
+        sideways_(goes_sideways(start)),
         vy_(speed_response(model.chain()), start.drive.vy, {told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
         omega_(turn_response(model.chain()), start.drive.omega, {told.omega, ManoeuvreRow::Zero()},
                fast_of(start, &BodyTwist::omega)),
         end_(model) {}
+
+  /// No manoeuvre commands it, yet it may begin with it.
+  static bool goes_sideways(const DriveStart& start) {
+    return start.drive.vy != 0.0 || start.told.vy != 0.0 || (start.fast && start.fast->vy != 0.0);
+  }
 
   static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
@@ -224,14 +230,15 @@ class ManoeuvreWalk {
       if constexpr (kSlopes) {
         const double slope = (to.slope - from.slope) / parts;
         const Speed forward = v_.linearize_step(duration, slope);
-        const Speed left = vy_.linearize_step(duration, slope);
+        const Speed left = sideways_ ? vy_.linearize_step(duration, slope) : Speed{};
         const YawRate turn = omega_.linearize_step(duration, slope);
         StepJacobian jacobian = StepJacobian::Zero();
         jacobian.col(kLength).head<3>() << slope, forward.by, left.by;
         jacobian.row(3) = turn.by;
         end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
       } else {
-        end_.drive({duration, v_.step(duration), vy_.step(duration), omega_.step(duration)}, nullptr);
+        const double left = sideways_ ? vy_.step(duration) : 0.0;
+        end_.drive({duration, v_.step(duration), left, omega_.step(duration)}, nullptr);
       }
       if (path_ != nullptr) {
         path_->t.push_back(from.t + (i + 1) * duration);
@@ -242,7 +249,9 @@ class ManoeuvreWalk {
 
   const CommandChain& chain_;
   HeldCommands held_;
-  Channel<double> v_, vy_;
+  Channel<double> v_;
+  bool sideways_;
+  Channel<double> vy_;
   Channel<ManoeuvreRow> omega_;
   std::size_t next_v_ = 0;
   std::size_t next_omega_ = 0;

@@ -41,19 +41,25 @@ InputTrack track_of(const HeldCommands& held) {
 }
 
 TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains") {
+  DriveStart sliding = kStart;
+  sliding.drive.vy = 0.2;
   for (const tests::SampleModel& sample : tests::sample_models()) {
     for (const double direction : {1.0, -1.0}) {
-      CAPTURE(sample.name);
-      const ManoeuvreFrame frame = sample_frame(direction, 0.0);
-      const PlanningModel model(sample.motion, sample.parameters);
-      const HeldCommands held = held_commands(frame, sample_parameters());
-      const Segment segment{
-          .start = 0.0, .end = frame.commands * held.period.value + frame.settling, .initial = kStart.drive};
-      const Pose2 expected = integrate_segment(sample.motion, sample.parameters, track_of(held), segment).poses.back();
-      const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), kStart);
-      CHECK((pose.vector() - expected.vector()).norm() < 1e-9);
-      const Pose2 linearized = linearize_manoeuvre(model, frame, sample_parameters(), kStart).pose;
-      CHECK((linearized.vector() - pose.vector()).norm() < 1e-12);
+      for (const DriveStart& start : {kStart, sliding}) {
+        CAPTURE(sample.name);
+        CAPTURE(start.drive.vy);
+        const ManoeuvreFrame frame = sample_frame(direction, 0.0);
+        const PlanningModel model(sample.motion, sample.parameters);
+        const HeldCommands held = held_commands(frame, sample_parameters());
+        const double end = frame.commands * held.period.value + frame.settling;
+        const Segment segment{.start = 0.0, .end = end, .initial = start.drive};
+        const Pose2 expected =
+            integrate_segment(sample.motion, sample.parameters, track_of(held), segment).poses.back();
+        const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), start);
+        CHECK((pose.vector() - expected.vector()).norm() < 1e-9);
+        const Pose2 linearized = linearize_manoeuvre(model, frame, sample_parameters(), start).pose;
+        CHECK((linearized.vector() - pose.vector()).norm() < 1e-12);
+      }
     }
   }
 }
