@@ -58,7 +58,7 @@ def test_inputs_that_repeat_what_is_held_are_left_out_and_move_no_path_by_a_mill
     held = np.searchsorted(kept.t, inputs.t, side="right") - 1
     for name in ("v", "vy", "omega"):
         np.testing.assert_array_equal(getattr(kept, name)[held], getattr(inputs, name))
-    assert len(kept) == 13 * 4 - 2  # of each 0.4 s the first and one more in each 0.1 s; the last are cut short
+    assert len(kept) == 13 * 4 - 2  # four of each 0.4 s; the last are cut short
     assert np.max(np.diff(kept.t)) < STEP + 1.0 / 90.0 + 1e-9
     whole = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
     assert np.linalg.norm(end_of(input_track(inputs, rolling=False)) - end_of(whole)) < 1e-3
