@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from data_sets import DataSet, data_folder, data_sets
+from data_sets import DataSet, data_folder, data_sets, input_names
 from numpy.typing import NDArray
 
 import slipwise
@@ -60,9 +60,7 @@ def measure(data: DataSet) -> list[Convergence]:
     """Measure one log with every input that it has."""
     log = slipwise.open_log(data.path)
     found = []
-    for name in ("wheel", "command"):
-        if all((run.wheels if name == "wheel" else run.commands) is None for run in log.runs):
-            continue
+    for name in input_names(log):
         options = EvaluationOptions(
             horizons=(data.horizon,),
             methods=("none", "auto", "model"),

@@ -7,6 +7,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from slipwise.logs import Log
+
 VENDOR_MULTIPLIERS = {"husky": 1.875, "warthog": 1.125}  # the wheel-separation multipliers Clearpath ships
 LONG_HORIZON = 5.0  # s
 SHORT_HORIZON = 1.9  # s, where every 2 s have a frame of their own
@@ -21,6 +23,15 @@ class DataSet:
     path: Path
     horizon: float  # s
     vendor_track_multiplier: float | None
+
+
+def input_names(log: Log) -> list[str]:
+    """Return which inputs some run of a log has."""
+    return [
+        name
+        for name in ("wheel", "command")
+        if any((run.wheels if name == "wheel" else run.commands) is not None for run in log.runs)
+    ]
 
 
 def data_folder() -> Path | None:

@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from data_sets import data_folder, data_sets
+from data_sets import data_folder, data_sets, input_names
 from numpy.typing import NDArray
 from simulated_log import RATE, simulated_log
 
@@ -119,16 +119,15 @@ def count_real(path: Path) -> list[tuple[str, Count]]:
     """Count the alarms of one real log with every input that it has."""
     log = slipwise.open_log(path)
     counts = []
-    for name in ("wheel", "command"):
-        if any((run.wheels if name == "wheel" else run.commands) is not None for run in log.runs):
-            windows, tests = tests_of(log, name)
-            at = [
-                f"{windows.end[i]:.1f} s of run {windows.position[i]}"
-                for i, test in enumerate(tests)
-                if test.alarm
-            ]
-            label = f"{path.parent.name}/{path.name.removesuffix('.csv.gz')} {name}"
-            counts.append((", ".join(at), Count(label, len(tests), len(at))))
+    for name in input_names(log):
+        windows, tests = tests_of(log, name)
+        at = [
+            f"{windows.end[i]:.1f} s of run {windows.position[i]}"
+            for i, test in enumerate(tests)
+            if test.alarm
+        ]
+        label = f"{path.parent.name}/{path.name.removesuffix('.csv.gz')} {name}"
+        counts.append((", ".join(at), Count(label, len(tests), len(at))))
     return counts
 
 

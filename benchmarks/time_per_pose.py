@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from data_sets import DataSet, data_folder, data_sets
+from data_sets import DataSet, data_folder, data_sets, input_names
 
 import slipwise
 from slipwise.calibration import Settings
@@ -49,9 +49,7 @@ def measure(data: DataSet) -> list[PoseCost]:
     log = slipwise.open_log(data.path)
     settings = Settings()
     costs = []
-    for name in ("wheel", "command"):
-        if all((run.wheels if name == "wheel" else run.commands) is None for run in log.runs):
-            continue
+    for name in input_names(log):
         windows = learning_windows(prepare_drive(log, name), name, settings)
         learning = start_learning(settings, name, windows)
         spent = np.empty(len(windows))

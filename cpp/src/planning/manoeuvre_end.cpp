@@ -31,6 +31,9 @@ struct Moving {
 using Speed = Moving<double>;
 using YawRate = Moving<ManoeuvreRow>;
 
+bool is_zero(double by) { return by == 0.0; }
+bool is_zero(const ManoeuvreRow& by) { return by.isZero(0.0); }
+
 void add_by_length(double& by, double slope) { by += slope; }
 void add_by_length(ManoeuvreRow& by, double slope) { by[kLength] += slope; }
 
@@ -66,13 +69,21 @@ class Channel {
     const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told.value) : drive;
     fast_ = {fast, told.by};
     slow_ = {drive - fast, told.by};
+    moves_ = fast != 0.0 || drive != 0.0;
+    tell(told);
   }
 
-  void tell(const Moving<Slopes>& told) { told_ = told; }
+  void tell(const Moving<Slopes>& told) {
+    told_ = told;
+    moves_ = moves_ || told.value != 0.0 || !is_zero(told.by);
+  }
   double value() const { return fast_.value + slow_.value; }
   double fast() const { return fast_.value; }
 
   Moving<Slopes> linearize_step(double duration, double duration_by_length) {
+    if (!moves_) {
+      return told_;
+    }
     Moving<Slopes> integral =
         advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration), duration_by_length);
     if (response_.has_slow_part()) {
@@ -84,6 +95,9 @@ class Channel {
   }
 
   double step(double duration) {
+    if (!moves_) {
+      return 0.0;
+    }
     double integral = advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration));
     if (response_.has_slow_part()) {
       integral += advance(slow_, part(response_.share()), LagDecay(response_.slow_lag, duration));
@@ -99,6 +113,8 @@ class Channel {
   ChannelResponse response_;
   Moving<Slopes> told_;
   Moving<Slopes> fast_{}, slow_{};
+  /// Most robots never drive sideways. What has not moved, and is not told to, has no slopes either.
+  bool moves_ = false;
 };
 
 /// The pose as it grows, and the sums that give its derivative.
@@ -181,16 +197,10 @@ class ManoeuvreWalk {
       : chain_(model.chain()),
         held_(std::move(held)),
         v_(speed_response(model.chain()), start.drive.v, {told.v, 0.0}, fast_of(start, &BodyTwist::v)),
-        sideways_(goes_sideways(start)),
         vy_(speed_response(model.chain()), start.drive.vy, {told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
         omega_(turn_response(model.chain()), start.drive.omega, {told.omega, ManoeuvreRow::Zero()},
                fast_of(start, &BodyTwist::omega)),
         end_(model) {}
-
-  /// No manoeuvre commands it, yet it may begin with it.
-  static bool goes_sideways(const DriveStart& start) {
-    return start.drive.vy != 0.0 || start.told.vy != 0.0 || (start.fast && start.fast->vy != 0.0);
-  }
 
   static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
@@ -230,15 +240,14 @@ class ManoeuvreWalk {
       if constexpr (kSlopes) {
         const double slope = (to.slope - from.slope) / parts;
         const Speed forward = v_.linearize_step(duration, slope);
-        const Speed left = sideways_ ? vy_.linearize_step(duration, slope) : Speed{};
+        const Speed left = vy_.linearize_step(duration, slope);
         const YawRate turn = omega_.linearize_step(duration, slope);
         StepJacobian jacobian = StepJacobian::Zero();
         jacobian.col(kLength).head<3>() << slope, forward.by, left.by;
         jacobian.row(3) = turn.by;
         end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
       } else {
-        const double left = sideways_ ? vy_.step(duration) : 0.0;
-        end_.drive({duration, v_.step(duration), left, omega_.step(duration)}, nullptr);
+        end_.drive({duration, v_.step(duration), vy_.step(duration), omega_.step(duration)}, nullptr);
       }
       if (path_ != nullptr) {
         path_->t.push_back(from.t + (i + 1) * duration);
@@ -249,9 +258,7 @@ class ManoeuvreWalk {
 
   const CommandChain& chain_;
   HeldCommands held_;
-  Channel<double> v_;
-  bool sideways_;
-  Channel<double> vy_;
+  Channel<double> v_, vy_;
   Channel<ManoeuvreRow> omega_;
   std::size_t next_v_ = 0;
   std::size_t next_omega_ = 0;

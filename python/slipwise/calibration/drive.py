@@ -37,11 +37,6 @@ class DriveRun:
     track: _core.InputTrack
     wheels: Inputs | None  # measured at the start of a prediction from commands
 
-    @cached_property
-    def changes(self) -> Inputs:
-        """The inputs, where they are commands, as they are learned from."""
-        return without_repeats(self.inputs)
-
 
 @dataclass(frozen=True, eq=False)
 class WindowSet:

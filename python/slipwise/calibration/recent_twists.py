@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.drive import DriveRun
-from slipwise.logs.log import Inputs
 from slipwise.segments import WindowRules
 
 Floats = NDArray[np.float64]
@@ -30,9 +29,9 @@ class _Stretch:
     rows: Floats  # [N, 3] t [s], v [m/s], omega [rad/s]
     commands: Floats  # [M, 4] t [s], v, vy [m/s], omega [rad/s]
 
-    def extend(self, rows: Floats, inputs: Inputs) -> None:
-        """Add twists that follow, and the commands until the last of them."""
-        taken = _commands(inputs, float(self.commands[-1, 0]), float(rows[-1, 0]))[1:]
+    def extend(self, rows: Floats, commands: Floats) -> None:
+        """Add twists that follow, and the run's `commands` until the last of them."""
+        taken = _between(commands, float(self.commands[-1, 0]), float(rows[-1, 0]))[1:]
         self.rows = np.concatenate((self.rows, rows))
         self.commands = np.concatenate((self.commands, taken))
 
@@ -86,6 +85,7 @@ class RecentTwists:
 
     def _start_run(self, position: int) -> None:
         self._position, self._read = position, 0
+        self._commands = self._drive[position].track.rows()  # [M, 4] without repeats
         self._known, self._begin, self._cell = False, 0.0, -1.0
         self._open = False  # whether what follows may belong to the last stretch
 
@@ -125,15 +125,14 @@ class RecentTwists:
 
     def _keep(self, rows: Floats) -> None:
         """Add twists of one stretch, which a long pause cuts in two."""
-        inputs = self._drive[self._position].changes
         for part in np.split(rows, np.flatnonzero(np.diff(rows[:, 0]) > PAUSE) + 1):
             if not len(part):
                 continue
             if self._open and part[0, 0] - self._stretches[-1].rows[-1, 0] <= PAUSE:
-                self._stretches[-1].extend(part, inputs)
+                self._stretches[-1].extend(part, self._commands)
             else:
                 since = max(self._begin, float(part[0, 0]) - LEAD_IN)
-                commands = _commands(inputs, since, float(part[-1, 0]))
+                commands = _between(self._commands, since, float(part[-1, 0]))
                 self._stretches.append(_Stretch(self._begin, part, commands))
             self._open = True
             self._count += len(part)
@@ -150,8 +149,7 @@ class RecentTwists:
                 return
 
 
-def _commands(inputs: Inputs, since: float, until: float) -> Floats:
-    """The commands [M, 4] that act from `since` to `until` [s]: the one held at `since` is the first."""
-    first, last = np.searchsorted(inputs.t, (since, until), side="right").tolist()
-    at = slice(max(first - 1, 0), max(last, 1))
-    return np.column_stack((inputs.t[at], inputs.v[at], inputs.vy[at], inputs.omega[at]))
+def _between(commands: Floats, since: float, until: float) -> Floats:
+    """Those that act from `since` to `until` [s]: the one held at `since` is the first."""
+    first, last = np.searchsorted(commands[:, 0], (since, until), side="right").tolist()
+    return commands[max(first - 1, 0) : max(last, 1)]

@@ -45,7 +45,7 @@ struct LagDecay {
 /// stretch that is longer than whole parts by no more than rounding gets no other part.
 inline int lag_parts(double duration, double longest) {
   constexpr double kRounding = 1e-6;  // of a part
-  return duration <= longest ? 1 : std::max(1, static_cast<int>(std::ceil(duration / longest - kRounding)));
+  return std::max(1, static_cast<int>(std::ceil(duration / longest - kRounding)));
 }
 
 /// V' = (input - V) / time_constant, with V = `output` at the start.
