@@ -20,8 +20,9 @@ constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
 constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
 constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
 constexpr double kSettled = 0.1;                       // in standard deviations
-constexpr std::array kShares{1.0, 0.5, 0.25};          // of a step, until one helps
-constexpr double kLittle = 0.02;                       // what a step has to gain of -2 log posterior
+constexpr double kLeastShare = 0.25;                   // of a step, halved until it helps
+constexpr double kLittle = 0.1;                        // what a step has to gain of -2 log posterior
+constexpr int kMostPasses = 7;                         // over all windows; with more of them it goes on from there
 constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowShare = 3, kSlowLag = 4;
 constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
 constexpr double kApart = 1.4;                        // in the logarithm: lags closer than that may pass for each other
@@ -238,27 +239,26 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
   return update;
 }
 
-/// From a start to where all windows lead to together: Gauss-Newton, whose steps are halved until they help.
+/// From a start to where all windows lead to together: Gauss-Newton, whose steps are halved until they help. Lag and
+/// delay zigzag towards it, and more is gained by the next windows than by the last of these steps.
 ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
                             ChannelParameters point) const {
   ChainPass best = chain_pass(model_, size_, past, noise, point);
-  for (int i = 0; i < model_.iekf.iterations; ++i) {
+  int passes = 1;
+  for (double gained = kLittle; gained >= kLittle && passes < kMostPasses;) {
     const ChannelParameters full = best.joint.mean.head<kChannelParameters>() - point;
     const ChannelParameters std = best.joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
     if ((full.cwiseAbs() - kSettled * std).maxCoeff() <= 0.0) {
       break;
     }
-    const double before = best.cost;
-    for (const double share : kShares) {
+    gained = 0.0;
+    for (double share = 1.0; share >= kLeastShare && gained <= 0.0 && passes < kMostPasses; share /= 2.0, ++passes) {
       ChainPass next = chain_pass(model_, size_, past, noise, point + share * full);
-      if (next.cost < before) {
+      gained = best.cost - next.cost;
+      if (gained > 0.0) {
         point += share * full;
         best = std::move(next);
-        break;
       }
-    }
-    if (!(before - best.cost > kLittle)) {
-      break;
     }
   }
   return best;

@@ -98,7 +98,7 @@ double DeadBandSearch::std(const ScoredDrive& drive, Lane lane, const Eigen::Mat
   const std::ptrdiff_t passed = first_passed(commands, value);
   const auto alike = [&](std::ptrdiff_t at) {
     return at >= 0 && at + 1 < std::ssize(commands) &&
-           fit_.loss(with_dead_band(drive.drive, lane, commands, at)).total - drive.loss.total <
+           fit_.scored(with_dead_band(drive.drive, lane, commands, at)).loss.total - drive.loss.total <
                kPlateau * drive.loss.inflation;
   };
   const std::ptrdiff_t low = passed - 1 - steps_as_long_as([&](std::ptrdiff_t n) { return alike(passed - 1 - n); });

@@ -29,15 +29,39 @@ double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
   double squared = std::max(residual.squaredNorm() / static_cast<double>(residual.size()), kLeastScale * kLeastScale);
   for (int i = 0; i < kScaleSteps; ++i) {
     const auto r2 = residual.array().square();
-    squared = std::max(((kDof + 1.0) * r2 / (kDof + r2 / squared)).mean(), kLeastScale * kLeastScale);
+    squared *= (kDof + 1.0) * (r2 / (kDof * squared + r2)).mean();
+    squared = std::max(squared, kLeastScale * kLeastScale);
   }
   return std::sqrt(squared);
+}
+
+/// The sum of log(1 + x) of numbers from 0 to about 1e30, with one logarithm for each few.
+double sum_of_logs(const Eigen::ArrayXd& x) {
+  constexpr Eigen::Index kTogether = 8;
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < x.size(); i += kTogether) {
+    sum += std::log((1.0 + x.segment(i, std::min(kTogether, x.size() - i))).prod());
+  }
+  return sum;
 }
 
 /// By how much residuals that are alike overstate the evidence, from the slopes of their log likelihoods.
 double inflation_of(const Eigen::ArrayXd& score) {
   const double alike = (score.tail(score.size() - 1) * score.head(score.size() - 1)).sum() / score.square().sum();
   return std::clamp((1.0 + alike) / (1.0 - alike), 1.0, kMostInflation);
+}
+
+LaneLimits CommandLimits::* channel_lane(int c) { return c == 0 ? &CommandLimits::speed : &CommandLimits::yaw_rate; }
+
+OutputChannel output_channel(const CommandChain& chain, int c) {
+  return c == 0 ? speed_channel(chain) : turn_channel(chain);
+}
+
+double gain_at_sides(const CommandLimits& limits, int c) { return c == 0 ? limits.gain_v : limits.gain_omega; }
+
+void add_to(DriveLoss& loss, const DriveLoss& of_channel) {
+  loss.total += of_channel.total;
+  loss.inflation = std::max(loss.inflation, of_channel.inflation);
 }
 
 double chi(double value, double std) { return (value / std) * (value / std); }
@@ -99,20 +123,31 @@ LimitedDrive LimitedDriveFit::start() const {
   return drive;
 }
 
-std::vector<InputTrack> LimitedDriveFit::limited(const CommandLimits& limits) const {
-  std::vector<InputTrack> tracks;
-  tracks.reserve(records_.size());
-  for (const DriveRecord& record : records_) {
-    tracks.push_back(limited_track(record.commands, limits));
+LimitedDriveFit::ChannelDrive LimitedDriveFit::channel_drive(const LimitedDrive& drive, int c) {
+  const OutputChannel channel = output_channel(drive.chain, c);
+  return {drive.limits.*channel_lane(c), gain_at_sides(drive.limits, c), channel.lag, channel.delay};
+}
+
+const std::vector<InputTrack>& LimitedDriveFit::tracks_of(const CommandLimits& limits, int c) const {
+  CommandLimits acting = limits;
+  if (!limits_sides(limits)) {
+    acting = {};
+    acting.*channel_lane(c) = limits.*channel_lane(c);
   }
-  return tracks;
+  if (last_.tracks.empty() || acting != last_.limits) {
+    last_ = {acting, {}};
+    for (const DriveRecord& record : records_) {
+      last_.tracks.push_back(limited_track(record.commands, acting));
+    }
+  }
+  return last_.tracks;
 }
 
 void LimitedDriveFit::put_errors(const LimitedDrive& drive, std::span<const InputTrack> tracks, int c,
                                  Eigen::Ref<Eigen::VectorXd> errors) const {
-  OutputChannel channel = c == 0 ? speed_channel(drive.chain) : turn_channel(drive.chain);
+  OutputChannel channel = output_channel(drive.chain, c);
   if (!limits_sides(drive.limits)) {
-    channel.gain = c == 0 ? drive.limits.gain_v : drive.limits.gain_omega;
+    channel.gain = gain_at_sides(drive.limits, c);
   }
   std::vector<double> output;
   Eigen::Index row = 0;
@@ -126,24 +161,41 @@ void LimitedDriveFit::put_errors(const LimitedDrive& drive, std::span<const Inpu
   }
 }
 
-FittedDrive LimitedDriveFit::fitted(const LimitedDrive& drive) const {
+LimitedDriveFit::FittedChannel LimitedDriveFit::fitted_channel(const LimitedDrive& drive, int c) const {
   const auto rows = static_cast<Eigen::Index>(samples_);
+  FittedChannel fit{.tracks = tracks_of(drive.limits, c), .error = Eigen::VectorXd(rows)};
+  put_errors(drive, fit.tracks, c, fit.error);
+  fit.scale = likeliest_scale(fit.error);
+  const Eigen::ArrayXd scaled = fit.error.array() / fit.scale;
+  const Eigen::ArrayXd over_dof = scaled.square() / kDof;
+  fit.weight = (1.0 + 1.0 / kDof) / (1.0 + over_dof);
+  fit.loss.total = 2.0 * static_cast<double>(rows) * std::log(fit.scale) + (kDof + 1.0) * sum_of_logs(over_dof);
+  fit.loss.inflation = inflation_of(fit.weight.array() * scaled);
+  return fit;
+}
+
+LimitedDriveFit::FittedDrive LimitedDriveFit::fitted(const LimitedDrive& drive) const {
   FittedDrive fit{{.drive = drive, .loss = {.total = prior_loss(drive), .inflation = 1.0}},
-                  limited(drive.limits),
-                  Eigen::MatrixXd(rows, kOutputs),
-                  Eigen::Vector2d::Zero(),
-                  Eigen::MatrixXd(rows, kOutputs)};
-  for (int c = 0; c < kOutputs; ++c) {
-    put_errors(drive, fit.tracks, c, fit.error.col(c));
-    fit.scale[c] = likeliest_scale(fit.error.col(c));
-    const Eigen::ArrayXd scaled = fit.error.col(c).array() / fit.scale[c];
-    const Eigen::ArrayXd squared = scaled.square();
-    fit.weight.col(c) = (kDof + 1.0) / (kDof + squared);
-    fit.loss.total +=
-        2.0 * static_cast<double>(rows) * std::log(fit.scale[c]) + (kDof + 1.0) * (1.0 + squared / kDof).log().sum();
-    fit.loss.inflation = std::max(fit.loss.inflation, inflation_of(fit.weight.col(c).array() * scaled));
+                  {fitted_channel(drive, 0), fitted_channel(drive, 1)}};
+  for (const FittedChannel& channel : fit.channels) {
+    add_to(fit.loss, channel.loss);
   }
   return fit;
+}
+
+ScoredDrive LimitedDriveFit::scored(const LimitedDrive& drive) const {
+  ScoredDrive result{.drive = drive, .loss = {.total = prior_loss(drive), .inflation = 1.0}};
+  for (int c = 0; c < kOutputs; ++c) {
+    add_to(result.loss, limits_sides(drive.limits) ? fitted_channel(drive, c).loss : known_loss(drive, c));
+  }
+  return result;
+}
+
+DriveLoss LimitedDriveFit::known_loss(const LimitedDrive& drive, int c) const {
+  auto& known = known_.at(static_cast<std::size_t>(c));
+  const ChannelDrive its = channel_drive(drive, c);
+  const auto found = known.find(its);
+  return found != known.end() ? found->second : known[its] = fitted_channel(drive, c).loss;
 }
 
 double LimitedDriveFit::prior_loss(const LimitedDrive& drive) const {
@@ -156,35 +208,41 @@ double LimitedDriveFit::prior_loss(const LimitedDrive& drive) const {
          chi(std::log(drive.limits.track / track_), kTrackLogStd);
 }
 
-Eigen::MatrixXd LimitedDriveFit::jacobian(const FittedDrive& at, const std::vector<int>& free) const {
+LimitedDriveFit::Slopes LimitedDriveFit::slopes(const FittedDrive& at, const std::vector<int>& free) const {
   const LimitedDrive& drive = at.drive;
   const DriveParameters p = parameters_of(drive);
-  const Eigen::Index rows = at.error.rows();
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(at.error.size(), std::ssize(free));
-  for (Eigen::Index k = 0; k < result.cols(); ++k) {
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(samples_), std::ssize(free));
+  Slopes slopes{none, none};
+  for (Eigen::Index k = 0; k < none.cols(); ++k) {
     const int parameter = free[static_cast<std::size_t>(k)];
     DriveParameters moved = p;
     moved[parameter] += kDifference;
     const LimitedDrive other = with_parameters(drive, moved);
-    const std::vector<InputTrack> tracks = acts_behind(parameter, drive.limits) ? at.tracks : limited(other.limits);
-    for (int c = 0; c < kOutputs; ++c) {
-      if (acts_on(parameter, drive.limits, c)) {
-        auto slope = result.col(k).segment(c * rows, rows);
-        put_errors(other, tracks, c, slope);
-        slope = (at.error.col(c) - slope) / kDifference;
+    const bool behind = acts_behind(parameter, drive.limits);
+    for (std::size_t c = 0; c < slopes.size(); ++c) {
+      const int channel = static_cast<int>(c);
+      if (acts_on(parameter, drive.limits, channel)) {
+        const FittedChannel& now = at.channels.at(c);
+        auto slope = slopes.at(c).col(k);
+        put_errors(other, behind ? now.tracks : tracks_of(other.limits, channel), channel, slope);
+        slope = (now.error - slope) / kDifference;
       }
     }
   }
-  return result;
+  return slopes;
 }
 
 LimitedDriveFit::Normal LimitedDriveFit::normal(const FittedDrive& at, const std::vector<int>& free) const {
-  const Eigen::MatrixXd slope = jacobian(at, free);
-  Eigen::MatrixXd weighted = at.weight;
-  weighted.array().rowwise() /= at.scale.array().square().transpose();
-  const Eigen::VectorXd weight = weighted.reshaped();
-  Normal normal{.information = slope.transpose() * weight.asDiagonal() * slope,
-                .pull = slope.transpose() * (weight.array() * at.error.reshaped().array()).matrix()};
+  const auto size = std::ssize(free);
+  Normal normal{.information = Eigen::MatrixXd::Zero(size, size), .pull = Eigen::VectorXd::Zero(size)};
+  const Slopes all = slopes(at, free);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const FittedChannel& channel = at.channels.at(c);
+    const Eigen::MatrixXd& slope = all.at(c);
+    const Eigen::VectorXd weight = channel.weight / (channel.scale * channel.scale);
+    normal.information += slope.transpose() * weight.asDiagonal() * slope;
+    normal.pull += slope.transpose() * weight.cwiseProduct(channel.error);
+  }
   const DriveParameters p = parameters_of(at.drive);
   for (Eigen::Index k = 0; k < normal.pull.size(); ++k) {
     const PriorPull prior = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_);
@@ -264,7 +322,6 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
   const std::vector<int> free = free_parameters(drive);
   const auto size = static_cast<Eigen::Index>(free.size());
   const FittedDrive r = fitted(drive);
-  const Eigen::MatrixXd slope = jacobian(r, free);
   const DriveParameters p = parameters_of(drive);
   Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index k = 0; k < size; ++k) {
@@ -272,13 +329,14 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
   }
   Eigen::MatrixXd meat = bread;
   Eigen::MatrixXd alone = bread;  // the meat, if no residual knew of another
-  const Eigen::Index rows = r.error.rows();
-  for (int c = 0; c < kOutputs; ++c) {
-    const Eigen::ArrayXd u = r.error.col(c).array() / r.scale[c];
-    const Eigen::ArrayXd score = r.weight.col(c).array() * u / r.scale[c];
+  const Slopes all = slopes(r, free);
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    const FittedChannel& channel = r.channels.at(c);
+    const Eigen::ArrayXd u = channel.error.array() / channel.scale;
+    const Eigen::ArrayXd score = channel.weight.array() * u / channel.scale;
     const double curvature =
-        ((kDof + 1.0) * (kDof - u.square()) / (kDof + u.square()).square()).mean() / (r.scale[c] * r.scale[c]);
-    const auto mine = slope.middleRows(c * rows, rows);
+        ((kDof + 1.0) * (kDof - u.square()) / (kDof + u.square()).square()).mean() / (channel.scale * channel.scale);
+    const Eigen::MatrixXd& mine = all.at(c);
     bread += std::max(curvature, 0.0) * mine.transpose() * mine;
     alone += score.square().mean() * mine.transpose() * mine;
     Eigen::Index row = 0;

@@ -3,6 +3,7 @@
 // section 4).
 #pragma once
 
+#include <compare>
 #include <limits>
 
 #include "slipwise/actuator/input_track.hpp"
@@ -16,7 +17,7 @@ struct LaneLimits {
   double acceleration = std::numeric_limits<double>::infinity();  ///< away from zero no quicker [m/s^2 or rad/s^2]
   double braking = std::numeric_limits<double>::infinity();       ///< towards zero no quicker [m/s^2 or rad/s^2]
 
-  bool operator==(const LaneLimits&) const = default;
+  auto operator<=>(const LaneLimits&) const = default;
 };
 
 /// Limits of the commands, as a controller has them, and then of the two sides of a skid-steered or differential drive,

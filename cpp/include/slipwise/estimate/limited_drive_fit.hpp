@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,7 +57,7 @@ struct LimitedDrive {
 
 /// How well a drive explains the records: -2 log likelihood of Student t residuals whose scale is the likeliest.
 struct DriveLoss {
-  double total;      ///< prior included; residuals are taken as independent
+  double total;      ///< of a drive with its prior; residuals are taken as independent
   double inflation;  ///< by how much that overstates the evidence, since residuals next to each other are alike
 };
 
@@ -65,14 +66,8 @@ struct ScoredDrive {
   DriveLoss loss;
 };
 
-/// A drive with all that its loss was made of.
-struct FittedDrive : ScoredDrive {
-  std::vector<InputTrack> tracks;  ///< the commands behind its limits
-  Eigen::MatrixXd error;           ///< measured less explained [samples, speed and yaw rate]
-  Eigen::Vector2d scale;           ///< of each column
-  Eigen::MatrixXd weight;          ///< of each error
-};
-
+/// Remembers what it was asked, since a search asks for many drives that differ in one channel, or in the chain alone.
+/// So it is for one thread.
 class LimitedDriveFit {
  public:
   /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
@@ -80,8 +75,7 @@ class LimitedDriveFit {
 
   /// No limits, and the chain that is believed in before any data.
   LimitedDrive start() const;
-  DriveLoss loss(const LimitedDrive& drive) const { return fitted(drive).loss; }
-  ScoredDrive scored(const LimitedDrive& drive) const { return {drive, loss(drive)}; }
+  ScoredDrive scored(const LimitedDrive& drive) const;
   /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held. Steps gain less and
   /// less: it stops where all that are left, if they gained as much as the last, came to no less than `wanted`.
   ScoredDrive refine(const LimitedDrive& drive, int iterations,
@@ -98,17 +92,41 @@ class LimitedDriveFit {
   std::size_t samples() const { return samples_; }
 
  private:
+  /// All that a channel's loss turns on where no sides mix the two.
+  struct ChannelDrive {
+    LaneLimits limits;
+    double gain, lag, delay;
+
+    auto operator<=>(const ChannelDrive&) const = default;
+  };
+  /// One channel of a drive, and all that its loss was made of.
+  struct FittedChannel {
+    std::vector<InputTrack> tracks;  ///< the commands of each record that it follows
+    Eigen::VectorXd error;           ///< measured less explained [samples]
+    double scale;                    ///< of the errors
+    Eigen::VectorXd weight;          ///< of each
+    DriveLoss loss;
+  };
+  struct FittedDrive : ScoredDrive {
+    std::array<FittedChannel, 2> channels;  ///< speed and yaw rate
+  };
+  /// Of each channel's errors, downward, by the free parameters [samples, parameters].
+  using Slopes = std::array<Eigen::MatrixXd, 2>;
   /// The normal equations of a step.
   struct Normal {
     Eigen::MatrixXd information;
     Eigen::VectorXd pull;
   };
-  std::vector<InputTrack> limited(const CommandLimits& limits) const;
-  /// Measured less explained in channel `c`, with the commands of each record limited.
+  static ChannelDrive channel_drive(const LimitedDrive& drive, int c);
+  /// The commands of each record that channel `c` follows.
+  const std::vector<InputTrack>& tracks_of(const CommandLimits& limits, int c) const;
+  /// Measured less explained in channel `c`, which follows the `tracks`.
   void put_errors(const LimitedDrive& drive, std::span<const InputTrack> tracks, int c,
                   Eigen::Ref<Eigen::VectorXd> errors) const;
+  FittedChannel fitted_channel(const LimitedDrive& drive, int c) const;
   FittedDrive fitted(const LimitedDrive& drive) const;
-  Eigen::MatrixXd jacobian(const FittedDrive& at, const std::vector<int>& free) const;
+  DriveLoss known_loss(const LimitedDrive& drive, int c) const;
+  Slopes slopes(const FittedDrive& at, const std::vector<int>& free) const;
   Normal normal(const FittedDrive& at, const std::vector<int>& free) const;
   /// Goes down one step, if there is one.
   void step(FittedDrive& best, const Normal& normal, const std::vector<int>& free, double& damping) const;
@@ -118,6 +136,11 @@ class LimitedDriveFit {
   PriorSettings prior_;
   double track_;
   std::size_t samples_ = 0;
+  struct {
+    CommandLimits limits;
+    std::vector<InputTrack> tracks;
+  } mutable last_;                                                  ///< asked for
+  mutable std::array<std::map<ChannelDrive, DriveLoss>, 2> known_;  ///< of speed and yaw rate
 };
 
 }  // namespace slipwise
