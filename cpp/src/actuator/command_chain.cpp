@@ -116,6 +116,17 @@ class DriveChannel {
     return integral;
   }
 
+  /// Goes on for a while that nobody looks at, with slopes.
+  void follow(double input, const ChannelDecay& decay, const Row& duration_slope) {
+    if (rests(input)) {
+      return;
+    }
+    follow_part(fast_, input, decay.fast, places_.lag, duration_slope);
+    if (response_.has_slow_part()) {
+      follow_part(slow_, input, decay.slow, places_.slow_lag, duration_slope);
+    }
+  }
+
   Value linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
     if (rests(input)) {
       return {};
@@ -136,6 +147,12 @@ class DriveChannel {
   bool rests(double input) {
     moves_ = moves_ || input != 0.0;
     return !moves_;
+  }
+
+  void follow_part(Value& part, double input, const LagDecay& decay, Eigen::Index lag_index,
+                   const Row& duration_slope) const {
+    const Value towards = part_of<kChainParameters>(input, response_, places_, &part == &slow_);
+    slipwise::follow(part, towards, linearize_lag_step(part.value, towards.value, decay), lag_index, duration_slope);
   }
 
   ChannelResponse response_;
@@ -173,7 +190,7 @@ class ChainWalk {
     result.steps.reserve(steps);
     result.jacobians.reserve(with_slopes_ ? steps : 0);
     if (warm_up_ > 0.0) {
-      cover({chain_start_.t - warm_up_, kFixed}, chain_start_, nullptr);
+      approach({chain_start_.t - warm_up_, kFixed}, chain_start_);
     }
     if (window_.initial) {
       v_.measured(window_.initial->v);
@@ -181,11 +198,11 @@ class ChainWalk {
       omega_.measured(window_.initial->omega);
     }
     if (window_.known && start_.t < chain_start_.t) {
-      follow_measured(*window_.known->twist, &result);
+      follow_measured(*window_.known->twist, result);
     } else if (start_.t > chain_start_.t) {
-      cover(chain_start_, start_, nullptr);
+      approach(chain_start_, start_);
     }
-    cover(start_.t < chain_start_.t ? chain_start_ : start_, end_, &result);
+    cover(start_.t < chain_start_.t ? chain_start_ : start_, result);
     return result;
   }
 
@@ -199,7 +216,7 @@ class ChainWalk {
   }
 
   /// Records the drive as it was measured, from the start until the chain takes over.
-  void follow_measured(const InputTrack& twist, DriveSteps* out) const {
+  void follow_measured(const InputTrack& twist, DriveSteps& out) const {
     const Moment until = chain_start_.t < end_.t ? chain_start_ : end_;
     std::size_t next = twist.count_until(start_.t);
     for (Moment now = start_; now.t < until.t; ++next) {
@@ -215,16 +232,44 @@ class ChainWalk {
     }
   }
 
-  /// Steps from `now` to `until`; they are recorded where there is an `out`.
-  void cover(Moment now, const Moment& until, DriveSteps* out) {
+  /// Goes from `from` to `until`, which nobody sees: each channel by its own changes.
+  void approach(const Moment& from, const Moment& until) {
+    approach(cursor_v_, speed_, from, until, [this](const BodyTwist& held, const auto& follow) {
+      follow(v_, held.v);
+      follow(vy_, held.vy);
+    });
+    approach(cursor_omega_, turn_, from, until,
+             [this](const BodyTwist& held, const auto& follow) { follow(omega_, held.omega); });
+  }
+
+  template <typename FollowAll>
+  void approach(DelayedCursor& cursor, const ChannelResponse& response, Moment now, const Moment& until,
+                const FollowAll& follow_all) const {
     while (now.t < until.t) {
-      if (out == nullptr) {
-        cursor_v_.skip_repeats(until.t);
-        cursor_omega_.skip_repeats(until.t);
+      cursor.skip_repeats(until.t);
+      const Moment next = cursor.next_change() < until.t ? cursor.change_moment() : until;
+      const ChannelDecay decay(response, next.t - now.t);
+      const Row slope = next.slope() - now.slope();
+      follow_all(cursor.held(), [&](DriveChannel& channel, double input) {
+        if (with_slopes_) {
+          channel.follow(input, decay, slope);
+        } else {
+          channel.step(input, decay);
+        }
+      });
+      if (cursor.next_change() <= next.t) {
+        cursor.advance();
       }
+      now = next;
+    }
+  }
+
+  /// Steps from `now` to the end.
+  void cover(Moment now, DriveSteps& out) {
+    while (now.t < end_.t) {
       const double change = std::min(cursor_v_.next_change(), cursor_omega_.next_change());
-      Moment next = until;
-      if (change < until.t) {
+      Moment next = end_;
+      if (change < end_.t) {
         next = cursor_v_.next_change() <= change ? cursor_v_.change_moment() : cursor_omega_.change_moment();
       }
       subdivide(now, next, out);
@@ -247,10 +292,9 @@ class ChainWalk {
     }
   }
 
-  void subdivide(const Moment& from, const Moment& to, DriveSteps* out) {
+  void subdivide(const Moment& from, const Moment& to, DriveSteps& out) {
     const bool lagging = speed_.longest_lag() > 0.0 || turn_.longest_lag() > 0.0;
-    const bool divided = lagging && out != nullptr;  // a lag that nobody sees needs no mean over short steps
-    const int parts = divided ? lag_parts(to.t - from.t, window_.longest_step) : 1;
+    const int parts = lagging ? lag_parts(to.t - from.t, window_.longest_step) : 1;
     const double duration = (to.t - from.t) / parts;
     const ChannelDecay decay_v(speed_, duration);
     const ChannelDecay decay_omega(turn_, duration);
@@ -278,12 +322,10 @@ class ChainWalk {
     return jacobian;
   }
 
-  void record(const DriveStep& step, const DriveStepJacobian& jacobian, DriveSteps* out) const {
-    if (out != nullptr) {
-      out->steps.push_back(step);
-      if (with_slopes_) {
-        out->jacobians.push_back(jacobian);
-      }
+  void record(const DriveStep& step, const DriveStepJacobian& jacobian, DriveSteps& out) const {
+    out.steps.push_back(step);
+    if (with_slopes_) {
+      out.jacobians.push_back(jacobian);
     }
   }
 

@@ -35,24 +35,31 @@ Sensitive<N> part_of(double input, const ChannelResponse& response, const Channe
   return part;
 }
 
+/// Moves one lag to the end of a step.
+template <int N>
+void follow(Sensitive<N>& state, const Sensitive<N>& input, const LagStepLinearization& step, Eigen::Index lag_index,
+            const Eigen::Matrix<double, 1, N>& duration_slope) {
+  if constexpr (N > 0) {
+    state.slope = (step.by_duration.output * duration_slope + step.by_output.output * state.slope +
+                   step.by_input.output * input.slope)
+                      .eval();
+    state.slope[lag_index] += step.by_time_constant.output;
+  }
+  state.value = step.value.output;
+}
+
 /// Advances one lag over a step whose duration may move with the parameters; returns the integral.
 template <int N>
 Sensitive<N> advance(Sensitive<N>& state, const Sensitive<N>& input, const LagDecay& decay, Eigen::Index lag_index,
                      const Eigen::Matrix<double, 1, N>& duration_slope) {
   const auto step = linearize_lag_step(state.value, input.value, decay);
-  if constexpr (N == 0) {
-    state.value = step.value.output;
-    return {step.value.integral, {}};
+  Sensitive<N> integral{.value = step.value.integral};
+  if constexpr (N > 0) {
+    integral.slope = step.by_duration.integral * duration_slope + step.by_output.integral * state.slope +
+                     step.by_input.integral * input.slope;
+    integral.slope[lag_index] += step.by_time_constant.integral;
   }
-  Sensitive<N> integral{step.value.integral, step.by_duration.integral * duration_slope +
-                                                 step.by_output.integral * state.slope +
-                                                 step.by_input.integral * input.slope};
-  integral.slope[lag_index] += step.by_time_constant.integral;
-  state.slope = (step.by_duration.output * duration_slope + step.by_output.output * state.slope +
-                 step.by_input.output * input.slope)
-                    .eval();
-  state.slope[lag_index] += step.by_time_constant.output;
-  state.value = step.value.output;
+  follow(state, input, step, lag_index, duration_slope);
   return integral;
 }
 
