@@ -23,6 +23,7 @@ constexpr double kSettled = 0.1;                       // in standard deviations
 constexpr double kLeastShare = 0.25;                   // of a step, halved until it helps
 constexpr double kLittle = 0.1;                        // what a step has to gain of -2 log posterior
 constexpr int kMostPasses = 7;                         // over all windows; with more of them it goes on from there
+constexpr int kMostAnew = 30;                          // the same from a start elsewhere
 constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowShare = 3, kSlowLag = 4;
 constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
 constexpr double kApart = 1.4;                        // in the logarithm: lags closer than that may pass for each other
@@ -242,17 +243,17 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
 /// From a start to where all windows lead to together: Gauss-Newton, whose steps are halved until they help. Lag and
 /// delay zigzag towards it, and more is gained by the next windows than by the last of these steps.
 ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
-                            ChannelParameters point) const {
+                            ChannelParameters point, int most_passes) const {
   ChainPass best = chain_pass(model_, size_, past, noise, point);
   int passes = 1;
-  for (double gained = kLittle; gained >= kLittle && passes < kMostPasses;) {
+  for (double gained = kLittle; gained >= kLittle && passes < most_passes;) {
     const ChannelParameters full = best.joint.mean.head<kChannelParameters>() - point;
     const ChannelParameters std = best.joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
     if ((full.cwiseAbs() - kSettled * std).maxCoeff() <= 0.0) {
       break;
     }
     gained = 0.0;
-    for (double share = 1.0; share >= kLeastShare && gained <= 0.0 && passes < kMostPasses; share /= 2.0, ++passes) {
+    for (double share = 1.0; share >= kLeastShare && gained <= 0.0 && passes < most_passes; share /= 2.0, ++passes) {
       ChainPass next = chain_pass(model_, size_, past, noise, point + share * full);
       gained = best.cost - next.cost;
       if (gained > 0.0) {
@@ -269,10 +270,10 @@ void ChainChannel::relearn(std::span<const ChannelWindow> past) {
   for (const ChannelWindow& window : past) {
     noise.push_back(noise_means(window.seen));
   }
-  ChainPass best = fit(past, noise, joint_.mean.head<kChannelParameters>());
+  ChainPass best = fit(past, noise, joint_.mean.head<kChannelParameters>(), kMostPasses);
   const ChannelParameters found = best.joint.mean.head<kChannelParameters>();
   if (found[kSlowLag] < found[kLag] + kApart) {
-    ChainPass other = fit(past, noise, without_slow_part(found));
+    ChainPass other = fit(past, noise, without_slow_part(found), kMostAnew);
     if (other.cost < best.cost) {
       best = std::move(other);
     }

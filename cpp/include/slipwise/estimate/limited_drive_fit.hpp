@@ -110,7 +110,7 @@ class LimitedDriveFit {
   struct FittedDrive : ScoredDrive {
     std::array<FittedChannel, 2> channels;  ///< speed and yaw rate
   };
-  /// Of each channel's errors, downward, by the free parameters [samples, parameters].
+  /// How fast each channel's errors fall with each free parameter [samples, parameters].
   using Slopes = std::array<Eigen::MatrixXd, 2>;
   /// The normal equations of a step.
   struct Normal {
