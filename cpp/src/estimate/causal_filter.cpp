@@ -19,7 +19,7 @@ constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their
 
 constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
 constexpr std::size_t kHeeded = 64;             // segments from which only what is heard is learned anew
-constexpr double kLittle = 0.01;                // of -2 log posterior: a tenth of a standard deviation
+constexpr double kLittle = 0.03;                // of -2 log posterior: a sixth of a standard deviation
 constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
 
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }

@@ -22,7 +22,7 @@ constexpr double kSecondsAlike = 1.0;  // residuals further apart are taken as i
 constexpr int kOutputs = 2;
 constexpr int kAttempts = 6;          // of a step, each shorter
 constexpr double kLongestStep = 0.7;  // of a parameter
-constexpr double kLittle = 0.02;      // of -2 log likelihood; a step that gains less was the last
+constexpr double kLittle = 0.1;       // of -2 log likelihood; a step that gains less was the last
 
 /// The likeliest scale of Student t residuals.
 double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
