@@ -51,8 +51,8 @@ class ChainChannel {
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
-  ChainPass fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
-                ChannelParameters point, int most_passes) const;
+  ChainPass fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise, ChannelParameters point,
+                int most_passes) const;
 
   ChannelModel model_;
   std::vector<std::size_t> live_;  ///< lanes that are followed, by their places among the parts
