@@ -64,6 +64,10 @@ class CascadePass:
         self.change = _core.ChangeTest()  # the strongest test for a change of ground since the last belief
         response = _core.MotionModel.with_response(average.model.basis, average.model.clock_offset)
         self.motion = response.with_mount(average.model.mount)
+        slips, size = self.motion.slip_size, self.motion.size
+        chain_end = slips + size - average.model.size
+        self._of_chain = np.arange(slips, chain_end)
+        self._of_slip = np.r_[0:slips, chain_end:size]  # clock offset and mount are learned with the slip
 
     def belief(self, count: int, noise_scale: np.ndarray) -> Belief:
         """Return the belief once `count` windows of the commands have passed."""
@@ -92,17 +96,13 @@ class CascadePass:
         self._chain = CausalPass(self._watched, windows, pace=self._windows, first=first)
 
     def _joined(self, slip: Belief, chain: Belief, noise_scale: np.ndarray) -> Belief:
-        """Put slip and chain into one belief; clock offset and mount are learned with the slip."""
-        size, slips, chains = self.motion.size, self.motion.slip_size, len(chain.mean)
-        with_slip = np.r_[0:slips, slips + chains : size]
-        of_chain = np.arange(slips, slips + chains)
+        """Put slip and chain into one belief."""
+        size = self.motion.size
         mean, prior_std, ratio = np.empty(size), np.empty(size), np.empty(size)
         covariance = np.zeros((size, size))
-        mean[with_slip], mean[of_chain] = slip.mean, chain.mean
-        covariance[np.ix_(with_slip, with_slip)] = slip.covariance
-        covariance[np.ix_(of_chain, of_chain)] = chain.covariance
-        prior_std[with_slip], prior_std[of_chain] = slip.prior_std, chain.prior_std
-        ratio[with_slip], ratio[of_chain] = slip.variance_ratio, chain.variance_ratio
+        for places, part in ((self._of_slip, slip), (self._of_chain, chain)):
+            mean[places], prior_std[places], ratio[places] = part.mean, part.prior_std, part.variance_ratio
+            covariance[places[:, None], places] = part.covariance
         belief = Belief(self.motion, mean, covariance, noise_scale, prior_std, ratio, slip.weights)
         structure = CASCADE if self._limited is None else LIMITS
         return replace(belief, limited=self._limited, structure=structure)

@@ -47,7 +47,8 @@ class CausalPass(Generic[UpdateT]):
             pace: beliefs are asked for by counts of these windows, where they are not `windows` themselves.
             first: windows before this one are passed over.
         """
-        self._learner, self._windows, self._observer, self._pace = learner, windows, observer, pace
+        self._learner, self._windows, self._observer = learner, windows, observer
+        self._passed = None if pace is None else windows.passed(pace)
         self._learned = first
 
     @property
@@ -57,7 +58,9 @@ class CausalPass(Generic[UpdateT]):
 
     def passed(self, count: int) -> int:
         """How many of its own windows had ended when the last of `count` windows of the pace did."""
-        return count if self._pace is None else self._windows.passed(self._pace, count)
+        if self._passed is None or count == 0:
+            return count
+        return int(self._passed[count - 1])
 
     def belief(self, count: int) -> Belief:
         """Return the belief once `count` windows have passed.
@@ -77,4 +80,4 @@ class CausalPass(Generic[UpdateT]):
 
     def finish(self) -> Belief:
         """Learn what is left and return the last belief."""
-        return self.belief(len(self._windows if self._pace is None else self._pace))
+        return self.belief(len(self._windows if self._passed is None else self._passed))

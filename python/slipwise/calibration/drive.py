@@ -83,12 +83,9 @@ class WindowSet:
             counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
         return counts
 
-    def passed(self, pace: WindowSet, count: int) -> int:
-        """Return how many windows had ended when the last of `count` windows of `pace` did."""
-        if count == 0 or len(self) == 0:
-            return 0
-        last = slice(count - 1, count)
-        return int(self.count_until(pace.position[last], pace.end[last])[0])
+    def passed(self, pace: WindowSet) -> Ints:
+        """Return how many windows had ended when each window of `pace` did, [len(pace)]."""
+        return self.count_until(pace.position, pace.end)
 
     def recent(self, count: int, position: int, time: float) -> list[_core.Segment]:
         """Return those of the first `count` windows that lie in run `position` shortly before `time` [s]."""
