@@ -3,6 +3,7 @@
 
 Every real log is learned by `auto` with each input that it has, window after window as on a robot, with all
 that goes on beside it: change of ground, structures, the search for limits, wandering slip and start pose.
+All logs are gone through several times, and the fastest time of each counts: it is the least disturbed.
 """
 
 from __future__ import annotations
@@ -77,20 +78,19 @@ def main() -> None:
     """Learn all logs, one after the other on one core, and print what they cost."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="write the figures here")
+    parser.add_argument("--rounds", type=int, default=5, help="how often all logs are gone through")
     options = parser.parse_args()
     folder = data_folder()
     if folder is None:
         parser.error("set SLIPWISE_DATA to the folder of the real logs")
-    costs = []
+    rounds = [[cost for data in data_sets(folder) for cost in measure(data)] for _ in range(options.rounds)]
+    costs = [min(same, key=lambda cost: cost.microseconds) for same in zip(*rounds, strict=True)]
     print(f"{'log':40s} {'input':8s} {'driven [s]':>10s} {'us/pose':>8s}  window [ms]: median  longest")
-    for data in data_sets(folder):
-        for cost in measure(data):
-            costs.append(cost)
-            print(
-                f"{cost.log:40s} {cost.input:8s} {cost.driven:10.0f} {cost.microseconds:8.0f} "
-                f"{cost.median_window:20.1f} {cost.longest_window:8.0f}",
-                flush=True,
-            )
+    for cost in costs:
+        print(
+            f"{cost.log:40s} {cost.input:8s} {cost.driven:10.0f} {cost.microseconds:8.0f} "
+            f"{cost.median_window:20.1f} {cost.longest_window:8.0f}"
+        )
     print()
     for name in ("wheel", "command"):
         print(summary(costs, name))
