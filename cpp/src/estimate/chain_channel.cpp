@@ -20,7 +20,7 @@ constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
 constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
 constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
 constexpr double kSettled = 0.1;                       // in standard deviations
-constexpr double kLeastShare = 0.25;                   // of a step, halved until it helps
+constexpr std::array kShares{1.0, 0.5, 0.25};          // of a step, until one helps
 constexpr double kLittle = 0.1;                        // what a step has to gain of -2 log posterior
 constexpr int kMostPasses = 7;                         // over all windows; with more of them it goes on from there
 constexpr int kMostAnew = 30;                          // the same from a start elsewhere
@@ -245,19 +245,20 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
 ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
                             ChannelParameters point, int most_passes) const {
   ChainPass best = chain_pass(model_, size_, past, noise, point);
-  int passes = 1;
-  for (double gained = kLittle; gained >= kLittle && passes < most_passes;) {
+  int left = most_passes - 1;
+  double gained = kLittle;
+  while (gained >= kLittle && left > 0) {
     const ChannelParameters full = best.joint.mean.head<kChannelParameters>() - point;
     const ChannelParameters std = best.joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
     if ((full.cwiseAbs() - kSettled * std).maxCoeff() <= 0.0) {
       break;
     }
     gained = 0.0;
-    for (double share = 1.0; share >= kLeastShare && gained <= 0.0 && passes < most_passes; share /= 2.0, ++passes) {
-      ChainPass next = chain_pass(model_, size_, past, noise, point + share * full);
+    for (auto share = kShares.begin(); share != kShares.end() && gained <= 0.0 && left > 0; ++share, --left) {
+      ChainPass next = chain_pass(model_, size_, past, noise, point + *share * full);
       gained = best.cost - next.cost;
       if (gained > 0.0) {
-        point += share * full;
+        point += *share * full;
         best = std::move(next);
       }
     }
