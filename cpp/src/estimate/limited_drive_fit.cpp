@@ -163,7 +163,8 @@ void LimitedDriveFit::put_errors(const LimitedDrive& drive, std::span<const Inpu
 
 LimitedDriveFit::FittedChannel LimitedDriveFit::fitted_channel(const LimitedDrive& drive, int c) const {
   const auto rows = static_cast<Eigen::Index>(samples_);
-  FittedChannel fit{.tracks = tracks_of(drive.limits, c), .error = Eigen::VectorXd(rows)};
+  FittedChannel fit{
+      .tracks = tracks_of(drive.limits, c), .error = Eigen::VectorXd(rows), .scale = 0.0, .weight = {}, .loss = {}};
   put_errors(drive, fit.tracks, c, fit.error);
   fit.scale = likeliest_scale(fit.error);
   const Eigen::ArrayXd scaled = fit.error.array() / fit.scale;
