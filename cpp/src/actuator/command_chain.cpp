@@ -3,8 +3,10 @@
 #include "slipwise/actuator/command_chain.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
@@ -121,9 +123,12 @@ class DriveChannel {
     if (rests(input)) {
       return;
     }
-    follow_part(fast_, input, decay.fast, places_.lag, duration_slope);
+    const Value fast = part_of<kChainParameters>(input, response_, places_, false);
+    slipwise::follow(fast_, fast, linearize_lag_step(fast_.value, fast.value, decay.fast), places_.lag, duration_slope);
     if (response_.has_slow_part()) {
-      follow_part(slow_, input, decay.slow, places_.slow_lag, duration_slope);
+      const Value slow = part_of<kChainParameters>(input, response_, places_, true);
+      slipwise::follow(slow_, slow, linearize_lag_step(slow_.value, slow.value, decay.slow), places_.slow_lag,
+                       duration_slope);
     }
   }
 
@@ -147,12 +152,6 @@ class DriveChannel {
   bool rests(double input) {
     moves_ = moves_ || input != 0.0;
     return !moves_;
-  }
-
-  void follow_part(Value& part, double input, const LagDecay& decay, Eigen::Index lag_index,
-                   const Row& duration_slope) const {
-    const Value towards = part_of<kChainParameters>(input, response_, places_, &part == &slow_);
-    slipwise::follow(part, towards, linearize_lag_step(part.value, towards.value, decay), lag_index, duration_slope);
   }
 
   ChannelResponse response_;
@@ -234,29 +233,30 @@ class ChainWalk {
 
   /// Goes from `from` to `until`, which nobody sees: each channel by its own changes.
   void approach(const Moment& from, const Moment& until) {
-    approach(cursor_v_, speed_, from, until, [this](const BodyTwist& held, const auto& follow) {
-      follow(v_, held.v);
-      follow(vy_, held.vy);
-    });
-    approach(cursor_omega_, turn_, from, until,
-             [this](const BodyTwist& held, const auto& follow) { follow(omega_, held.omega); });
+    approach(cursor_v_, speed_, from, until, std::array{Driven{v_, &BodyTwist::v}, Driven{vy_, &BodyTwist::vy}});
+    approach(cursor_omega_, turn_, from, until, std::array{Driven{omega_, &BodyTwist::omega}});
   }
 
-  template <typename FollowAll>
+  /// A channel, and the part of the inputs that it follows.
+  struct Driven {
+    DriveChannel& channel;
+    double BodyTwist::* part;
+  };
+
   void approach(DelayedCursor& cursor, const ChannelResponse& response, Moment now, const Moment& until,
-                const FollowAll& follow_all) const {
+                std::span<const Driven> driven) const {
     while (now.t < until.t) {
       cursor.skip_repeats(until.t);
       const Moment next = cursor.next_change() < until.t ? cursor.change_moment() : until;
       const ChannelDecay decay(response, next.t - now.t);
       const Row slope = next.slope() - now.slope();
-      follow_all(cursor.held(), [&](DriveChannel& channel, double input) {
+      for (const auto& [channel, part] : driven) {
         if (with_slopes_) {
-          channel.follow(input, decay, slope);
+          channel.follow(cursor.held().*part, decay, slope);
         } else {
-          channel.step(input, decay);
+          channel.step(cursor.held().*part, decay);
         }
-      });
+      }
       if (cursor.next_change() <= next.t) {
         cursor.advance();
       }

@@ -51,7 +51,7 @@ double inflation_of(const Eigen::ArrayXd& score) {
   return std::clamp((1.0 + alike) / (1.0 - alike), 1.0, kMostInflation);
 }
 
-LaneLimits CommandLimits::* channel_lane(int c) { return c == 0 ? &CommandLimits::speed : &CommandLimits::yaw_rate; }
+Lane lane_of_channel(int c) { return c == 0 ? Lane::Speed : Lane::YawRate; }
 
 OutputChannel output_channel(const CommandChain& chain, int c) {
   return c == 0 ? speed_channel(chain) : turn_channel(chain);
@@ -125,14 +125,14 @@ LimitedDrive LimitedDriveFit::start() const {
 
 LimitedDriveFit::ChannelDrive LimitedDriveFit::channel_drive(const LimitedDrive& drive, int c) {
   const OutputChannel channel = output_channel(drive.chain, c);
-  return {drive.limits.*channel_lane(c), gain_at_sides(drive.limits, c), channel.lag, channel.delay};
+  return {lane_of(drive.limits, lane_of_channel(c)), gain_at_sides(drive.limits, c), channel.lag, channel.delay};
 }
 
 const std::vector<InputTrack>& LimitedDriveFit::tracks_of(const CommandLimits& limits, int c) const {
   CommandLimits acting = limits;
   if (!limits_sides(limits)) {
     acting = {};
-    acting.*channel_lane(c) = limits.*channel_lane(c);
+    lane_of(acting, lane_of_channel(c)) = lane_of(limits, lane_of_channel(c));
   }
   if (last_.tracks.empty() || acting != last_.limits) {
     last_ = {acting, {}};

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
+from slipwise.calibration.drive import Ints, WindowSet, collect_windows, prepare_drive
 from slipwise.calibration.estimators import estimator_motion, fed_windows
 from slipwise.calibration.forecast import Forecaster, forecast
 from slipwise.calibration.learner import Belief
@@ -59,15 +60,17 @@ class Recording:
 
     def belief(self, count: int) -> Belief:
         """Return the belief once `count` of the windows have passed."""
-        last = slice(count - 1, count)
-        k = 0
-        if count > 0:
-            k = int(self.fed.count_until(self.windows.position[last], self.windows.end[last])[0])
+        k = int(self._passed[count - 1]) if count > 0 else 0
         covariance, prior_std = self.covariance[k], self.prior_std[k]
         ratio = np.diag(covariance) / prior_std**2
         return Belief(
             self.motion, self.mean[k], covariance, self.noise_scale[k], prior_std, ratio, np.ones(1)
         )
+
+    @cached_property
+    def _passed(self) -> Ints:
+        """How many of those fed had ended when each window did."""
+        return self.fed.passed(self.windows)
 
     def predictions(self, targets: WindowSet, name: str) -> Predictions:
         """Predict windows causally, and once more after they were learned."""
