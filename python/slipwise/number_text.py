@@ -6,13 +6,50 @@ from __future__ import annotations
 import math
 
 DASH = "–"
+ROUNDING = 1e-12  # in SI units; what is smaller is the rounding of a computation, not a result
+MOST_DECIMALS = 6
 
 
 def number_text(value: float, digits: int = 3) -> str:
     """Return a number with about `digits` significant digits, a dash where it is not finite."""
     if not math.isfinite(value):
         return DASH
-    if value == 0.0:
+    if abs(value) < ROUNDING:
         return "0"
-    decimals = digits - 1 - math.floor(math.log10(abs(value)))
-    return f"{value:.{max(decimals, 0)}f}" if -3 <= decimals <= 6 else f"{value:.{digits}g}"
+    decimals = _decimals(value, digits)
+    return f"{value:.{max(decimals, 0)}f}" if -3 <= decimals <= MOST_DECIMALS else f"{value:.{digits}g}"
+
+
+def estimate_texts(value: float, std: float) -> tuple[str, str]:
+    """Return a value and its standard deviation to the last place that the standard deviation says.
+
+    That has one significant digit, two where it begins with a 1. What is rounded away entirely is said to be
+    below the last place that is shown.
+    """
+    if not (math.isfinite(value) and math.isfinite(std)):
+        return number_text(value), number_text(std)
+    if std < ROUNDING:
+        return number_text(value), "0"
+    decimals = _decimals(std, 1)
+    if std * 10.0**decimals < 2.0:
+        decimals += 1
+    if decimals > MOST_DECIMALS:
+        return _unsigned_zero(value, MOST_DECIMALS), f"<{10.0**-MOST_DECIMALS:.{MOST_DECIMALS}f}"
+    if decimals < -3:
+        return f"{value:.3g}", f"{std:.2g}"
+    shown = max(decimals, 0)
+    return _unsigned_zero(value, shown), f"{std:.{shown}f}"
+
+
+def estimate_text(value: float, std: float) -> str:
+    """Return a value with its standard deviation, such as `1.68 ± 0.02`."""
+    return " ± ".join(estimate_texts(value, std))
+
+
+def _decimals(value: float, digits: int) -> int:
+    return digits - 1 - math.floor(math.log10(abs(value)))
+
+
+def _unsigned_zero(value: float, decimals: int) -> str:
+    text = f"{value:.{decimals}f}"
+    return text.removeprefix("-") if float(text) == 0.0 else text

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from slipwise.errors import ModelError
-from slipwise.export.body_gains import body_gains, body_twists, turning_twists
 from slipwise.export.chain import Chain, chain_of
 from slipwise.export.mppi_limits import dead_band_notes, with_limits
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, ParameterFile
+from slipwise.models.body_gains import body_gains, body_twists, turning_twists
 from slipwise.models.model import Model
 
 CONTROLLER = "FollowPath"  # the name that Nav2's own parameter file gives the controller

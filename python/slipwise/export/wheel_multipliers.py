@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import ModelError
-from slipwise.export.body_gains import body_twists, straight_line
 from slipwise.export.options import ExportOptions
+from slipwise.models.body_gains import body_twists, straight_line
 from slipwise.models.model import Model
 
 Floats = NDArray[np.float64]

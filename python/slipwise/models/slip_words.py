@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How far a robot drives and turns for what is commanded, in words."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from slipwise.models.body_gains import body_twists, straight_line
+from slipwise.models.model import Model
+from slipwise.models.parameter_table import PhysicalParameter, known
+from slipwise.number_text import estimate_text
+
+AS_COMMANDED = 0.02  # a gain of the actuator that is known to be so close to one is not worth a sentence
+
+
+@dataclass(frozen=True)
+class Gain:
+    """What comes out per unit of what goes in."""
+
+    value: float
+    std: float
+
+    @property
+    def identified(self) -> bool:
+        """Whether it is known to the stated fraction."""
+        return known(self.value, self.std) and self.std > 0.0
+
+    def times(self, other: Gain) -> Gain:
+        """Return the product of two gains whose errors are independent."""
+        value = self.value * other.value
+        return Gain(value, hypot(self.std * other.value, other.std * self.value))
+
+    def percent(self) -> str:
+        """Return the gain in percent."""
+        return estimate_text(100.0 * self.value, 100.0 * self.std) + " %"
+
+
+@dataclass(frozen=True)
+class SlipGains:
+    """Speed and yaw rate of the body over those of its wheels: straight lines over the range of the log."""
+
+    speed: Gain
+    yaw_rate: Gain
+    separation: Gain  # wheel-separation multiplier: the speed gain over that of the yaw rate
+
+
+def slip_gains(model: Model) -> SlipGains:
+    """Return the gains of the body, with the standard deviations that follow from the covariance.
+
+    A gain has no standard deviation where the log never drove, or never turned, or where no slip is learned.
+    """
+    body = body_twists(model)
+    size = model.motion.slip_size
+    covariance = model.covariance[:size, :size]
+    speed, by_speed = straight_line(body.v[:, None], body.mean[:, 0], body.features[:, 0])
+    yaw, by_yaw = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])
+    ratio = speed[0] / yaw[0] if yaw[0] else np.nan
+    by_ratio = (by_speed[0] - ratio * by_yaw[0]) / yaw[0] if yaw[0] else by_yaw[0]
+
+    def gain(value: float, derivative: np.ndarray) -> Gain:
+        return Gain(float(value), float(np.sqrt(max(derivative @ covariance @ derivative, 0.0))))
+
+    return SlipGains(gain(speed[0], by_speed[0]), gain(yaw[0], by_yaw[0]), gain(ratio, by_ratio))
+
+
+def slip_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) -> list[str]:
+    """Say how much of what is commanded the robot does, and how much of that its wheels do."""
+    if model.motion.slip_size == 0:
+        return ["Slip is not part of this model."]
+    slip, actuator = slip_gains(model), _actuator_gains(parameters)
+    exact = all(abs(g.value - 1.0) <= AS_COMMANDED and g.std <= AS_COMMANDED for g in actuator.values())
+    if model.content.input == "wheel" or not exact:
+        return [_moves(slip, "its wheels say"), *_reaches(actuator)]
+    total = SlipGains(
+        slip.speed.times(actuator["speed"]), slip.yaw_rate.times(actuator["yaw rate"]), slip.separation
+    )
+    return [_moves(total, "is commanded")]
+
+
+def _moves(gains: SlipGains, source: str) -> str:
+    parts = []
+    if gains.speed.identified:
+        parts.append(f"drives {gains.speed.percent()}")
+    if gains.yaw_rate.identified:
+        parts.append(f"turns {gains.yaw_rate.percent()}")
+    if not parts:
+        return "The log does not identify how much the robot slips."
+    sentence = " and ".join(parts) + f" of what {source}"
+    if gains.separation.identified and gains.separation.value > 0.0:
+        sentence += f" (separation multiplier {estimate_text(gains.separation.value, gains.separation.std)})"
+    return sentence[0].upper() + sentence[1:] + "."
+
+
+def _actuator_gains(parameters: tuple[PhysicalParameter, ...]) -> dict[str, Gain]:
+    found = {p.name: Gain(p.value, p.std) for p in parameters}
+    exact = Gain(1.0, 0.0)
+    return {"speed": found.get("gain_v", exact), "yaw rate": found.get("gain_omega", exact)}
+
+
+def _reaches(actuator: dict[str, Gain]) -> list[str]:
+    parts = [
+        f"{gain.percent()} of the commanded {name}" for name, gain in actuator.items() if gain.identified
+    ]
+    return [f"Its wheels reach {' and '.join(parts)}."] if parts else []

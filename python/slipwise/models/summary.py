@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a model has learned, in an engineer's words, built from identified numbers alone."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from slipwise.models.channel_words import response_sentences
+from slipwise.models.model import Model
+from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
+from slipwise.models.schema import HeldOut
+from slipwise.models.slip_words import slip_sentences
+from slipwise.number_text import estimate_text, number_text
+
+BETTER = 1.05  # times; a smaller gain over the baseline is not given as a number
+SIGNIFICANT = 2.0  # standard deviations from zero from which on an offset is said
+_LIMITS = {
+    "dead_band": "dead band below",
+    "top": "at most",
+    "acceleration": "acceleration at most",
+    "braking": "braking at most",
+}
+_AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
+_SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What a model says, in plain text, and the table behind it."""
+
+    sentences: tuple[str, ...]
+    parameters: tuple[PhysicalParameter, ...]  # all of them, limits included
+
+    def __str__(self) -> str:
+        return " ".join(self.sentences)
+
+
+def summarise(model: Model) -> Summary:
+    """Say what was learned: slip, response, limits, offsets, and how well it predicts."""
+    parameters = physical_parameters(model)
+    sentences = [
+        *slip_sentences(model, parameters),
+        *response_sentences(model, parameters),
+        *_limit_sentences(parameters),
+        *_offset_sentences(parameters),
+        *_prediction_sentences(model),
+    ]
+    return Summary(tuple(sentences), parameters)
+
+
+def _limit_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
+    parts = []
+    for axis, name in _AXES.items():
+        of_axis = [p for p in parameters if p.name.startswith(f"limits.{axis}.") and p.identified]
+        said = [f"{_LIMITS[p.name.rpartition('.')[2]]} {_amount(p)}" for p in of_axis]
+        if said:
+            parts.append(f"{name}: {', '.join(said)}")
+    return [f"Actuator limits of {'; '.join(parts)}."] if parts else []
+
+
+def _offset_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
+    found = {p.name: p for p in parameters if p.identified and abs(p.value) > SIGNIFICANT * p.std}
+    sentences = []
+    clock = found.get("clock_offset")
+    if clock is not None:
+        order = "later" if clock.value > 0.0 else "earlier"
+        seconds = estimate_text(abs(clock.value), clock.std)
+        sentences.append(f"Poses are stamped {seconds} s {order} than wheel speeds of the same time.")
+    parts = [
+        f"{estimate_text(abs(place.value), place.std)} m {plus if place.value > 0.0 else minus}"
+        for name, plus, minus in _SENSOR_PLACES
+        if (place := found.get(name)) is not None
+    ]
+    if parts:
+        sentences.append(f"The pose sensor sits {' and '.join(parts)} base_link.")
+    yaw = found.get("sensor_yaw")
+    if yaw is not None:
+        degrees = estimate_text(math.degrees(yaw.value), math.degrees(yaw.std))
+        sentences.append(f"The pose sensor is turned by {degrees} deg.")
+    return sentences
+
+
+def _prediction_sentences(model: Model) -> list[str]:
+    held_out = model.content.verdict.held_out
+    if held_out is None or held_out.windows == 0:
+        return []
+    reached = f"Predicts {held_out.horizon:g} s ahead to {_errors(held_out.position, held_out.heading)}"
+    times = _times_better(held_out)
+    if model.content.verdict.good and times:
+        return [f"{reached}, {times} better than the kinematic baseline."]
+    baseline = _errors(held_out.plain_position, held_out.plain_heading)
+    return [f"{reached}, where the kinematic baseline misses by {baseline}."]
+
+
+def _times_better(held_out: HeldOut) -> str:
+    """How many times better position and heading are; empty where one of them is not."""
+    pairs = ((held_out.plain_position, held_out.position), (held_out.plain_heading, held_out.heading))
+    if any(learned <= 0.0 or plain < BETTER * learned for plain, learned in pairs):
+        return ""
+    position, heading = (
+        f"{plain / learned:.0f}" if plain > 10.0 * learned else number_text(plain / learned, 2)
+        for plain, learned in pairs
+    )
+    return f"{position} times" if position == heading else f"{position} and {heading} times"
+
+
+def _errors(position: float, heading: float) -> str:
+    return (
+        f"{number_text(position)} m and {number_text(heading)} rad ({number_text(math.degrees(heading))} deg)"
+    )
+
+
+def _amount(parameter: PhysicalParameter) -> str:
+    return f"{estimate_text(parameter.value, parameter.std)} {parameter.unit}"

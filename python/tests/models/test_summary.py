@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a model has learned, in words: identified numbers alone, in physical units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_models import LIMITS, Made, make_model, named
+
+from slipwise import _core
+from slipwise.models import Model, ModelFile
+from slipwise.models.summary import summarise
+
+
+def judged(model: Model, *, good: bool = True, windows: int = 20) -> Model:
+    """The model with held-out errors of 0.05 m and 0.02 rad, where the baseline has 0.55 m and 0.4 rad."""
+    held_out = {"horizon": 5.0, "windows": windows, "position": 0.05, "heading": 0.02}
+    held_out |= {"plain_position": 0.55, "plain_heading": 0.4}
+    content = model.content.model_dump()
+    content["verdict"] |= {"good": good, "held_out": held_out}
+    return Model(ModelFile.model_validate(content))
+
+
+def follower(std: float = 0.01, **values: float) -> Model:
+    """A robot that turns 60 % of what is commanded, with 0.2 s of delay and 0.3 s of time constant."""
+    made = named("edd-2", ang__w=-0.4, **values)
+    return make_model(replace(made, commands=True, std=std))
+
+
+def test_a_good_model_is_said_in_physical_units() -> None:
+    text = str(summarise(judged(follower())))
+    assert "turns 60.0 ± 1.0 % of what is commanded (separation multiplier 1.67 ± 0.03)" in text
+    assert "Follows commands after 0.200 ± 0.002 s and with a time constant of 0.300 ± 0.003 s." in text
+    assert "Predicts 5 s ahead to 0.0500 m and 0.0200 rad (1.15 deg), 11 and 20 times better" in text
+    assert "log_" not in text
+
+
+def test_a_delay_that_is_not_identified_is_not_said() -> None:
+    summary = summarise(follower(std=0.5))
+    assert "after" not in str(summary)
+    assert "time constant" not in str(summary)
+    table = {p.name: p for p in summary.parameters}
+    assert not table["delay_v"].identified
+    assert table["delay_v"].value == pytest.approx(0.2)
+    assert table["delay_v"].std == pytest.approx(0.1)
+    assert table["delay_v"].unit == "s"
+
+
+def test_a_slip_that_is_not_identified_is_not_said() -> None:
+    text = str(summarise(make_model(replace(named("edd-2", ang__w=-0.4), std=0.5))))
+    assert text.startswith("The log does not identify how much the robot slips.")
+
+
+def test_a_slip_known_to_be_negligible_is_identified_though_its_fraction_is_not() -> None:
+    parameters = summarise(make_model(replace(named("edd-2", ang__w=0.001), std=0.01))).parameters
+    assert {p.name: p.identified for p in parameters} == {"lon.V": True, "ang.w": True}
+
+
+def test_what_the_range_of_the_log_does_not_show_is_not_identified() -> None:
+    straight = replace(named("edd-2", lon__V=-0.1), yaw_rate=(0.0, 0.0))
+    summary = summarise(make_model(straight))
+    assert {p.name: p.identified for p in summary.parameters} == {"lon.V": True, "ang.w": False}
+    assert "Drives 90.0 ± 1.0 % of what its wheels say." in summary.sentences
+
+
+def test_channels_that_differ_are_said_apart() -> None:
+    text = str(summarise(follower(log_delay_omega=float(np.log(0.5)))))
+    assert "Follows speed commands after 0.200 ± 0.002 s" in text
+    assert "and yaw-rate commands after 0.500 ± 0.005 s" in text
+
+
+def test_a_gain_of_the_actuator_is_told_from_slip() -> None:
+    text = str(summarise(make_model(replace(named("edd-2", ang__w=-0.4), response=True))))
+    assert "turns 60.0 ± 1.0 % of what its wheels say" in text
+    assert "Its wheels reach 90.0 ± 1.0 % of the commanded speed" in text
+
+
+def test_a_slow_mode_is_said_where_it_is_identified_and_hides_the_fast_one_where_it_is_not() -> None:
+    clear = replace(named("edd-2"), response=True)
+    assert "(30.0 ± 1.0 % of it with a slower one of 1.500 ± 0.015 s)" in str(summarise(make_model(clear)))
+    hazy = replace(named("edd-2", slow_share_v=0.7, slow_share_omega=0.7), response=True, std=0.29)
+    hidden = str(summarise(make_model(hazy)))
+    assert "Follows commands after 0.20 ± 0.06 s." in hidden
+    assert "time constant" not in hidden
+
+
+def test_limits_offsets_and_the_place_of_the_sensor_are_said() -> None:
+    made = replace(
+        named("edd-2"), commands=True, clock_offset=0.1, limits=LIMITS, mount=(-0.5, 0.2, 0.0), std=0.01
+    )
+    text = str(summarise(make_model(made)))
+    assert "Actuator limits of speed: dead band below 0.100 ± 0.010 m/s, at most 1.100 ± 0.010 m/s" in text
+    assert "Poses are stamped 0.100 ± 0.010 s later than wheel speeds of the same time." in text
+    assert "The pose sensor sits 0.500 ± 0.010 m behind and 0.200 ± 0.010 m left of base_link." in text
+    assert "turned" not in text
+
+
+def test_a_model_that_is_not_good_is_not_called_better() -> None:
+    text = str(summarise(judged(follower(), good=False)))
+    assert "better" not in text
+    assert "where the kinematic baseline misses by 0.550 m and 0.400 rad (22.9 deg)" in text
+
+
+def test_what_was_not_judged_or_learned_is_not_claimed() -> None:
+    nothing = Made(basis=_core.Basis("none", [], [], []))
+    assert str(summarise(make_model(nothing))) == "Slip is not part of this model."
+    assert "Predicts" not in str(summarise(judged(follower(), windows=0)))
