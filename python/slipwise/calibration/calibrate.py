@@ -110,10 +110,11 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
 def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
     """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
 
-    The model is judged, so its predictions start where the plain model's do: at the measured pose.
+    The predictions are those that `evaluate` makes of the same method, so that one error stands in the
+    verdict, the model file, the report and the scores.
     """
     shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", shape, run.belief, run.dynamics, averages_poses=False)
+    forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     judged = [targets for targets in sets if len(targets)]
     predictions = forecast_all(forecaster, windows, judged or [windows])

@@ -35,7 +35,6 @@ class Forecaster:
     belief: Callable[[int], Belief]  # asked for in the order learned: the number of windows never decreases
     starts_from_wheels: bool  # the drive's measured twist at the start is used
     follows: bool = True  # slip that wanders is followed through the last windows before the start
-    averages_poses: bool = True  # the start is where the last poses say together, where that was learned
     causal: bool = True  # False: it learned from the whole log, the windows to predict included
 
 
@@ -55,6 +54,7 @@ class _Draft:
     recent: Ints  # windows that ended by its start; the last of them tell of the slip now
     in_sample_counts: Ints
     pose: Floats
+    from_measured: Floats  # `pose`, had it started at the measured one
     covariance: Floats
     usual: Floats  # squared length of the error from the measured start, nothing recent known of the slip
     in_sample: Floats
@@ -94,6 +94,7 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
         learned.count_until(targets.position, targets.start),
         in_sample_counts,
         np.empty((size, 3)),
+        np.empty((size, 3)),
         np.empty((size, 3, 3)),
         np.empty(size),
         np.empty((size, 3)),
@@ -112,11 +113,12 @@ def _predict(given: tuple[Forecaster, WindowSet], belief: Belief, draft: _Draft,
     usual, expected = (
         expected_from_measured(belief, forecaster.noise, track, segment, seen) for seen in ([], recent)
     )
+    draft.from_measured[i] = expected.pose
     expected = _core.starting_at(_start(forecaster, belief, targets, i), expected)
     draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
     draft.usual[i] = _squared(targets, i, usual.pose, usual.covariance)
     draft.structure[i] = belief.structure
-    draft.from_poses[i] = belief.start is not None and forecaster.averages_poses
+    draft.from_poses[i] = belief.start is not None
 
 
 def _squared(targets: WindowSet, i: int, pose: Floats, covariance: Floats) -> float:
@@ -139,7 +141,7 @@ def _predict_in_sample(forecaster: Forecaster, belief: Belief, draft: _Draft, i:
 
 def _start(forecaster: Forecaster, belief: Belief, targets: WindowSet, i: int) -> _core.Pose2:
     """Where window i starts, as seen from the pose measured there."""
-    if belief.start is None or not forecaster.averages_poses:
+    if belief.start is None:
         return _core.Pose2(0.0, 0.0, 0.0)
     known, track = motion_belief(belief, forecaster.noise), targets.track(i, belief.limited)
     return belief.start.offset(known, track, targets.seen(i, belief.start.reach), targets.segments[i])
@@ -168,6 +170,7 @@ def _finished(forecaster: Forecaster, learned: WindowSet, draft: _Draft) -> Pred
             forecaster, ((learned, draft.counts), (learned, draft.recent), (targets, known)), draft
         ),
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
+        from_measured=draft.from_measured,
     )
 
 

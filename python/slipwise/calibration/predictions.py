@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,9 +32,15 @@ class Predictions:
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
     in_sample: Floats  # [N, 2] position [m], heading [rad] error after learning the window (Table 6.2)
+    from_measured: Floats  # [N, 3] `pose`, had it started at the measured one
 
     def __len__(self) -> int:
         return len(self.t_start)
+
+    @property
+    def at_measured_start(self) -> Predictions:
+        """The same model's predictions from the measured pose, where every baseline starts."""
+        return replace(self, pose=self.from_measured)
 
     @property
     def causal(self) -> bool:

@@ -9,11 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.calibration.identifiability import LookAlike
+from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.logs.log import LeftOut
 from slipwise.models.model import Model
 
 Floats = NDArray[np.float64]
+
+COMPANION = "iekf"  # the filter that runs along an estimator that fits all windows at once, and is judged
 
 
 @dataclass(frozen=True)
@@ -65,3 +68,12 @@ class Calibration:
     left_out: tuple[LeftOut, ...]  # of the log and of the segmentation
     notes: tuple[str, ...]
     smoothed: SmoothedCourse | None = None  # where it was asked for
+
+    @property
+    def method(self) -> str:
+        """The name that an evaluation has for what was judged: a basis, or an estimator."""
+        settings = self.model.content.provenance.settings
+        estimator = str(settings.get("estimator", AVERAGE))
+        if estimator == AVERAGE:
+            return str(settings.get("basis", Settings().basis))
+        return COMPANION if self.history is None else estimator

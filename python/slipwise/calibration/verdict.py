@@ -28,8 +28,8 @@ WORSE = 1.02  # ratio to the plain model beyond which an error counts as worse
 class Judgement:
     """The held-out comparison with the plain model."""
 
-    held_out: HeldOut
-    position_ratio: tuple[float, float, float]
+    held_out: HeldOut  # as `evaluate` shows them
+    position_ratio: tuple[float, float, float]  # from the same measured start, which is not the model's merit
     heading_ratio: tuple[float, float, float]
 
     @property
@@ -40,10 +40,21 @@ class Judgement:
         clearly_better = position[2] < 1.0 or heading[2] < 1.0
         return position[0] * heading[0] < 1.0 and clearly_better and not clearly_worse
 
+    @property
+    def gains_by_start(self) -> bool:
+        """Whether the errors shown are smaller than the plain model's by where they start alone."""
+        h = self.held_out
+        better = h.position * h.heading < h.plain_position * h.plain_heading
+        return better and not self.beats_plain and self.position_ratio[0] * self.heading_ratio[0] >= 1.0
+
 
 def judge(learned: Predictions, plain: Predictions) -> Judgement:
-    """Compare a method with the plain model on the second half of the windows."""
-    half = held_out_half(len(learned))
+    """Compare a method with the plain model on the second half of the windows.
+
+    Errors are those of the predictions as they were made. Ratios are between predictions that start at the
+    measured pose, both: where the last poses are averaged, that helps whatever was learned.
+    """
+    half, alike = held_out_half(len(learned)), learned.at_measured_start
     held_out = HeldOut(
         horizon=learned.horizon,
         windows=half.stop - half.start,
@@ -56,8 +67,8 @@ def judge(learned: Predictions, plain: Predictions) -> Judgement:
         return Judgement(held_out, (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan))
     return Judgement(
         held_out,
-        ratio_of_means(learned.position_error[half], plain.position_error[half]),
-        ratio_of_means(learned.heading_error[half], plain.heading_error[half]),
+        ratio_of_means(alike.position_error[half], plain.position_error[half]),
+        ratio_of_means(alike.heading_error[half], plain.heading_error[half]),
     )
 
 
@@ -94,7 +105,15 @@ def _sentence(judgement: Judgement, unknown: int, parameters: int) -> tuple[bool
         f"({held_out.windows} held-out windows)"
     )
     if not judgement.beats_plain:
-        return False, f"Do not use this model: it does not beat the plain model. It misses by {figures}."
+        start = (
+            " It gains by averaging the last poses, not by what it learned."
+            if judgement.gains_by_start
+            else ""
+        )
+        return (
+            False,
+            f"Do not use this model: it does not beat the plain model. It misses by {figures}.{start}",
+        )
     tail = f" {unknown} of {parameters} parameters are not determined by this log." if unknown else ""
     return True, f"The learned model misses by {figures}.{tail}"
 

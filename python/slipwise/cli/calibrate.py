@@ -154,14 +154,13 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
 
 def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
     """Judge what was learned beside doing nothing and edd-2, and write the page."""
-    from slipwise.calibration.settings import AVERAGE
     from slipwise.cli.command_line import command_line
     from slipwise.evaluation import EvaluationOptions, evaluate
     from slipwise.reporting import write_report
 
-    learned = [settings.basis if settings.estimator == AVERAGE else settings.estimator]
+    learned = [calibration.method]
     if calibration.history is None:
-        learned.insert(0, "iekf")  # the filter that ran along is what was judged
+        learned.append(settings.estimator)
     methods = tuple(dict.fromkeys(("none", "edd-2", *learned)))
     evaluation = evaluate(
         log,

@@ -35,7 +35,9 @@ class Contents:
 
     @property
     def learned_method(self) -> str | None:
-        """The learned method that stands for slipwise in the figures: `auto`, else the best causal one."""
+        """The method that was calibrated and judged, else `auto`, else the best causal one."""
+        if self.calibration.method in self.evaluation.methods:
+            return self.calibration.method
         methods = [name for name in self.evaluation.methods if name not in (PLAIN, VENDOR)]
         if LEARNED in methods:
             return LEARNED

@@ -21,7 +21,9 @@ from sample_logs import (
 
 from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
+from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.errors import LogError, SettingsError
+from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log, Run, empty_poses
 
 TRUTHS = {
@@ -137,6 +139,19 @@ def test_batch_fit_keeps_the_verdict_of_the_filter_that_runs_along() -> None:
     assert batch.verdict == causal.verdict
     assert batch.history is None
     assert not np.array_equal(batch.model.mean, causal.model.mean)
+
+
+@pytest.mark.parametrize("settings", [{}, {"basis": "edd-2"}, {"estimator": "iekf", "basis": "edd-2"}])
+def test_errors_of_the_verdict_are_those_of_the_evaluation(settings: dict[str, str]) -> None:
+    log = simulated_log(Drive(seconds=90.0, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"]))
+    result = calibrate(log, input_name="wheel", settings=make_settings(settings))
+    held_out = result.model.content.verdict.held_out
+    assert held_out is not None
+    options = EvaluationOptions(JUDGING_HORIZONS, ("none", result.method))
+    scores = evaluate(log, input_name="wheel", settings=make_settings(settings), options=options)
+    learned, plain = (scores.score(name, held_out.horizon) for name in (result.method, "none"))
+    assert (held_out.position, held_out.heading) == (learned.position.mean, learned.heading.mean)
+    assert (held_out.plain_position, held_out.plain_heading) == (plain.position.mean, plain.heading.mean)
 
 
 def test_never_moving_robot_is_said_with_advice() -> None:

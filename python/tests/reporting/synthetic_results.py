@@ -120,7 +120,7 @@ def _calibration(runs: int) -> Calibration:
             "provenance": {
                 "slipwise_version": "0.0.test",
                 "logs": [{"path": "/data/field.mcap", "sha256": "ab" * 32}],
-                "settings": {"basis": "edd-2"},
+                "settings": {"basis": "auto"},
                 "learned_seconds": DURATION * runs,
                 "learned_windows": 48 * runs,
             },
@@ -199,6 +199,7 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         learned_until=t_start,
         structure=np.zeros(len(rows), np.int64),
         in_sample=np.full((len(rows), 2), 0.01),
+        from_measured=np.array(poses),
     )
 
 

@@ -20,7 +20,7 @@ def test_version_command_hash_settings_and_model_are_there() -> None:
     assert "slipwise version 0.0.test" in text
     assert "command line slipwise demo --seed 3" in text
     assert f"/data/field.mcap mcap 2400 {'ab' * 32}" in text
-    assert '"basis": "edd-2"' in unescape(html)
+    assert '"basis": "auto"' in unescape(html)
     assert results.calibration.model.to_yaml() in unescape(html)
 
 

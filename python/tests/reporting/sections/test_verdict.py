@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 from reporting.page_parts import contents_of, text_of
-from reporting.synthetic_results import make_results, with_verdict
+from reporting.synthetic_results import make_results, with_model, with_verdict
 
 from slipwise.calibration.result import Verdict
 from slipwise.reporting.sections.verdict import VerdictSection
@@ -43,6 +43,17 @@ def test_errors_stand_beside_those_of_the_plain_model() -> None:
         f"{auto.position.mean:.4f} m instead of {plain.position.mean:.2f} m without slip: {less} % less"
         in text
     )
+
+
+def test_errors_are_those_of_the_method_that_was_calibrated() -> None:
+    results = make_results()
+    provenance = results.calibration.model.content.provenance.model_copy(
+        update={"settings": {"basis": "odd-even-10"}}
+    )
+    contents = contents_of(with_model(results, provenance=provenance))
+    assert contents.learned_method == "odd-even-10"
+    error = results.evaluation.score("odd-even-10", 5.0).position.mean
+    assert f"{error:.4f} m instead of" in text_of(VerdictSection().html(contents))
 
 
 def test_verdict_without_scores_is_still_a_verdict() -> None:
