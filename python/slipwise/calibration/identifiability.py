@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from slipwise import _core
 from slipwise.calibration.learner import Belief
+from slipwise.models.parameter_table import physical_name
 
 UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 LOOK_ALIKE = 0.9  # correlation from which on two parameters count as look-alikes
@@ -22,7 +23,7 @@ class LookAlike:
     correlation: float
 
     def __str__(self) -> str:
-        return f"{self.first} and {self.second} ({self.correlation:+.2f})"
+        return f"{physical_name(self.first)} and {physical_name(self.second)} ({self.correlation:+.2f})"
 
 
 def undetermined(belief: Belief) -> tuple[str, ...]:
@@ -48,7 +49,7 @@ def drives_for(names: tuple[str, ...]) -> tuple[str, ...]:
     for matches, sentence in _DRIVES:
         found = [name for name in names if matches(name)]
         if found:
-            advice.append(f"{sentence} (for {', '.join(found)}).")
+            advice.append(f"{sentence} (for {', '.join(map(physical_name, found))}).")
     return tuple(advice)
 
 

@@ -114,7 +114,9 @@ def _sentence(judgement: Judgement, unknown: int, parameters: int) -> tuple[bool
             False,
             f"Do not use this model: it does not beat the plain model. It misses by {figures}.{start}",
         )
-    tail = f" {unknown} of {parameters} parameters are not determined by this log." if unknown else ""
+    tail = (
+        f" {unknown} of {parameters} parameters stay about where they were before the log." if unknown else ""
+    )
     return True, f"The learned model misses by {figures}.{tail}"
 
 

@@ -124,32 +124,34 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
 
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
+    from slipwise.cli.next_step import after_learning
     from slipwise.cli.tables import (
         show_alarms,
         show_files,
         show_left_out,
-        show_limits,
         show_look_alikes,
         show_notes,
         show_parameters,
+        show_summary,
         show_verdict,
     )
+    from slipwise.models.summary import summarise
 
     content = calibration.model.content
-    learned = content.provenance
+    learned, summary = content.provenance, summarise(calibration.model)
     out.line(
         f"Learned {content.slip.basis} from {content.input}s: "
         f"{learned.learned_windows} windows, {learned.learned_seconds:.0f} s of driving."
     )
+    show_summary(out, summary)
+    show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))
+    show_files(out, files)
     show_notes(out, calibration.notes)
     show_left_out(out, calibration.left_out)
     if calibration.history is not None:
         show_alarms(out, calibration.history)
-    show_parameters(out, content.parameters)
-    show_limits(out, content.limits)
     show_look_alikes(out, calibration.verdict.look_alikes)
-    show_verdict(out, calibration.verdict)
-    show_files(out, files)
+    show_parameters(out, summary.parameters)
 
 
 def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:

@@ -73,9 +73,11 @@ def demo(
 
 
 def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
+    from slipwise.cli.next_step import after_learning
     from slipwise.cli.output import Column
-    from slipwise.cli.tables import show_files, show_verdict
+    from slipwise.cli.tables import show_files, show_summary, show_verdict
     from slipwise.demo.run_demo import VENDOR_TRACK_MULTIPLIER
+    from slipwise.models.summary import summarise
 
     names = {
         "none": "none",
@@ -98,5 +100,7 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
     windows = ", ".join(f"{evaluation.score('none', h).windows} of {h:g} s" for h in horizons)
     caption = f"Mean errors over held-out windows ({windows}), learned only from what came before each."
     out.table("How far predictions from commands alone miss", columns, rows, caption=caption)
-    show_verdict(out, result.calibration.verdict)
+    show_summary(out, summarise(result.calibration.model))
+    verdict = result.calibration.verdict
+    show_verdict(out, verdict, after_learning(verdict, files["model"]))
     show_files(out, files)

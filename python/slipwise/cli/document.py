@@ -36,11 +36,14 @@ def verdict_part(verdict: Verdict | None) -> dict[str, Any] | None:
 
 def calibration_part(calibration: Calibration) -> dict[str, Any]:
     """Return what was learned, in the units of the model file."""
+    from slipwise.models.summary import summarise
+
     content, history = calibration.model.content, calibration.history
     alarms = [] if history is None else history.alarms()
     return {
         "input": content.input,
         "basis": content.slip.basis,
+        "summary": list(summarise(calibration.model).sentences),
         "parameters": [parameter.model_dump() for parameter in content.parameters],
         "limits": content.limits.model_dump() if content.limits else None,
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,

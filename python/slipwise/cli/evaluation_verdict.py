@@ -31,6 +31,7 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     from slipwise.calibration import Calibration, Settings
     from slipwise.calibration.plain import plain_forecaster
     from slipwise.calibration.verdict import give_verdict, judge
+    from slipwise.models.parameter_table import physical_name
 
     method = judged_method(evaluation.methods)
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
@@ -45,7 +46,7 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     undetermined = tuple(known.undetermined)
     sentence = verdict.sentence
     if undetermined:
-        sentence += f" Not determined: {', '.join(undetermined)}."
+        sentence += f" Not determined: {', '.join(map(physical_name, undetermined))}."
     return replace(
         verdict,
         sentence=sentence,

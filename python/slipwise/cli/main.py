@@ -19,6 +19,7 @@ from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
 from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
+from slipwise.cli.show import show
 from slipwise.cli.simulate import simulate
 
 DEBUG = "--debug"
@@ -35,6 +36,7 @@ _COMMANDS = (
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
+    (show, "Say what a model has learned."),
     (export, "Write a model into files for other tools."),
     (plan, "Plan a route through a map with a learned model."),
     (lattice, "Write primitives that the robot can drive, for Nav2."),

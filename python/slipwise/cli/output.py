@@ -7,6 +7,7 @@ import json
 import math
 import shutil
 import sys
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -48,11 +49,26 @@ class Output:
         """The JSON file to write, None where there is none."""
         return self.json_file if self.for_people else None
 
-    def line(self, text: str = "") -> None:
-        """Print one line; a terminal wraps it."""
+    def line(self, text: str = "", *, label: str = "", colour: str = "") -> None:
+        """Print one line, after a label in a colour where a terminal takes it; long ones go on below it.
+
+        Where a file or a pipe takes the line, it stays one line without a colour.
+        """
         if not self.for_people:
             return
-        _print(printable(text))
+        shown = " ".join(part for part in (printable(label), printable(text)) if part)
+        console = self._out()
+        if not console.is_terminal:
+            _print(shown)
+            return
+        from rich.text import Text
+
+        wrapped = Text(wrapped_text(shown, console.width))
+        if colour:
+            wrapped.stylize(f"bold {colour}", 0, len(printable(label)))
+        with console.capture() as captured:
+            console.print(wrapped, soft_wrap=True)
+        _print(captured.get().removesuffix("\n"))
 
     def table(
         self, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], *, caption: str = ""
@@ -72,7 +88,7 @@ class Output:
         )
         for column in columns:
             justify: Literal["left", "right"] = "right" if column.right else "left"
-            table.add_column(printable(column.head), justify=justify, no_wrap=column.whole)
+            table.add_column(printable(column.head), justify=justify, no_wrap=column.whole, overflow="fold")
         for row in rows:
             table.add_row(*(printable(cell) for cell in row))
         console = self._out()
@@ -112,6 +128,20 @@ class Output:
             )
             self._console = Console(width=width, markup=False, emoji=False, highlight=False)
         return self._console
+
+
+def wrapped_text(text: str, width: int) -> str:
+    """Return a line broken between words, so that no part is wider; what goes on keeps the indentation."""
+    indent = " " * (len(text) - len(text.lstrip()))
+    broken = textwrap.wrap(
+        text.strip(),
+        max(width, 20),
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return "\n".join(broken)
 
 
 def _print(text: str) -> None:

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.cli.output import Column, Output
-from slipwise.models.limits import limit_rows
-from slipwise.number_text import number_text
+from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
+from slipwise.number_text import estimate_texts, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
-    from slipwise.models.schema import LimitsSection, Parameter
+    from slipwise.models.parameter_table import PhysicalParameter
+    from slipwise.models.schema import VerdictSection
+    from slipwise.models.summary import Summary
 
 _MOST_ALARMS = 6
 _MOST_PAIRS = 6
@@ -50,13 +52,27 @@ def show_alarms(output: Output, history: History) -> None:
     output.line(f"The ground seems to change {times}: at {shown}{more}. What was learned before counts less.")
 
 
-def show_verdict(output: Output, verdict: Verdict) -> None:
-    """Show the verdict and the drives that would determine what is not."""
-    output.line(("" if verdict.good else "NOT GOOD ENOUGH. ") + verdict.sentence)
+def show_summary(output: Output, summary: Summary) -> None:
+    """Say what was learned, one sentence a line."""
+    for sentence in summary.sentences:
+        output.line(f"  {sentence}")
+
+
+def show_verdict(output: Output, verdict: Verdict | VerdictSection, next_step: Sequence[str] = ()) -> None:
+    """Show the verdict, the next step, and the drives that would determine what is not."""
+    label, colour = verdict_label(verdict)
+    output.line(verdict.sentence, label=label, colour=colour)
+    for step in next_step:
+        output.line(step)
     for advice in verdict.advice:
         output.line(f"  {advice}")
     if verdict.timing:
-        output.line(verdict.timing)
+        output.line(f"  {verdict.timing}")
+
+
+def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
+    """Return what a verdict says in two words, and its colour."""
+    return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
 
 
 def show_files(output: Output, files: Mapping[str, Path]) -> None:
@@ -66,24 +82,23 @@ def show_files(output: Output, files: Mapping[str, Path]) -> None:
         output.line(f"{name:<{width}}  {path}")
 
 
-def show_parameters(output: Output, parameters: Sequence[Parameter]) -> None:
-    """Show every parameter, lag and delay in seconds."""
-    rows = []
-    for p in parameters:
-        name, value, std, unit = in_plain_units(p)
-        left = number_text(p.std / p.prior_std, 2) if p.prior_std > 0.0 else ""
-        rows.append(
-            (name, number_text(value), number_text(std, 2), unit, left, "yes" if p.determined else "no")
-        )
+def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> None:
+    """Show every parameter in its physical unit, and whether it is identified."""
+    rows = [
+        (p.name, *estimate_texts(p.value, p.std), p.unit, "yes" if p.identified else "no") for p in parameters
+    ]
     columns = (
-        Column("parameter"),
-        Column("value", True),
-        Column("std", True),
+        Column("parameter", whole=True),
+        Column("value", True, whole=True),
+        Column("std", True, whole=True),
         Column("unit"),
-        Column("std / before", True),
-        Column("determined"),
+        Column("identified"),
     )
-    output.table("Parameters", columns, rows)
+    caption = (
+        f"Identified: the standard deviation is at most {IDENTIFIED_FRACTION:.0%} of the value, or "
+        f"{NEGLIGIBLE:.0%} of the motion in the log, {NEGLIGIBLE:g} s, m or rad where zero means none."
+    )
+    output.table("Parameters", columns, rows, caption=caption)
 
 
 def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
@@ -92,26 +107,6 @@ def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
         more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
         output.line(f"Hard to tell apart (correlation of their errors): {shown}{more}.")
-
-
-def show_limits(output: Output, limits: LimitsSection | None) -> None:
-    """Show the limits of the drive that wheel speeds showed; nothing where there are none."""
-    if limits is None:
-        return
-    rows = [
-        (name, number_text(value), number_text(std, 2), unit) for name, value, std, unit in limit_rows(limits)
-    ]
-    columns = (Column("limit"), Column("value", True), Column("std", True), Column("unit"))
-    output.table("Limits of the drive", columns, rows)
-
-
-def in_plain_units(parameter: Parameter) -> tuple[str, float, float, str]:
-    """Return name, value, standard deviation and unit; what is learned as a logarithm in its own unit."""
-    name, unit = parameter.name.removeprefix("log_"), parameter.unit.removeprefix("ln ")
-    if name == parameter.name:
-        return name, parameter.value, parameter.std, unit
-    value = math.exp(parameter.value)
-    return name, value, value * parameter.std, unit
 
 
 def show_scores(output: Output, evaluation: Evaluation) -> None:

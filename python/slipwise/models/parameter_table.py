@@ -35,6 +35,11 @@ class PhysicalParameter:
         return f"{self.name} {estimate_text(self.value, self.std)}{unit}"
 
 
+def physical_name(name: str) -> str:
+    """Return the name of a parameter in its physical unit: `delay_v` of `log_delay_v`."""
+    return name.removeprefix("log_")
+
+
 def known(value: float, std: float) -> bool:
     """Whether a value that is never zero is identified."""
     return 0.0 <= std <= IDENTIFIED_FRACTION * abs(value)
@@ -46,7 +51,7 @@ def physical_parameters(model: Model) -> tuple[PhysicalParameter, ...]:
     rows = []
     for p, effect in zip(model.content.parameters, effects.tolist(), strict=True):
         value, std = p.value, p.std
-        name, unit = p.name.removeprefix("log_"), p.unit.removeprefix("ln ")
+        name, unit = physical_name(p.name), p.unit.removeprefix("ln ")
         if name != p.name:
             value = math.exp(p.value)
             std = value * p.std

@@ -79,7 +79,7 @@ def test_lag_and_delay_of_one_channel_alone_trade_places() -> None:
         (LookAlike("log_delay_v", "log_lag_v", -0.97), LookAlike("log_lag_v", "log_delay_omega", 0.95))
     )
     assert len(told) == 1
-    assert told[0].endswith("log_delay_v and log_lag_v (-0.97).")
+    assert told[0].endswith("delay_v and lag_v (-0.97).")
 
 
 def test_it_is_said_which_delay_holds_which_clock_offset() -> None:

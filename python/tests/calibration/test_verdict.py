@@ -13,6 +13,7 @@ from slipwise import _core
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.calibration.identifiability import drives_for
 from slipwise.calibration.verdict import FEWEST_WINDOWS, Judgement
+from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import HeldOut
 
 SLIP = _core.named_basis("edd-2")
@@ -128,7 +129,7 @@ def test_every_parameter_of_every_basis_has_a_drive_that_determines_it() -> None
         for info in model.parameters:
             advice = drives_for((info.name,))
             assert len(advice) == 1
-            assert advice[0].endswith(f"(for {info.name}).")
+            assert advice[0].endswith(f"(for {physical_name(info.name)}).")
     assert drives_for(()) == ()
 
 

@@ -17,7 +17,7 @@ from slipwise import load_model, load_settings, open_log
 Slipwise = Callable[..., Result]
 
 COMMANDS = (
-    *("demo", "inspect", "calibrate", "evaluate", "export"),
+    *("demo", "inspect", "calibrate", "evaluate", "show", "export"),
     *("plan", "lattice", "simulate", "convert", "reproduce"),
 )
 
@@ -58,6 +58,26 @@ def test_calibrate_writes_model_settings_result_and_report(slipwise: Slipwise, d
     assert abs(values["ang.w"].value + 0.3) < 4.0 * values["ang.w"].std
     assert "ang.w" in result.out
     assert "The learned model misses by" in result.out
+
+
+def test_calibrate_says_what_was_learned_then_the_verdict_then_the_numbers(
+    slipwise: Slipwise, drive_csv: Path
+) -> None:
+    out = slipwise("calibrate", drive_csv, "-o", "model.yaml", "--basis", "edd-2", "--no-report").out
+    said = (
+        "% of what is commanded (separation multiplier",
+        "times better than the kinematic baseline.",
+        "GOOD. ",
+        "slipwise evaluate OTHER_LOG --model model.yaml",
+        "Nothing was left out.",
+        "Parameters",
+        "identified",
+    )
+    places = [out.rindex(text) for text in said]
+    assert places == sorted(places)
+    assert "log_" not in out
+    sentences = json.loads(Path("runs/latest/result.json").read_text())["summary"]
+    assert all(sentence in out for sentence in sentences)
 
 
 def test_the_settings_of_a_run_give_the_same_model_again(slipwise: Slipwise, drive_csv: Path) -> None:

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import io
 import json
+import re
+import sys
 from pathlib import Path
 
 import pytest
 
-from slipwise.cli.output import Column, Output, to_json
-from slipwise.cli.tables import in_plain_units
-from slipwise.models.schema import Parameter
+from slipwise.cli.output import Column, Output, to_json, wrapped_text
+from slipwise.cli.tables import show_parameters
+from slipwise.models.parameter_table import PhysicalParameter
 
 
 def test_numbers_that_are_not_finite_become_null() -> None:
@@ -33,6 +36,29 @@ def test_nothing_but_json_is_printed_where_json_goes_to_stdout(capsys: pytest.Ca
     assert json.loads(capsys.readouterr().out) == {"a": 1}
 
 
-def test_what_is_learned_as_a_logarithm_is_shown_in_seconds() -> None:
-    learned = Parameter(name="log_lag_v", unit="ln s", value=0.0, std=0.1, prior_std=0.8, determined=True)
-    assert in_plain_units(learned) == ("lag_v", 1.0, 0.1, "s")
+def test_a_line_in_a_pipe_is_one_line_without_a_colour(capsys: pytest.CaptureFixture[str]) -> None:
+    Output(None).line("word " * 40, label="GOOD.", colour="green")
+    assert capsys.readouterr().out == "GOOD. " + "word " * 40 + "\n"
+
+
+def test_a_line_is_broken_between_words_and_keeps_its_indentation() -> None:
+    broken = wrapped_text("  " + "word " * 10 + "/a/path/that-is-longer-than/twenty/characters", 22)
+    assert broken.splitlines()[:2] == ["  word word word word", "  word word word word"]
+    assert broken.splitlines()[-1] == "  /a/path/that-is-longer-than/twenty/characters"
+
+
+def test_a_terminal_gets_colour_and_eighty_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = io.StringIO()
+    monkeypatch.setattr(shown, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stdout", shown)
+    for name, value in (("TERM", "xterm"), ("COLUMNS", "80")):
+        monkeypatch.setenv(name, value)
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    output = Output(None)
+    output.line("word " * 40, label="NOT GOOD ENOUGH.", colour="red")
+    show_parameters(output, [PhysicalParameter("lon.w^2*sgn(V)", -0.1, 0.02, "m/s per w^2*sgn(V)", True)])
+    text = shown.getvalue()
+    assert text.startswith("\x1b[1;31mNOT GOOD ENOUGH.\x1b[0m word")
+    plain = re.sub(r"\x1b\[[0-9;]*m", "", text)
+    assert max(map(len, plain.splitlines())) <= 80
+    assert re.search(r"lon\.w\^2\*sgn\(V\) +-0\.10 +0\.02 +m/s per w\^2\*sgn\(V\) +yes", plain)
