@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from slipwise.errors import OutputError
+from slipwise.errors import LogError, OutputError
 from slipwise.logs.log import Log
 
 
@@ -17,9 +17,15 @@ def save_log(log: Log, path: str | Path) -> None:
 
     Raises:
         OutputError: the ending is not one of these, or the file cannot be written.
-        LogError: the log holds nothing.
+        LogError: the log has no poses, so that nobody could read it again.
     """
     path = Path(path)
+    if not any(len(run.poses) for run in log.runs):
+        raise LogError(
+            "the log has no poses to write",
+            where=", ".join(source.path for source in log.sources),
+            advice="`slipwise inspect` says what was left out of it, and why",
+        )
     if path.name.endswith(".mcap"):
         from slipwise.logs.write_bag import write_mcap
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from slipwise.errors import LogError, OutputError
-from slipwise.logs import Inputs, Log, Poses, Run, empty_poses, open_log, save_log
+from slipwise.logs import Inputs, Log, Poses, Run, Source, empty_poses, open_log, save_log
 
 ENDINGS = (".csv", ".csv.gz", ".parquet", ".mcap")
 
@@ -103,6 +103,16 @@ def test_an_unknown_ending_is_refused(log: Log, tmp_path: Path) -> None:
 def test_a_log_without_samples_is_refused_and_leaves_no_file(tmp_path: Path, ending: str) -> None:
     log = Log(runs=(Run(name="r", commands=None, wheels=None, poses=empty_poses()),))
     with pytest.raises(LogError):
+        save_log(log, tmp_path / f"drive{ending}")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_a_log_whose_poses_were_all_left_out_is_refused(run: Run, tmp_path: Path, ending: str) -> None:
+    log = Log(runs=(replace(run, poses=empty_poses()),), sources=(Source("bad.mcap", "00", "mcap", 60),))
+    with pytest.raises(
+        LogError, match=r"the log has no poses to write \(bad\.mcap\): `slipwise inspect` says"
+    ):
         save_log(log, tmp_path / f"drive{ending}")
     assert list(tmp_path.iterdir()) == []
 
