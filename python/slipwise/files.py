@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files are written whole or not at all, and identified by their hash."""
+"""Files are written whole or not at all, through links and with the mode they had, and hashed."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ import contextlib
 import errno
 import hashlib
 import os
-import secrets
+import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from slipwise.errors import OutputError
+from slipwise.part_folder import part_folder, sweep_parts
 
 _ADVICE = {
     errno.EACCES: "choose a folder you may write to",
@@ -23,6 +24,7 @@ _ADVICE = {
     errno.EISDIR: "this is a folder, name a file",
     errno.EEXIST: "a part of the path is a file, choose another folder",
     errno.ENOTDIR: "a part of the path is a file, choose another folder",
+    errno.ELOOP: "the links lead in a circle, name another file",
 }
 
 
@@ -37,33 +39,51 @@ def output_errors(path: Path) -> Iterator[None]:
         raise OutputError(f"cannot write: {reason}", where=str(path), advice=advice) from error
 
 
-def write_whole(path: Path, write: Callable[[Path], None]) -> None:
-    """Let `write` fill a temporary file beside `path`, then move it into place in one step.
+def written_place(path: Path) -> Path:
+    """Return where a file of this name is written: what a symbolic link leads to, there or not, is followed.
 
-    Whatever interrupts the writing, a signal too, leaves the old file as it was and no temporary file.
+    Raises:
+        OSError: links lead in a circle.
+    """
+    if not path.is_symlink():
+        return path
+    place = Path(os.path.realpath(path))
+    if place.is_symlink():
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
+    return place
+
+
+def write_whole(path: Path, write: Callable[[Path], None]) -> None:
+    """Let `write` fill a file in a hidden folder beside `path`, then move it into place in one step.
+
+    A symbolic link stays, and the file that it leads to is written. A file that is there keeps its mode and,
+    where the system allows it, its owner. Whatever interrupts the writing, a signal too, leaves the old file
+    as it was and no other; what a killed process left in the folder is swept by the next writing there.
+
+    Args:
+        path: the file to write.
+        write: gets the path of a file that is not there yet, in a folder that is its own.
 
     Raises:
         OutputError: the file cannot be written.
     """
     with output_errors(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        if path.is_dir():
+        place = written_place(path)
+        place.parent.mkdir(parents=True, exist_ok=True)
+        if place.is_dir():
             raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if path.exists() and not path.is_file():
+        if place.exists() and not place.is_file():
             raise OutputError(
                 "cannot write: this is a device or a pipe", where=str(path), advice="name a file"
             )
-        # The name is ours before the file is there: whenever a signal comes, there is something to remove.
-        temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-        try:
-            temporary.touch(exist_ok=False)
+        sweep_parts(place.parent)
+        with part_folder(place.parent) as folder:
+            temporary = folder / place.name
             write(temporary)
             with temporary.open("rb+") as file:
                 os.fsync(file.fileno())
-            temporary.replace(path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
+            _take_after(temporary, place)
+            temporary.replace(place)
 
 
 def write_text_whole(path: Path, text: str) -> None:
@@ -83,3 +103,14 @@ def sha256_of(path: Path) -> str:
 
 def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
+
+
+def _take_after(temporary: Path, place: Path) -> None:
+    """Give the new file owner and mode of the old one, if there is an old one."""
+    try:
+        old = place.stat()
+    except FileNotFoundError:
+        return
+    with contextlib.suppress(OSError):  # only some may give files away
+        os.chown(temporary, old.st_uid, old.st_gid)
+    temporary.chmod(stat.S_IMODE(old.st_mode))

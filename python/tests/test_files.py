@@ -6,7 +6,10 @@ from __future__ import annotations
 import errno
 import hashlib
 import os
+import signal
 import stat
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -95,3 +98,71 @@ def test_hash_is_that_of_the_bytes(tmp_path: Path) -> None:
     path = tmp_path / "a.bin"
     path.write_bytes(b"slip\x00wise")
     assert sha256_of(path) == hashlib.sha256(b"slip\x00wise").hexdigest()
+
+
+def test_a_link_stays_and_the_file_it_leads_to_is_written(tmp_path: Path) -> None:
+    (tmp_path / "real").mkdir()
+    link = tmp_path / "link.txt"
+    link.symlink_to("real/a.txt")
+    for text in ("first", "second"):  # the first makes the file
+        write_text_whole(link, text)
+        assert link.is_symlink()
+        assert (tmp_path / "real" / "a.txt").read_text(encoding="utf-8") == text
+    assert [p.name for p in (tmp_path / "real").iterdir()] == ["a.txt"]
+
+
+def test_links_in_a_circle_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").symlink_to("b.txt")
+    (tmp_path / "b.txt").symlink_to("a.txt")
+    with pytest.raises(OutputError, match=r"links lead in a circle, name another file"):
+        write_text_whole(tmp_path / "a.txt", "text")
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o664, 0o400])
+def test_a_file_that_is_there_keeps_its_mode(tmp_path: Path, mode: int) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("old", encoding="utf-8")
+    path.chmod(mode)
+    write_text_whole(path, "new")
+    assert stat.S_IMODE(path.stat().st_mode) == mode
+    assert path.read_text(encoding="utf-8") == "new"
+
+
+def test_nobody_else_can_read_a_private_file_while_it_is_written(tmp_path: Path) -> None:
+    modes = []
+
+    def write(path: Path) -> None:
+        modes.append(stat.S_IMODE(path.parent.stat().st_mode))
+        path.write_text("secret", encoding="utf-8")
+
+    write_whole(tmp_path / "a.txt", write)
+    assert modes == [0o700]
+
+
+def test_what_a_killed_writer_left_is_swept_by_the_next_writing(tmp_path: Path) -> None:
+    script = (
+        "import os, signal, sys; from pathlib import Path; from slipwise.files import write_whole\n"
+        "def write(path):\n    path.write_text('half of')\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+        "write_whole(Path(sys.argv[1]), write)"
+    )
+    done = subprocess.run([sys.executable, "-c", script, str(tmp_path / "a.txt")], check=False)
+    assert done.returncode == -signal.SIGKILL
+    (left,) = tmp_path.iterdir()
+    assert left.name.endswith(".part")
+    write_text_whole(tmp_path / "b.txt", "text")
+    assert [p.name for p in tmp_path.iterdir()] == ["b.txt"]
+
+
+def test_what_is_being_written_or_not_ours_is_not_swept(tmp_path: Path) -> None:
+    others = {".slipwise-notes.part", ".a.txt.0123abcd.part", ".slipwise-0123abcd.part"}
+    for name in others:
+        (tmp_path / name).mkdir()
+    (tmp_path / ".slipwise-0123abcd.part" / "letter").touch()  # no writer's lock: not ours
+
+    def write(path: Path) -> None:
+        write_text_whole(tmp_path / "b.txt", "while the other is written")
+        path.write_text("first", encoding="utf-8")
+
+    write_whole(tmp_path / "a.txt", write)
+    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == "first"
+    assert {p.name for p in tmp_path.iterdir()} == {"a.txt", "b.txt"} | others

@@ -70,13 +70,14 @@ def calibrate(
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.files import write_text_whole
     from slipwise.logs import open_log
 
     out = Output(json)
     chosen = chosen_settings(settings, basis, estimator)
-    refuse_unwritable(output, report, out.written_file)
+    refuse_unwritable(output, report, out.written_file, inputs=(*logs, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "calibrate") as folder:
@@ -103,6 +104,7 @@ def calibrate(
             write_text_whole(folder / "result.json", to_json(document))
             out.document(document)
     _show(out, calibration, files | {"run folder": folder})
+    show_killed_runs(out, runs)
     return _exit_code(calibration)
 
 

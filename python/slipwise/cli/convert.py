@@ -41,7 +41,7 @@ def convert(
 
     out = Output(json)
     refuse_unknown_log_format(output)
-    refuse_unwritable(output, out.written_file)
+    refuse_unwritable(output, out.written_file, inputs=logs)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("writing", 0.5)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from slipwise.cli.output import Output
     from slipwise.demo import DemoResult
 
+FILES = ("drive.mcap", "model.yaml", "report.html", "settings.toml", "result.json")
 SHOWN_HORIZONS = (2.0, 5.0)  # [s]
 
 
@@ -41,12 +42,13 @@ def demo(
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.demo import DemoOptions, run_demo
     from slipwise.files import write_text_whole
 
     out = Output(json)
-    refuse_unwritable(out.written_file, output and output / "report.html")
+    refuse_unwritable(out.written_file, *(output / name for name in FILES if output is not None))
     with progress_bar("simulating") as update:
         place = run_folder(runs, "demo") if output is None else contextlib.nullcontext(output)
         with place as folder:
@@ -69,6 +71,7 @@ def demo(
             write_text_whole(files["result"], to_json(document))
             out.document(document)
     _show(out, result, files)
+    show_killed_runs(out, runs)
     return 0 if verdict.good else 1
 
 

@@ -80,6 +80,7 @@ def evaluate(
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.evaluation import evaluate as judge_methods
     from slipwise.evaluation import write_predictions
@@ -88,7 +89,7 @@ def evaluate(
     out = Output(json)
     chosen = chosen_settings(settings, basis)
     options = _options(horizons, methods, vendor_track_multiplier, model)
-    refuse_unwritable(predictions, report, out.written_file)
+    refuse_unwritable(predictions, report, out.written_file, inputs=(*logs, model, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:
@@ -111,6 +112,7 @@ def evaluate(
             verdict = verdict_on(evaluation, options.model or calibration)
             _write_result(out, folder, (log, evaluation, verdict), files)
     _show(out, evaluation, verdict, files | {"run folder": folder})
+    show_killed_runs(out, runs)
     return 0 if verdict is None or verdict.good else 1
 
 

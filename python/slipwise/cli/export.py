@@ -75,10 +75,13 @@ def export(
     """  # noqa: D301
     from slipwise.cli.bad_verdict import say_refused
     from slipwise.cli.output import Output
+    from slipwise.cli.writable import refuse_unwritable
     from slipwise.export import ExportOptions
+    from slipwise.files import write_text_whole
     from slipwise.models import load_model
 
     out = Output(json)
+    refuse_unwritable(out.written_file, inputs=[model])
     options = ExportOptions(
         horizon=horizon,
         wheel_separation=wheel_separation,
@@ -92,7 +95,10 @@ def export(
         say_refused(out, learned, "export")
         return 1
     made = _make(learned, model.name, to, options)
-    paths = _write(out, made, output, to)
+    paths = _paths(made, output, to)
+    refuse_unwritable(*paths.values(), out.written_file, inputs=[model])
+    for target, exported in made.files:
+        write_text_whole(paths[target.name], exported.text)
     _report(out, made, paths)
     return 0
 
@@ -124,17 +130,10 @@ def _make(model: Model, name: str, to: TargetName, options: ExportOptions) -> _M
     return made
 
 
-def _write(out: Output, made: _Made, output: Path, to: TargetName) -> dict[str, Path]:
-    """Write the files, each whole; return their paths by target."""
-    from slipwise.cli.writable import refuse_unwritable
-    from slipwise.files import write_text_whole
-
+def _paths(made: _Made, output: Path, to: TargetName) -> dict[str, Path]:
+    """Return where the files go, by target."""
     into_folder = to is TargetName.all or output.is_dir()
-    paths = {target.name: output / target.file_name if into_folder else output for target, _ in made.files}
-    refuse_unwritable(*paths.values(), out.written_file)
-    for target, exported in made.files:
-        write_text_whole(paths[target.name], exported.text)
-    return paths
+    return {target.name: output / target.file_name if into_folder else output for target, _ in made.files}
 
 
 def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:

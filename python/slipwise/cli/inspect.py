@@ -43,11 +43,13 @@ def inspect(
     """  # noqa: D301
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
+    from slipwise.cli.writable import refuse_unwritable
     from slipwise.inspection import inspect_log
     from slipwise.logs import open_log
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
+    refuse_unwritable(out.written_file, inputs=(*logs, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("learning", 0.5)

@@ -54,13 +54,13 @@ def lattice(
     from slipwise.reporting.curvature_picture import write_curvature_picture
 
     out = Output(json)
+    names = {"lattice": "lattice.json", "curvature": "curvature.csv", "picture": "curvature.png"}
+    files = {kind: output / name for kind, name in names.items() if picture or kind != "picture"}
+    refuse_unwritable(*files.values(), out.written_file, inputs=[model])
     learned = load_model(model)
     if not learned.content.verdict.good and not force:
         say_refused(out, learned, "lattice")
         return 1
-    names = {"lattice": "lattice.json", "curvature": "curvature.csv", "picture": "curvature.png"}
-    files = {kind: output / name for kind, name in names.items() if picture or kind != "picture"}
-    refuse_unwritable(*files.values(), out.written_file)
     options = LatticeOptions(speed=speed, grid=grid, headings=headings, turns=turns, longest=longest)
     limits = limits_of(learned)
     limits = limits if curvature is None else replace(limits, curvature=curvature)

@@ -43,13 +43,18 @@ def plan(
     from slipwise.cli.document import head
     from slipwise.cli.output import Output
     from slipwise.cli.tables import show_files
+    from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
     from slipwise.planning import RouteOptions, RoutePlanner, TrajectoryOptions, load_map
+    from slipwise.planning.grid_map import image_of
     from slipwise.reporting.plan_drawing import Plan
     from slipwise.reporting.plan_page import summary
 
     out = Output(json)
     learned, grid = load_model(model), load_map(map_file)
+    kinds = ("png", "html", "csv") if picture else ("html", "csv")
+    files = {kind: output.with_name(f"{output.name}.{kind}") for kind in kinds}
+    refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
     begin, end = _pose(start, "--from"), _pose(goal, "--to")
     planner = RoutePlanner(
         learned,
@@ -58,7 +63,7 @@ def plan(
         search=RouteOptions(radius=radius, seed=seed),
     )
     drawn = Plan(planner.route(begin, end), grid, radius, begin, end, f"{model.name} on {map_file.name}")
-    files = _write(output, drawn, picture=picture)
+    _write(files, drawn)
     out.document(head("plan") | {"exit_code": 0, "files": files} | _figures(drawn))
     for sentence in summary(drawn):
         out.line(sentence)
@@ -80,20 +85,16 @@ def _pose(text: str, option: str) -> tuple[float, float, float]:
     return x, y, yaw
 
 
-def _write(stem: Path, drawn: Plan, *, picture: bool) -> dict[str, Path]:
+def _write(files: dict[str, Path], drawn: Plan) -> None:
     from slipwise.files import write_text_whole
     from slipwise.reporting.plan_page import plan_page
     from slipwise.reporting.plan_picture import write_plan_picture
 
-    named = {kind: stem.with_name(f"{stem.name}.{kind}") for kind in ("png", "html", "csv")}
-    if picture:
-        write_plan_picture(named["png"], drawn)
-    else:
-        del named["png"]
-    write_text_whole(named["html"], plan_page(drawn))
+    if "png" in files:
+        write_plan_picture(files["png"], drawn)
+    write_text_whole(files["html"], plan_page(drawn))
     rows = "".join(f"{t:.6f},{v:.6f},{w:.6f}\n" for t, v, w in drawn.route.trajectory.commands.tolist())
-    write_text_whole(named["csv"], "t,cmd_v,cmd_omega\n" + rows)
-    return named
+    write_text_whole(files["csv"], "t,cmd_v,cmd_omega\n" + rows)
 
 
 def _figures(drawn: Plan) -> dict[str, Any]:

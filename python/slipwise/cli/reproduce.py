@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from slipwise.reproduction import ChapterResult
 
 
+FILES = ("index.html", "markdown/README.md")
+
+
 class WorkName(StrEnum):
     """What can be reproduced."""
 
@@ -50,6 +53,7 @@ def reproduce(
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder
+    from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.reproduction import reproduce as make_again
     from slipwise.reproduction import write_reproduction
@@ -59,8 +63,8 @@ def reproduce(
     del work
     out = Output(json)
     chapters = chosen_chapters(only or [])
+    refuse_unwritable(out.written_file, *(output / name for name in FILES if output is not None))
     refuse_missing_extras()
-    refuse_unwritable(out.written_file, output and output / "index.html")
     with progress_bar("simulating") as update:
         place = run_folder(runs, "reproduce") if output is None else contextlib.nullcontext(output)
         with place as folder:
@@ -68,6 +72,7 @@ def reproduce(
             files = write_reproduction(folder, made)
             out.document(_document(made, files, seed))
     _show(out, made, files)
+    show_killed_runs(out, runs)
     return 0
 
 

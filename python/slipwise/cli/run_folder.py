@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The time-stamped folder of one run, with its settings and a `latest` link beside it."""
+"""The time-stamped folder of one run, marked until it is complete, and a `latest` link beside it."""
 
 from __future__ import annotations
 
@@ -14,16 +14,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slipwise.files import output_errors, write_text_whole
+from slipwise.part_folder import is_locked, locked
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
 
 LATEST = "latest"
+INCOMPLETE = "INCOMPLETE"  # a file in the folder of a run that goes on, or was killed
 
 
 @contextlib.contextmanager
 def run_folder(runs: Path, command: str) -> Iterator[Path]:
     """Create `runs/<UTC time>-<command>`; at the end point `runs/latest` to it, or remove it after a failure.
+
+    Until the end the folder holds a file INCOMPLETE, which stays where the process is killed.
 
     Raises:
         OutputError: the folder cannot be created.
@@ -32,9 +36,14 @@ def run_folder(runs: Path, command: str) -> Iterator[Path]:
     try:
         with _signals_held():
             folder = _create(runs, command)
-        yield folder
-        with output_errors(runs / LATEST):
-            _link(runs / LATEST, folder.name)
+        with contextlib.ExitStack() as marked:
+            mark = folder / INCOMPLETE
+            with output_errors(mark):
+                marked.enter_context(locked(mark))
+            yield folder
+            with output_errors(runs / LATEST):
+                mark.unlink()
+                _link(runs / LATEST, folder)
     except BaseException:
         with _signals_held():
             if folder is not None:
@@ -42,6 +51,11 @@ def run_folder(runs: Path, command: str) -> Iterator[Path]:
             with contextlib.suppress(OSError):
                 runs.rmdir()  # only if this run was the first and left it empty
         raise
+
+
+def killed_runs(runs: Path) -> list[Path]:
+    """Return the run folders whose process ended before they were complete, the oldest first."""
+    return sorted(mark.parent for mark in runs.glob(f"*/{INCOMPLETE}") if not is_locked(mark))
 
 
 def write_settings(folder: Path, settings: Settings) -> Path:
@@ -90,11 +104,10 @@ def _create(runs: Path, command: str) -> Path:
         return folder
 
 
-def _link(link: Path, target: str) -> None:
+def _link(link: Path, folder: Path) -> None:
     """Replace the link in one step; something else of that name, of the user's, stays as it is."""
     if link.exists() and not link.is_symlink():
         return
-    temporary = link.with_name(f".{LATEST}.{os.getpid()}")
-    temporary.unlink(missing_ok=True)
-    temporary.symlink_to(target)
+    temporary = folder / f".{LATEST}"
+    temporary.symlink_to(folder.name)
     temporary.replace(link)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.cli.output import Column, Output
+from slipwise.cli.run_folder import killed_runs
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, NEGLIGIBLE
 from slipwise.number_text import estimate_texts, number_text
 
@@ -107,6 +108,14 @@ def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
         more = f" and {len(pairs) - _MOST_PAIRS} more pairs" if len(pairs) > _MOST_PAIRS else ""
         output.line(f"Hard to tell apart (correlation of their errors): {shown}{more}.")
+
+
+def show_killed_runs(output: Output, runs: Path) -> None:
+    """Name the run folders that a killed process left incomplete."""
+    killed = killed_runs(runs)
+    if killed:
+        names = ", ".join(map(str, killed))
+        output.line(f"Incomplete, since the process was killed, and yours to remove: {names}.")
 
 
 def show_scores(output: Output, evaluation: Evaluation) -> None:

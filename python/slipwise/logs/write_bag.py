@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -60,24 +58,23 @@ def write_mcap(log: Log, path: Path) -> None:
 def _write(entries: list[Entry], temporary: Path, store: Typestore) -> None:
     from rosbags.rosbag2 import StoragePlugin, Writer
 
-    with tempfile.TemporaryDirectory(dir=temporary.parent, prefix=".bag-") as folder:
-        bag = Path(folder) / "bag"
-        with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-            types = {
-                RUN_TOPIC: RUN_TYPE,
-                COMMAND_TOPIC: TWIST_STAMPED,
-                WHEEL_TOPIC: ODOMETRY,
-                POSE_TOPIC: POSE_WITH_COVARIANCE,
-            }
-            used = {topic for _, topic, _ in entries}
-            connections = {
-                topic: writer.add_connection(topic, kind, typestore=store)
-                for topic, kind in types.items()
-                if topic in used
-            }
-            for stamp, topic, data in entries:
-                writer.write(connections[topic], stamp, data)
-        shutil.move(bag / "bag.mcap", temporary)
+    bag = temporary.parent / "bag"  # the writer wants a folder that is not there yet
+    with Writer(bag, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        types = {
+            RUN_TOPIC: RUN_TYPE,
+            COMMAND_TOPIC: TWIST_STAMPED,
+            WHEEL_TOPIC: ODOMETRY,
+            POSE_TOPIC: POSE_WITH_COVARIANCE,
+        }
+        used = {topic for _, topic, _ in entries}
+        connections = {
+            topic: writer.add_connection(topic, kind, typestore=store)
+            for topic, kind in types.items()
+            if topic in used
+        }
+        for stamp, topic, data in entries:
+            writer.write(connections[topic], stamp, data)
+    (bag / "bag.mcap").rename(temporary)
 
 
 def _span(run: Run) -> tuple[int, int]:

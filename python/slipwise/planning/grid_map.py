@@ -81,10 +81,7 @@ def load_map(path: str | Path) -> GridMap:
     """
     source = Path(path)
     content = read_yaml(source, error=PlanningError)
-    image = content.get("image")
-    if not isinstance(image, str):
-        raise _fault(source, "image", "names no image", "give the name of a PGM file")
-    grey = read_pgm(source.parent / image)
+    grey = read_pgm(_image(source, content))
     share = grey if _number(content, "negate", source, default=0.0) else 1.0 - grey
     free = share < _number(content, "free_thresh", source, default=0.196)
     origin = content.get("origin")
@@ -99,6 +96,22 @@ def load_map(path: str | Path) -> GridMap:
         raise PlanningError(
             problem.what, where=f"{source}, {problem.where}", advice=problem.advice
         ) from problem
+
+
+def image_of(path: str | Path) -> Path:
+    """Return the image that a map's YAML file names.
+
+    Raises:
+        PlanningError: the file is missing or wrong, or names none.
+    """
+    return _image(Path(path), read_yaml(Path(path), error=PlanningError))
+
+
+def _image(source: Path, content: dict[str, Any]) -> Path:
+    image = content.get("image")
+    if not isinstance(image, str):
+        raise _fault(source, "image", "names no image", "give the name of a PGM file")
+    return source.parent / image
 
 
 def _is_number(value: Any) -> bool:

@@ -86,7 +86,7 @@ def test_ctrl_c_while_writing_leaves_the_old_file(interrupted: Slipwise, long_cs
     old.write_text("old")
 
     def writing(_: int) -> bool:
-        return any(long_csv.parent.glob(".bag-*/bag/*"))
+        return any(long_csv.parent.glob(".slipwise-*.part/bag/*"))
 
     result = interrupted("convert", "long.csv", "-o", "long.mcap", at_work=writing)
     assert (result.code, result.out, result.line) == (2, "", STOPPED)

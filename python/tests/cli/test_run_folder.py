@@ -4,13 +4,19 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from cli.conftest import Result, left_in
 
-from slipwise.cli.run_folder import run_folder, to_toml
+from slipwise.cli.run_folder import INCOMPLETE, killed_runs, run_folder, to_toml
 from slipwise.errors import OutputError
+
+Slipwise = Callable[..., Result]
 
 
 def test_a_run_gets_a_folder_named_by_utc_time_and_command(tmp_path: Path) -> None:
@@ -68,3 +74,24 @@ def test_toml_reads_back_equal() -> None:
 def _fail_in(folder: Path, failure: type[BaseException]) -> None:
     (folder / "half").touch()
     raise failure
+
+
+def test_a_folder_is_marked_until_it_is_complete(tmp_path: Path) -> None:
+    with run_folder(tmp_path, "calibrate") as folder:
+        assert (folder / INCOMPLETE).is_file()
+        assert killed_runs(tmp_path) == []  # it goes on
+    assert left_in(folder) == set()
+
+
+def test_a_killed_run_stays_marked_and_the_next_one_says_so(slipwise: Slipwise, drive_csv: Path) -> None:
+    script = (
+        "import os, signal; from pathlib import Path; from slipwise.cli.run_folder import run_folder\n"
+        "with run_folder(Path('runs'), 'evaluate'): os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    subprocess.run([sys.executable, "-c", script], check=False)
+    (killed,) = Path("runs").iterdir()
+    assert left_in(killed) == {INCOMPLETE}
+    result = slipwise("calibrate", drive_csv, "--basis", "edd-2", "--no-report")
+    assert f"Incomplete, since the process was killed, and yours to remove: {killed}." in result.out
+    assert result.code == 0
+    assert killed_runs(Path("runs")) == [killed]
