@@ -16,7 +16,6 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
-from slipwise.calibration.identifiability import UNDETERMINED_RATIO
 from slipwise.calibration.learner import Belief, Progress
 from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.limit_words import limits_advice
@@ -186,7 +185,7 @@ def _parameters(belief: Belief) -> list[schema.Parameter]:
             value=float(belief.mean[i]),
             std=float(stds[i]),
             prior_std=float(belief.prior_std[i]),
-            determined=bool(belief.variance_ratio[i] <= UNDETERMINED_RATIO),
+            determined=bool(belief.variance_ratio[i] <= schema.UNDETERMINED_RATIO),
         )
         for i, info in enumerate(belief.motion.parameters)
     ]

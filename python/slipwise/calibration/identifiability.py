@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from slipwise import _core
 from slipwise.calibration.learner import Belief
 from slipwise.models.parameter_table import physical_name
+from slipwise.models.schema import UNDETERMINED_RATIO
 
-UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 LOOK_ALIKE = 0.9  # correlation from which on two parameters count as look-alikes
 
 

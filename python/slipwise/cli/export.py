@@ -145,6 +145,7 @@ def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
         "exit_code": 0,
         "files": paths,
         "parameters": {target.name: exported.values for target, exported in made.files},
+        "kept": {target.name: exported.kept for target, exported in made.files if exported.kept},
         "left_out": dict(made.left_out),
     }
     out.document(head("export") | document)
@@ -154,6 +155,9 @@ def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
         for name, value in exported.values.items()
     ]
     out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
+    for target, exported in made.files:
+        for name, reason in exported.kept.items():
+            out.line(f"left at the tool's own value: {target.name}: {name}: {' '.join(reason.split())}")
     for name, reason in made.left_out:
         out.line(f"left out: {name}: {reason}")
     show_files(out, paths)

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, ParameterFile, yaml_value
-from slipwise.export.reference_drive import motion_covariance, reference_drive
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated, yaml_value
+from slipwise.export.reference_drive import learned_variances, motion_covariance, reference_drive
 from slipwise.models.model import Model
 
 UPDATE_DISTANCE = 0.25  # m, update_min_d: AMCL draws its noise anew after this distance
@@ -81,9 +83,14 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
             "AMCL's alphas are the noise of wheel odometry, and this model is from commands",
             advice="calibrate with `--input wheel`",
         )
-    found = alphas(model, options.horizon)
     drive = reference_drive(model)
-    other = [f"alpha{i}: {yaml_value(value)}" for i, value in enumerate(found.differential, start=1)]
+    entries = _alphas(model, options.horizon, lambda found: found.omni)
+    other = _alphas(model, options.horizon, lambda found: found.differential)
+    unknown = [entry.why for entry in entries if isinstance(entry, Kept)]
+    if len(unknown) == len(entries):
+        raise ModelError(
+            f"none of AMCL's alphas is known: {unknown[0]}", advice="calibrate with a longer log"
+        )
     return ParameterFile(
         node="amcl",
         entries=[
@@ -100,10 +107,7 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
             Entry(
                 ("update_min_a",), UPDATE_ANGLE, "[rad] AMCL's default; the alphas hold for this angle only"
             ),
-            *(
-                Entry((f"alpha{i}",), value, meaning)
-                for i, (value, meaning) in enumerate(zip(found.omni, _MEANING, strict=True), start=1)
-            ),
+            *entries,
         ],
         notes=[
             (
@@ -112,6 +116,21 @@ def amcl(model: Model, options: ExportOptions) -> ParameterFile:
                 f"Noise as the model predicts it {options.horizon:g} s ahead, at {drive.speed:.3g} m/s and"
                 f" {drive.yaw_rate:.3g} rad/s."
             ),
-            _TWO_MODELS + "\n".join(other),
+            _TWO_MODELS + "\n".join(_in_comment(entry) for entry in other),
         ],
     )
+
+
+def _alphas(
+    model: Model, horizon: float, of_alphas: Callable[[Alphas], tuple[float, ...]]
+) -> list[Entry | Kept]:
+    numbers = LearnedNumbers(model)
+    found = learned_variances(model, lambda each: np.array(of_alphas(alphas(each, horizon))))
+    return [
+        stated((f"alpha{i}",), number, meaning, numbers)
+        for i, (number, meaning) in enumerate(zip(found, _MEANING, strict=True), start=1)
+    ]
+
+
+def _in_comment(entry: Entry | Kept) -> str:
+    return f"{entry.name}: {yaml_value(entry.value) if isinstance(entry, Entry) else entry.why}"

@@ -7,8 +7,9 @@ from importlib.resources import files
 
 from slipwise import _core
 from slipwise.export.c_covariance import covariance, noise, shifts
-from slipwise.export.c_limits import cursor, limits
+from slipwise.export.c_limits import cursor, how_known, limits
 from slipwise.export.chain import chain_of
+from slipwise.export.origin import one_line
 from slipwise.models.model import Model
 
 _TEMPLATE = "model_template.h"
@@ -45,7 +46,7 @@ def c_header(model: Model, origin: list[str]) -> str:
     template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
     inputs = "commanded speeds" if model.content.input == "command" else "wheel speeds"
     parts = {
-        "ORIGIN": "\n".join(("/*", *(f" * {line}" for line in origin), " */")),
+        "ORIGIN": "\n".join(("/*", *(f" * {one_line(line)}" for line in origin), " */")),
         "INPUT": inputs,
         "CONSTANTS": _constants(model),
         "RANGE": _range(model),
@@ -64,24 +65,39 @@ def c_header(model: Model, origin: list[str]) -> str:
 
 
 def _define(name: str, value: float, comment: str) -> str:
-    return f"#define SLIPWISE_{name} SLIPWISE_R({value!r})  /* {comment} */"
+    return f"#define SLIPWISE_{name} SLIPWISE_R({value!r})  /* {one_line(comment)} */"
 
 
 def _constants(model: Model) -> str:
     chain = chain_of(model)
-    lines = []
+    named: list[tuple[str, float, str, str]] = []
     for place, what, channel in (("V", "speed", chain.v), ("OMEGA", "yaw rate", chain.omega)):
-        lines += [
-            _define(f"DELAY_{place}", channel.delay, f"[s] transport delay of the {what}"),
-            _define(f"GAIN_{place}", channel.gain, f"drive over input, of the {what}"),
-            _define(f"LAG_{place}", channel.lag, f"[s] time constant of the {what}"),
-            _define(f"SLOW_SHARE_{place}", channel.slow_share, f"share of the {what} that follows slowly"),
-            _define(f"SLOW_LAG_{place}", channel.slow_lag, "[s] its time constant; 0 where there is none"),
+        named += [
+            (f"DELAY_{place}", channel.delay.value, f"[s] transport delay of the {what}", "delay"),
+            (f"GAIN_{place}", channel.gain.value, f"drive over input, of the {what}", "gain"),
+            (f"LAG_{place}", channel.lag.value, f"[s] time constant of the {what}", "lag"),
+            (
+                f"SLOW_SHARE_{place}",
+                channel.slow_share.value,
+                f"share of the {what} that follows slowly",
+                "slow_share",
+            ),
+            (
+                f"SLOW_LAG_{place}",
+                channel.slow_lag.value,
+                "[s] its time constant; 0 where there is none",
+                "slow_lag",
+            ),
         ]
-    offset = "[s] poses are stamped this much later than the inputs"
-    lines.append(_define("CLOCK_OFFSET", chain.clock_offset, offset))
+    how = how_known(model)
+    lines = [
+        _define(name, value, what + how.get(f"{part}_{name.rpartition('_')[2].lower()}", ""))
+        for name, value, what, part in named
+    ]
+    offset = "[s] poses are stamped this much later than the inputs" + how.get("clock_offset", "")
+    lines.append(_define("CLOCK_OFFSET", chain.clock_offset.value, offset))
     slip = model.content.parameters[: model.motion.slip_size]
-    lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}], +- {p.std:.2g}") for i, p in enumerate(slip)]
+    lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}]{how[p.name]}") for i, p in enumerate(slip)]
     return "\n".join(lines)
 
 

@@ -8,6 +8,8 @@ from importlib.resources import files
 
 from slipwise import _core
 from slipwise.models.model import Model
+from slipwise.models.parameter_table import physical_parameters
+from slipwise.number_text import estimate_texts
 
 _NONE = _core.LaneLimits()
 
@@ -16,7 +18,10 @@ def limits(model: Model) -> str:
     """Return the limits as constants, for the header itself and for the C++ library."""
     of_drive = model.limits or _core.CommandLimits(_NONE, _NONE, _NONE, 1.0, 1.0, 1.0)
     lanes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
-    lines = ["/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */"]
+    lines = [
+        "/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */",
+        *_said(model),
+    ]
     lines += [f"#define SLIPWISE_LIMITS_{name} {_lane(lane)}" for name, lane in lanes.items()]
     lines += [
         f"#define SLIPWISE_LIMITS_TRACK SLIPWISE_R({of_drive.track!r})  /* [m] between the sides */",
@@ -25,6 +30,24 @@ def limits(model: Model) -> str:
         f"#define SLIPWISE_LIMITS_SIDES {int(_lane(of_drive.side) != _lane(_NONE))}",
     ]
     return "\n".join(lines)
+
+
+def how_known(model: Model) -> dict[str, str]:
+    """Return how well each learned number is known, as the end of a comment, by names without `log_`.
+
+    A number that is not identified stays in the header, which predicts what the model does; it says so.
+    """
+    undetermined = {p.name.removeprefix("log_") for p in model.content.parameters if not p.determined}
+    return {
+        p.name: f", {' +- '.join(estimate_texts(p.value, p.std))}"
+        + ("" if p.identified and p.name not in undetermined else ", not identified")
+        for p in physical_parameters(model)
+    }
+
+
+def _said(model: Model) -> list[str]:
+    how = how_known(model)
+    return [f"/* {name}{text} */" for name, text in how.items() if name.startswith("limits.")]
 
 
 def cursor(model: Model) -> str:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The command chain of a model in plain numbers: the one place where exporters read it."""
+"""The command chain of a model in learned numbers: the one place where exporters read it."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.model import Model
 
 _KNOWN = {"clock_offset"} | {
@@ -16,34 +18,34 @@ _KNOWN = {"clock_offset"} | {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ChannelResponse:
     """How one channel answers a command: delay, gain, and two lags side by side."""
 
-    lag: float  # s
-    delay: float  # s
-    gain: float
-    slow_share: float  # of the answer that follows by the slow lag
-    slow_lag: float  # s; zero where there is no slow part
+    lag: LearnedNumber  # s
+    delay: LearnedNumber  # s
+    gain: LearnedNumber
+    slow_share: LearnedNumber  # of the answer that follows by the slow lag
+    slow_lag: LearnedNumber  # s; zero where there is no slow part
 
     @property
-    def mean_lag(self) -> float:
+    def mean_lag(self) -> LearnedNumber:
         """The time constant of one lag that loses as much distance [s]."""
-        return (1.0 - self.slow_share) * self.lag + self.slow_share * self.slow_lag
+        return self.lag + self.slow_share * (self.slow_lag + self.lag * -1.0)
 
     @property
-    def mean_delay(self) -> float:
+    def mean_delay(self) -> LearnedNumber:
         """How late the channel is in all [s]: a lag loses the distance that a delay of its length does."""
         return self.delay + self.mean_lag
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Chain:
     """The channels, and how much later than the inputs poses are stamped [s]."""
 
     v: ChannelResponse
     omega: ChannelResponse
-    clock_offset: float
+    clock_offset: LearnedNumber
 
 
 def chain_of(model: Model) -> Chain:
@@ -52,24 +54,33 @@ def chain_of(model: Model) -> Chain:
     Raises:
         ModelError: the chain has a part that the exporters do not know, and would leave out.
     """
-    values = {p.name: p.value for p in model.body.content.parameters[model.motion.slip_size :]}
-    unknown = sorted(set(values) - _KNOWN)
+    parameters = model.body.content.parameters
+    places = {p.name: i for i, p in enumerate(parameters) if i >= model.motion.slip_size}
+    unknown = sorted(set(places) - _KNOWN)
     if unknown:
         raise ModelError(
             f"the command chain has {', '.join(unknown)}, which cannot be exported",
             advice="calibrate without it",
         )
+    numbers = LearnedNumbers(model.body)
 
-    def seconds(name: str) -> float:
-        return math.exp(values[name]) if name in values else 0.0
+    def seconds(name: str) -> LearnedNumber:
+        if name not in places:
+            return numbers.exactly(0.0)
+        return numbers.seconds(places[name], parameters[places[name]].value)
+
+    def plain(name: str, absent: float) -> LearnedNumber:
+        if name not in places:
+            return numbers.exactly(absent)
+        return numbers.of_parameters(parameters[places[name]].value, np.eye(len(parameters))[places[name]])
 
     def channel(place: str) -> ChannelResponse:
         return ChannelResponse(
             lag=seconds(f"log_lag_{place}"),
             delay=seconds(f"log_delay_{place}"),
-            gain=values.get(f"gain_{place}", 1.0),
-            slow_share=values.get(f"slow_share_{place}", 0.0),
+            gain=plain(f"gain_{place}", 1.0),
+            slow_share=plain(f"slow_share_{place}", 0.0),
             slow_lag=seconds(f"log_slow_lag_{place}"),
         )
 
-    return Chain(channel("v"), channel("omega"), values.get("clock_offset", 0.0))
+    return Chain(channel("v"), channel("omega"), plain("clock_offset", 0.0))

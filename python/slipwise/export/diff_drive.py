@@ -3,10 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, ParameterFile
-from slipwise.export.reference_drive import motion_covariance, reference_drive, slip_density
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated
+from slipwise.export.reference_drive import (
+    learned_variances,
+    motion_covariance,
+    reference_drive,
+    slip_density,
+)
 from slipwise.export.wheel_multipliers import WheelMultipliers, wheel_multipliers
 from slipwise.models.model import Model
 
@@ -34,7 +42,7 @@ def diff_drive(model: Model, options: ExportOptions) -> ParameterFile:
     found = wheel_multipliers(model, options)
     return ParameterFile(
         node="diff_drive_controller",
-        entries=[*_geometry(found, options), *_covariances(model, options), *_limits(model, found)],
+        entries=[*_geometry(found, options, model), *_covariances(model, options), *_limits(model, found)],
         notes=[_names(options), _left_over(found)],
     )
 
@@ -58,7 +66,8 @@ def _left_over(found: WheelMultipliers) -> str:
     )
 
 
-def _geometry(found: WheelMultipliers, options: ExportOptions) -> list[Entry]:
+def _geometry(found: WheelMultipliers, options: ExportOptions, model: Model) -> list[Entry | Kept]:
+    numbers = LearnedNumbers(model)
     sides = (
         "one factor for both sides: give --wheel-separation to tell them apart"
         if options.wheel_separation is None
@@ -69,46 +78,61 @@ def _geometry(found: WheelMultipliers, options: ExportOptions) -> list[Entry]:
         if options.wheel_separation is None
         else [Entry(("wheel_separation",), options.wheel_separation, "[m] nominal, as given")]
     )
-    radius = f"+- {found.radius_std:.2g}; {sides}"
+    named = (
+        ("wheel_separation_multiplier", found.separation, ""),
+        ("left_wheel_radius_multiplier", found.left_radius, f"; {sides}"),
+        ("right_wheel_radius_multiplier", found.right_radius, f"; {sides}"),
+    )
     return [
         *separation,
-        Entry(("wheel_separation_multiplier",), found.separation, f"+- {found.separation_std:.2g}"),
-        Entry(("left_wheel_radius_multiplier",), found.left_radius, radius),
-        Entry(("right_wheel_radius_multiplier",), found.right_radius, radius),
+        *(stated((name,), number, f"{numbers.text(number)}{how}", numbers) for name, number, how in named),
     ]
 
 
-def _covariances(model: Model, options: ExportOptions) -> list[Entry]:
-    drive = reference_drive(model)
+def _covariances(model: Model, options: ExportOptions) -> list[Entry | Kept]:
+    drive, numbers = reference_drive(model), LearnedNumbers(model)
     at, seconds = (drive.speed, drive.yaw_rate), options.horizon
     where = f"at {drive.speed:.3g} m/s and {drive.yaw_rate:.3g} rad/s"
-    density = slip_density(model, at, seconds)
-    x, y, yaw = motion_covariance(model, at, seconds).diagonal().tolist()
-    vx, vy, vyaw = (density * PUBLISH_RATE).tolist()
+    twist = learned_variances(model, lambda each: slip_density(each, at, seconds) * PUBLISH_RATE)
+    pose = learned_variances(model, lambda each: motion_covariance(each, at, seconds).diagonal())
     return [
         Entry(("publish_rate",), PUBLISH_RATE, "[Hz] the twist's covariance below is for this rate"),
-        Entry(
-            ("twist_covariance_diagonal",),
-            [vx, vy, UNMEASURED, UNMEASURED, UNMEASURED, vyaw],
+        _diagonal(
+            "twist_covariance_diagonal",
+            twist,
+            numbers,
             f"[m^2/s^2, rad^2/s^2] {where}: the density of the slip noise times the rate, so that a\n"
             f"filter that takes every message as new is as unsure after {seconds:g} s as the model is",
         ),
-        Entry(
-            ("pose_covariance_diagonal",),
-            [x, y, UNMEASURED, UNMEASURED, UNMEASURED, yaw],
+        _diagonal(
+            "pose_covariance_diagonal",
+            pose,
+            numbers,
             f"[m^2, rad^2] {where}: growth within {seconds:g} s. The controller never lets it grow,\n"
             "so fuse the twist, or the pose as differences, never the pose itself",
         ),
     ]
 
 
-def _limits(model: Model, found: WheelMultipliers) -> list[Entry]:
-    span = model.content.range
+def _diagonal(
+    name: str, planar: Sequence[LearnedNumber], numbers: LearnedNumbers, meaning: str
+) -> Entry | Kept:
+    """Return a diagonal of x, y, z, roll, pitch and yaw, of which three are learned: all of them, or none."""
+    objections = [why for why in map(numbers.objection, planar) if why]
+    if objections:
+        return Kept((name,), objections[0])
+    x, y, yaw = (number.value for number in planar)
+    return Entry((name,), [x, y, UNMEASURED, UNMEASURED, UNMEASURED, yaw], meaning)
+
+
+def _limits(model: Model, found: WheelMultipliers) -> list[Entry | Kept]:
+    span, numbers = model.content.range, LearnedNumbers(model)
     fastest = found.yaw_gain * max(map(abs, span.yaw_rate))
     turn = "[rad/s] of the body, as far as the log went, to the side where it went further"
-    return [
-        Entry(("linear.x.max_velocity",), found.speed_gain * max(span.speed[1], 0.0), _SPEED),
-        Entry(("linear.x.min_velocity",), found.speed_gain * min(span.speed[0], 0.0), _SPEED),
-        Entry(("angular.z.max_velocity",), fastest, turn),
-        Entry(("angular.z.min_velocity",), -fastest, turn),
-    ]
+    named = (
+        ("linear.x.max_velocity", found.speed_gain * max(span.speed[1], 0.0), _SPEED),
+        ("linear.x.min_velocity", found.speed_gain * min(span.speed[0], 0.0), _SPEED),
+        ("angular.z.max_velocity", fastest, turn),
+        ("angular.z.min_velocity", fastest * -1.0, turn),
+    )
+    return [stated((name,), number, meaning, numbers) for name, number, meaning in named]

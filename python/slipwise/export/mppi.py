@@ -3,12 +3,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from slipwise.errors import ModelError
+from slipwise.export.body_limits import Gains, body_limits, slip_gains
 from slipwise.export.chain import Chain, chain_of
-from slipwise.export.mppi_limits import dead_band_notes, with_limits
+from slipwise.export.learned_number import LearnedNumbers
+from slipwise.export.mppi_limits import Bound, dead_bands, limit_notes, with_limits
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, ParameterFile
-from slipwise.models.body_gains import body_gains, body_twists, turning_twists
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated
+from slipwise.models.body_gains import body_twists, turning_twists
 from slipwise.models.model import Model
 
 CONTROLLER = "FollowPath"  # the name that Nav2's own parameter file gives the controller
@@ -31,26 +35,40 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
             "MPPI plans commands, and this model was not learned from commands",
             advice="calibrate with `--input command`",
         )
-    chain = chain_of(model)
-    slip = body_gains(body_twists(model))
-    limits = model.content.limits
-    behind = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
-    gains = (behind[0] * chain.v.gain * slip[0], behind[1] * chain.omega.gain * slip[1])
-    lateness = _delays(chain) if options.nav2 == "rolling" else _accelerations(chain, model, gains)
-    entries = [*_kind(options), *_speeds(model, gains), *lateness, *_turning(model, options)]
-    entries = with_limits(entries, limits, gains)
+    numbers, chain, limits = LearnedNumbers(model.body), chain_of(model), model.content.limits
+    slip = slip_gains(numbers, body_twists(model))
+    behind = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
+    before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
+    gains = (behind[0] * before[0], behind[1] * before[1])
+    bounds = _speeds(model, gains)
+    if options.nav2 == "kilted":
+        bounds |= _accelerations(chain, model, gains)
+    entries = [
+        *_kind(options),
+        *(_delays(chain, numbers) if options.nav2 == "rolling" else ()),
+        *with_limits(bounds, body_limits(limits, behind, numbers), numbers),
+        *_turning(model, options, numbers),
+        *dead_bands(limits, numbers),
+    ]
     return ParameterFile(
         node="controller_server",
-        entries=[Entry((CONTROLLER, *entry.key), entry.value, entry.meaning) for entry in entries],
-        notes=[
-            _NAMES[options.nav2],
-            (
-                "MPPI takes the robot to reach each command exactly. This one, once settled, reaches"
-                f" {gains[0]:.3f} of the speed\nand {gains[1]:.3f} of the yaw rate: correct that first,"
-                " where commands become wheel speeds. Speeds below are of the body."
-            ),
-            *dead_band_notes(limits),
-        ],
+        entries=[replace(entry, key=(CONTROLLER, *entry.key)) for entry in entries],
+        notes=[_NAMES[options.nav2], _reached(gains, numbers), *limit_notes(limits)],
+    )
+
+
+def _reached(gains: Gains, numbers: LearnedNumbers) -> str:
+    """Say how much of a command the robot reaches."""
+    speed, yaw = (
+        f"an unknown part of the {what}"
+        if numbers.objection(gain)
+        else f"{gain.value:.3f} of the {what} (+- {numbers.std(gain):.2g})"
+        for gain, what in zip(gains, ("speed", "yaw rate"), strict=True)
+    )
+    return (
+        f"MPPI takes the robot to reach each command exactly. This one, once settled,\nreaches {speed}"
+        f" and {yaw}:\ncorrect that first,"
+        " where commands become wheel speeds. Speeds below are of the body."
     )
 
 
@@ -65,39 +83,39 @@ def _kind(options: ExportOptions) -> list[Entry]:
     ]
 
 
-def _speeds(model: Model, gains: tuple[float, float]) -> list[Entry]:
+def _speeds(model: Model, gains: Gains) -> dict[str, list[Bound]]:
     span, (speed, yaw) = model.content.range, gains
-    return [
-        Entry(("vx_max",), speed * max(span.speed[1], 0.0), "[m/s] as far as the log went"),
-        Entry(("vx_min",), speed * min(span.speed[0], 0.0), "[m/s] as far as the log went"),
-        Entry(
-            ("wz_max",),
-            yaw * max(map(abs, span.yaw_rate)),
-            "[rad/s] as far as the log went, to the side where it went further",
-        ),
-    ]
+    forth, back = speed * max(span.speed[1], 0.0), speed * min(span.speed[0], 0.0)
+    turn = "[rad/s] as far as the log went, to the side where it went further"
+    return {
+        "vx_max": [Bound(forth, "[m/s] as far as the log went")],
+        "vx_min": [Bound(back, "[m/s] as far as the log went")],
+        "wz_max": [Bound(yaw * max(map(abs, span.yaw_rate)), turn)],
+    }
 
 
-def _delays(chain: Chain) -> list[Entry]:
+def _delays(chain: Chain, numbers: LearnedNumbers) -> list[Entry | Kept]:
     return [
-        Entry(
+        stated(
             (f"model_delay_{name}",),
             channel.mean_delay,
-            f"[s] delay {channel.delay:.3g} and lag {channel.mean_lag:.3g}: MPPI has no lag, and a delay of\n"
+            f"[s] {numbers.text(channel.mean_delay)}: delay {channel.delay.value:.3g} and lag"
+            f" {channel.mean_lag.value:.3g}. MPPI has no lag, and a delay of\n"
             "the same length loses the same distance",
+            numbers,
         )
         for name, channel in (("vx", chain.v), ("wz", chain.omega))
     ]
 
 
-def _accelerations(chain: Chain, model: Model, gains: tuple[float, float]) -> list[Entry]:
+def _accelerations(chain: Chain, model: Model, gains: Gains) -> dict[str, list[Bound]]:
     """Return the ramps to the fastest speed that lose as much distance as the robot does by being late."""
     span = model.content.range
     late_v, late_omega = chain.v.mean_delay, chain.omega.mean_delay
-    if not (late_v > 0.0 and late_omega > 0.0):
-        return []
-    ax = gains[0] * max(map(abs, span.speed)) / (2.0 * late_v)
-    az = gains[1] * max(map(abs, span.yaw_rate)) / (2.0 * late_omega)
+    if not (late_v.value > 0.0 and late_omega.value > 0.0):
+        return {}
+    ax = gains[0] * (max(map(abs, span.speed)) / 2.0) / late_v
+    az = gains[1] * (max(map(abs, span.yaw_rate)) / 2.0) / late_omega
 
     def meaning(unit: str, late: float) -> str:
         return (
@@ -105,28 +123,29 @@ def _accelerations(chain: Chain, model: Model, gains: tuple[float, float]) -> li
             "to the fastest of the log loses as much way"
         )
 
-    return [
-        Entry(("ax_max",), ax, meaning("m/s^2", late_v)),
-        Entry(("ax_min",), -ax, "[m/s^2] as ax_max"),
-        Entry(("az_max",), az, meaning("rad/s^2", late_omega)),
-    ]
+    return {
+        "ax_max": [Bound(ax, meaning("m/s^2", late_v.value))],
+        "ax_min": [Bound(ax * -1.0, "[m/s^2] as a ramp, like ax_max")],
+        "az_max": [Bound(az, meaning("rad/s^2", late_omega.value))],
+    }
 
 
-def _turning(model: Model, options: ExportOptions) -> list[Entry]:
+def _turning(model: Model, options: ExportOptions, numbers: LearnedNumbers) -> list[Entry | Kept]:
     radius = options.min_turning_radius
     if radius is None:
         return []
     key = ("AckermannConstraints",) if options.nav2 == "kilted" else ("ackermann",)
-    speed, yaw_rate = body_gains(turning_twists(model, radius))
-    if not (yaw_rate > 0.0 and speed > 0.0):
+    speed, yaw_rate = slip_gains(numbers, turning_twists(model, radius))
+    if not (yaw_rate.value > 0.0 and speed.value > 0.0):
         raise ModelError(
             "by the model the vehicle does not turn the way it is steered",
             advice="check the signs of the log",
         )
     return [
-        Entry(
+        stated(
             (*key, "min_turning_r"),
-            radius * speed / yaw_rate,
+            speed * radius / yaw_rate,
             f"[m] {radius:g} by the vehicle's geometry, with the slip of full lock",
+            numbers,
         )
     ]

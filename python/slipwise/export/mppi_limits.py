@@ -3,44 +3,68 @@
 
 from __future__ import annotations
 
-from slipwise.export.parameter_file import Entry
-from slipwise.models.schema import LearnedLimit, LimitsSection
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-_SIDES = "Limits of the sides are not among them: MPPI has none. Keep speed and turning together below them."
+from slipwise.export.body_limits import BodyLimits, strictest
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.export.parameter_file import Entry, Kept, stated
+from slipwise.models.schema import LimitsSection
+
+_DEAD_BANDS = ("VelocityDeadbandCritic", "deadband_velocities")
+_SIDES = """\
+Limits of the sides bound speed and turning together; here each is bounded as if the robot did only that.
+Where it does both, keep below them by yourself."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bound:
+    """A number that bounds a parameter, and what it is."""
+
+    number: LearnedNumber
+    meaning: str
 
 
 def with_limits(
-    entries: list[Entry], limits: LimitsSection | None, gains: tuple[float, float]
-) -> list[Entry]:
-    """Return the entries with learned tops and rates in them; `gains` are the body's over the commands."""
-    if limits is None:
-        return entries
-    known = {entry.key: entry for entry in entries}
-    for name, top, kind in (("vx_max", limits.speed.top, 1.0), ("vx_min", limits.speed.top, -1.0)):
-        _cap(known, name, top, kind * gains[0])
-    _cap(known, "wz_max", limits.yaw_rate.top, gains[1])
-    _cap(known, "ax_max", limits.speed.acceleration, gains[0])
-    _cap(known, "ax_min", limits.speed.braking, -gains[0])
-    _cap(known, "az_max", limits.yaw_rate.acceleration, gains[1])
-    dead = (limits.speed.dead_band, limits.yaw_rate.dead_band)
-    if any(band is not None for band in dead):
-        speed, turn = (0.0 if band is None else band.value for band in dead)
-        key = ("VelocityDeadbandCritic", "deadband_velocities")
-        known[key] = Entry(key, [speed, 0.0, turn], "[m/s, m/s, rad/s] commands that are slower give zero")
-    return list(known.values())
+    bounds: Mapping[str, Sequence[Bound]], limits: BodyLimits, numbers: LearnedNumbers
+) -> list[Entry | Kept]:
+    """Return one entry for each parameter, the strictest of its bounds and of the learned limits."""
+    learned = {
+        "vx_max": (limits.top_v, 1.0),
+        "vx_min": (limits.top_v, -1.0),
+        "wz_max": (limits.top_omega, 1.0),
+        "ax_max": (limits.acceleration_v, 1.0),
+        "ax_min": (limits.braking_v, -1.0),
+        "az_max": (limits.acceleration_omega, 1.0),
+    }
+    entries = []
+    for name, (found, sign) in learned.items():
+        all_bounds = list(bounds.get(name, ()))
+        for number in found:
+            text = f"learned: the drive's limit, {numbers.text(number)}"
+            all_bounds.append(Bound(number * sign, text))
+        if all_bounds:
+            least = strictest([bound.number for bound in all_bounds], numbers)
+            meaning = next(bound.meaning for bound in all_bounds if bound.number is least)
+            entries.append(stated((name,), least, meaning, numbers))
+    return entries
 
 
-def _cap(known: dict[tuple[str, ...], Entry], name: str, limit: LearnedLimit | None, gain: float) -> None:
-    """Put a learned limit in, unless what is there already is stricter."""
-    key = (name,)
-    if limit is None:
-        return
-    value, there = gain * limit.value, known.get(key)
-    if there is None or abs(value) < abs(float(str(there.value))):
-        known[key] = Entry(key, value, f"learned: the drive's limit, +- {abs(gain) * limit.std:.2g}")
+def dead_bands(limits: LimitsSection | None, numbers: LearnedNumbers) -> list[Entry | Kept]:
+    """Return the speeds below which commands give nothing; zero, Nav2's own, where none is known."""
+    bands = () if limits is None else (limits.speed.dead_band, limits.yaw_rate.dead_band)
+    known = [None if band is None else numbers.limit(band) for band in bands]
+    objections = [numbers.objection(band) for band in known if band is not None]
+    if not objections:
+        return []
+    if all(objections):
+        return [Kept(_DEAD_BANDS, objections[0])]
+    speed, turn = (0.0 if band is None or numbers.objection(band) else band.value for band in known)
+    meaning = "[m/s, m/s, rad/s] commands that are slower give zero"
+    return [Entry(_DEAD_BANDS, [speed, 0.0, turn], "\n".join((meaning, *filter(None, objections))))]
 
 
-def dead_band_notes(limits: LimitsSection | None) -> list[str]:
+def limit_notes(limits: LimitsSection | None) -> list[str]:
     """Return what the file's reader must know of limits."""
     if limits is None:
         return ["The model has no dead-band: VelocityDeadbandCritic is left as it is."]

@@ -3,8 +3,14 @@
 
 from __future__ import annotations
 
+import json
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.export.origin import one_line
 
 _ROW = 15  # numbers on a line
 
@@ -26,34 +32,63 @@ class Entry:
 
 
 @dataclass(frozen=True)
+class Kept:
+    """A parameter that is left out, so that the tool's own value stays; `why` stands in its place."""
+
+    key: tuple[str, ...]
+    why: str
+
+    @property
+    def name(self) -> str:
+        """The parameter's full name, as ROS spells it."""
+        return ".".join(self.key)
+
+
+@dataclass(frozen=True)
 class ParameterFile:
     """What one node is to be given."""
 
     node: str
-    entries: Sequence[Entry]
+    entries: Sequence[Entry | Kept]
     notes: Sequence[str] = ()  # about the whole file, one paragraph each
 
     def text(self, origin: Sequence[str]) -> str:
         """Return the file, with `origin` on top as a comment."""
-        lines = [f"# {line}" for line in origin]
+        lines = _comment("\n".join(origin))
         for note in self.notes:
-            lines += ["#", *(f"# {line}" for line in note.splitlines())]
+            lines += ["#", *_comment(note)]
         lines += [f"{self.node}:", "  ros__parameters:"]
         open_parts: tuple[str, ...] = ()
         for entry in self.entries:
             *parents, last = entry.key
+            if isinstance(entry, Kept):
+                said = f"{entry.name} is left at the tool's own value:\n{entry.why}"
+                lines += _comment(said, _indent(len(parents)))
+                continue
             for depth, part in enumerate(parents):
                 if open_parts[: depth + 1] != tuple(parents[: depth + 1]):
                     lines.append(f"{_indent(depth)}{part}:")
             open_parts = tuple(parents)
             indent = _indent(len(parents))
-            lines += [f"{indent}# {line}" for line in entry.meaning.splitlines()]
+            lines += _comment(entry.meaning, indent)
             lines.append(f"{indent}{last}: {_wrapped(entry.value, indent)}")
         return "\n".join(lines) + "\n"
 
     def values(self) -> dict[str, Value]:
         """Return the values by their full names."""
-        return {entry.name: entry.value for entry in self.entries}
+        return {entry.name: entry.value for entry in self.entries if isinstance(entry, Entry)}
+
+    def kept(self) -> dict[str, str]:
+        """Return why parameters are left at the tool's own value, by their full names."""
+        return {entry.name: entry.why for entry in self.entries if isinstance(entry, Kept)}
+
+
+def stated(
+    key: tuple[str, ...], number: LearnedNumber, meaning: str, numbers: LearnedNumbers
+) -> Entry | Kept:
+    """Return a learned number as an entry, or why it is none."""
+    why = numbers.objection(number)
+    return Kept(key, why) if why else Entry(key, number.value, meaning)
 
 
 def yaml_value(value: Value) -> str:
@@ -63,7 +98,7 @@ def yaml_value(value: Value) -> str:
     if isinstance(value, float):
         return _float_text(value)
     if isinstance(value, str):
-        return f'"{value}"'
+        return json.dumps(value)  # a YAML string in double quotes, whatever is in it
     return f"[{', '.join(yaml_value(item) for item in value)}]"
 
 
@@ -76,7 +111,16 @@ def _wrapped(value: Value, indent: str) -> str:
     return "[\n" + ",\n".join(f"{indent}  {row}" for row in rows) + f"\n{indent}]"
 
 
+def _comment(text: str, indent: str = "") -> list[str]:
+    """Return the lines of a text as lines of a comment, which no character of them can end."""
+    return [f"{indent}# {one_line(line)}" for line in text.split("\n")]
+
+
 def _float_text(value: float) -> str:
+    if not math.isfinite(value):
+        raise ModelError(
+            f"a parameter would be {value}, which is no number", advice="calibrate again, or restore the file"
+        )
     mantissa, _, exponent = f"{value:.6g}".partition("e")
     if "." not in mantissa:
         mantissa += ".0"

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.model import Model
 from slipwise.prediction import tail_at
 
@@ -72,6 +74,29 @@ def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Fl
         density + np.diag(_spread(model, at, lasting, model.covariance_over(seconds))) / _BRIEF**2 * seconds
     )
     return np.asarray(density * tail_at(model, seconds).growth, dtype=np.float64)
+
+
+def learned_variances(model: Model, of_model: Callable[[Model], Floats]) -> list[LearnedNumber]:
+    """Return variances, which `of_model` gives of a model, as learned numbers.
+
+    The part of one that comes from parameters which the log does not determine is a guess.
+    """
+    numbers = LearnedNumbers(model)
+    found = []
+    for value, learned in zip(of_model(model).tolist(), of_model(_determined(model)).tolist(), strict=True):
+        guessed = 1.0 - learned / value if value > 0.0 else 0.0
+        found.append(numbers.variance(value, guessed=guessed))
+    return found
+
+
+def _determined(model: Model) -> Model:
+    """Return the model as if the parameters that the log does not determine were known exactly."""
+    known = np.array([parameter.determined for parameter in model.content.parameters], dtype=bool)
+    if known.all():
+        return model
+    parameters = [p if p.determined else p.model_copy(update={"std": 0.0}) for p in model.content.parameters]
+    covariance = np.where(known[:, None] & known, model.covariance, 0.0).tolist()
+    return Model(model.content.model_copy(update={"parameters": parameters, "covariance": covariance}))
 
 
 def _settled(model: Model, drive: tuple[float, float], seconds: float) -> _core.SegmentLinearization:

@@ -3,16 +3,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from slipwise.export.body_limits import body_limits, slip_gains, strictest
 from slipwise.export.chain import chain_of
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
-from slipwise.export.parameter_file import Entry, ParameterFile
-from slipwise.export.reference_drive import ReferenceDrive, reference_drive, slip_density
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile
+from slipwise.export.reference_drive import (
+    ReferenceDrive,
+    learned_variances,
+    reference_drive,
+    slip_density,
+)
+from slipwise.models.body_gains import body_twists
 from slipwise.models.model import Model
 
 FREQUENCY = 30.0  # Hz, the filter's default
 #: The filter's own defaults of the process noise, [x, y, z, roll, pitch, yaw and their rates, ax, ay, az].
 DEFAULTS = (0.05, 0.05, 0.06, 0.03, 0.03, 0.06, 0.025, 0.025, 0.04, 0.01, 0.01, 0.02, 0.01, 0.01, 0.015)
 _X, _Y, _YAW = 0, 1, 5
+
+Bounds = Sequence[LearnedNumber]
 
 
 def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
@@ -47,11 +60,18 @@ _NO_CONTROL = "this model is from wheel speeds: it does not know how the robot a
 
 def _process_noise(model: Model, drive: ReferenceDrive, horizon: float) -> list[Entry]:
     """Return the process noise: PSDs that the filter multiplies by the squared speed, and by time."""
-    lon, lat, yaw = slip_density(model, (drive.speed, drive.yaw_rate), horizon).tolist()
     norm = drive.speed**2 + drive.yaw_rate**2
-    diagonal = list(DEFAULTS)
-    diagonal[_X] = diagonal[_Y] = max(lon, lat) / norm
-    diagonal[_YAW] = yaw / norm
+    lon, lat, yaw = learned_variances(
+        model, lambda each: slip_density(each, (drive.speed, drive.yaw_rate), horizon) / norm
+    )
+    position = max(lon, lat, key=lambda number: number.value)
+    numbers, diagonal, unknown = LearnedNumbers(model), list(DEFAULTS), []
+    for places, number, name in (((_X, _Y), position, "x and y"), ((_YAW,), yaw, "yaw")):
+        why = numbers.objection(number)
+        if why:
+            unknown.append(f"\n{name} too: {why}")
+        for place in () if why else places:
+            diagonal[place] = number.value
     size = len(diagonal)
     flat = [diagonal[i] if i == j else 0.0 for i in range(size) for j in range(size)]
     return [
@@ -64,36 +84,74 @@ def _process_noise(model: Model, drive: ReferenceDrive, horizon: float) -> list[
             ("process_noise_covariance",),
             flat,
             f"x and y (the noisier of forward and sideways) and yaw: learned, right at {drive.speed:.3g}"
-            f" m/s\nand {drive.yaw_rate:.3g} rad/s over {horizon:g} s. All others: the filter's defaults",
+            f" m/s\nand {drive.yaw_rate:.3g} rad/s over {horizon:g} s. All others: the filter's defaults"
+            + "".join(unknown),
         ),
     ]
 
 
-def _control(model: Model) -> list[Entry]:
-    """Return gains 1/lag, by which the filter multiplies the missing speed, and limits that never bind."""
-    chain, span = chain_of(model), model.content.range
-    gains, limits = [], []
-    for lag, (low, high) in ((chain.v.mean_lag, span.speed), (chain.omega.mean_lag, span.yaw_rate)):
-        gain = min(1.0 / lag, FREQUENCY) if lag > 0.0 else FREQUENCY
-        gains.append(gain)
-        limits.append(gain * (max(high, 0.0) - min(low, 0.0)))
-    axes = [_on_axes(values) for values in (gains, limits)]
-    delays = f"{chain.v.delay:.3g} s and {chain.omega.delay:.3g} s"
+@dataclass(frozen=True, eq=False)
+class _Axis:
+    """What the filter is to know of one commanded speed; `why` says why nothing, where that is so."""
+
+    gain: float  # 1/s
+    acceleration: float  # m/s^2 or rad/s^2
+    braking: float
+    why: str = ""
+
+
+def _axis(
+    lag: LearnedNumber, span: list[float], rates: tuple[Bounds, Bounds], numbers: LearnedNumbers
+) -> _Axis:
+    """Return the gain 1/lag, by which the filter multiplies the missing speed, and limits that let it."""
+    why = numbers.objection(lag)
+    if why:
+        return _Axis(0.0, 0.0, 0.0, why)
+    quick = lag.value * FREQUENCY <= 1.0
+    gain = numbers.exactly(FREQUENCY) if quick else numbers.exactly(1.0) / lag
+    ramp = gain * (max(span[1], 0.0) - min(span[0], 0.0))
+    acceleration, braking = (strictest([ramp, *learned], numbers).value for learned in rates)
+    return _Axis(gain.value, acceleration, braking)
+
+
+def _control(model: Model) -> list[Entry | Kept]:
+    """Return the control term of the axes whose lag is known."""
+    numbers, chain, span = LearnedNumbers(model.body), chain_of(model), model.content.range
+    slip = slip_gains(numbers, body_twists(model))
+    behind = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
+    limits = body_limits(model.content.limits, behind, numbers)
+    v = _axis(chain.v.mean_lag, span.speed, (limits.acceleration_v, limits.braking_v), numbers)
+    omega = _axis(
+        chain.omega.mean_lag, span.yaw_rate, (limits.acceleration_omega, limits.braking_omega), numbers
+    )
+    if v.why and omega.why:
+        return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]
+    delays = f"{numbers.text(chain.v.delay)} s and {numbers.text(chain.omega.delay)} s"
+    unknown = [
+        f"not the {name}: {axis.why}" for name, axis in (("speed", v), ("yaw rate", omega)) if axis.why
+    ]
+    steps = "what the lag does at the widest step of the log, or the drive's limit"
     return [
         Entry(("use_control",), True, f"the filter has no delay; this robot's are {delays}"),
         Entry(
-            ("control_config",), [True, False, False, False, False, True], "speed and yaw rate are commanded"
+            ("control_config",),
+            [not v.why, False, False, False, False, not omega.why],
+            "\n".join(unknown) or "speed and yaw rate are commanded",
         ),
-        Entry(("acceleration_gains",), axes[0], "[1/s] one over the lag, at most the filter's frequency"),
-        Entry(("deceleration_gains",), axes[0], "[1/s] as above"),
+        Entry(
+            ("acceleration_gains",),
+            _on_axes(v.gain, omega.gain),
+            "[1/s] one over the lag, at most the filter's frequency",
+        ),
+        Entry(("deceleration_gains",), _on_axes(v.gain, omega.gain), "[1/s] as above"),
         Entry(
             ("acceleration_limits",),
-            axes[1],
-            "[m/s^2, rad/s^2] what the lag does at the widest step of the log",
+            _on_axes(v.acceleration, omega.acceleration),
+            f"[m/s^2, rad/s^2] {steps}",
         ),
-        Entry(("deceleration_limits",), axes[1], "[m/s^2, rad/s^2] as above"),
+        Entry(("deceleration_limits",), _on_axes(v.braking, omega.braking), "[m/s^2, rad/s^2] as above"),
     ]
 
 
-def _on_axes(values: list[float]) -> list[float]:
-    return [values[0], 0.0, 0.0, 0.0, 0.0, values[1]]
+def _on_axes(v: float, omega: float) -> list[float]:
+    return [v, 0.0, 0.0, 0.0, 0.0, omega]

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export.amcl import amcl
@@ -20,10 +20,11 @@ from slipwise.models.model import Model
 
 @dataclass(frozen=True)
 class Exported:
-    """The text of one file, and the values in it by their names."""
+    """The text of one file, the values in it by their names, and why others were left at the tool's own."""
 
     text: str
     values: dict[str, Value]
+    kept: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Target:
 def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callable[..., Exported]:
     def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
         file = make(model, options)
-        return Exported(file.text(origin), file.values())
+        return Exported(file.text(origin), file.values(), file.kept())
 
     return write
 

@@ -6,27 +6,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
 from slipwise.models.body_gains import body_twists, straight_line
 from slipwise.models.model import Model
 
-Floats = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class WheelMultipliers:
     """Factors of the nominal radii and separation, and what they leave over."""
 
-    left_radius: float
-    right_radius: float
-    radius_std: float
-    separation: float
-    separation_std: float
-    speed_gain: float  # body speed per wheel speed, as the log had them
-    yaw_gain: float
+    left_radius: LearnedNumber
+    right_radius: LearnedNumber
+    separation: LearnedNumber
+    speed_gain: LearnedNumber  # body speed per wheel speed, as the log had them
+    yaw_gain: LearnedNumber
     residual: tuple[float, float, float]  # RMS over the range: forward, sideways [m/s], yaw [rad/s]
 
 
@@ -50,26 +46,24 @@ def wheel_multipliers(model: Model, options: ExportOptions) -> WheelMultipliers:
             f"wheels that drive forward move the robot by a factor of {g[0]:.3g}, and turn it by {h[0]:.3g}",
             advice="these must be positive: check the signs of the log and calibrate again",
         )
-    covariance = model.covariance[: model.motion.slip_size, : model.motion.slip_size]
-    ratio = g[0] / h[0]
-    ratio_by_parameter = (g_by_parameter[0] - ratio * h_by_parameter[0]) / h[0]
-    half = 0.0
-    if options.wheel_separation is not None:
-        half = h[1] * ratio * options.wheel_separation * options.logged_separation_multiplier / 2.0
+    numbers = LearnedNumbers(model)
+    speed = numbers.of_parameters(float(g[0]), g_by_parameter[0])
+    turn, *veers = (
+        numbers.of_parameters(float(value), by) for value, by in zip(h, h_by_parameter, strict=True)
+    )
+    ratio = speed / turn
+    half = numbers.exactly(0.0)
+    for veer in veers:  # with a separation
+        assert options.wheel_separation is not None
+        half = veer * ratio * (options.wheel_separation * options.logged_separation_multiplier / 2.0)
     left = np.column_stack((v * g[0], np.zeros_like(v), inputs @ h))
     radius = options.logged_radius_multiplier
     forward, sideways, yaw = np.sqrt(np.mean(np.square(body.mean - left), axis=0)).tolist()
     return WheelMultipliers(
-        left_radius=radius * (g[0] - half),
-        right_radius=radius * (g[0] + half),
-        radius_std=radius * _std(g_by_parameter[0], covariance),
-        separation=options.logged_separation_multiplier * ratio,
-        separation_std=options.logged_separation_multiplier * _std(ratio_by_parameter, covariance),
-        speed_gain=float(g[0]),
-        yaw_gain=float(h[0]),
+        left_radius=(speed + half * -1.0) * radius,
+        right_radius=(speed + half) * radius,
+        separation=ratio * options.logged_separation_multiplier,
+        speed_gain=speed,
+        yaw_gain=turn,
         residual=(forward, sideways, yaw),
     )
-
-
-def _std(by_parameter: Floats, covariance: Floats) -> float:
-    return float(np.sqrt(by_parameter @ covariance @ by_parameter))

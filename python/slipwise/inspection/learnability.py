@@ -10,11 +10,12 @@ import numpy as np
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.identifiability import UNDETERMINED_RATIO, drives_for
+from slipwise.calibration.identifiability import drives_for
 from slipwise.calibration.learner import Belief, make_learner
 from slipwise.calibration.structure_choice import average_pass
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
+from slipwise.models.schema import UNDETERMINED_RATIO
 
 
 @dataclass(frozen=True)

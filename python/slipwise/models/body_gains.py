@@ -51,13 +51,6 @@ def straight_line(inputs: Floats, output: Floats, features: Floats) -> tuple[Flo
     return solve @ output, solve @ features
 
 
-def body_gains(twists: BodyTwists) -> tuple[float, float]:
-    """Return body speed per speed and body yaw rate per yaw rate, by least squares."""
-    speed, _ = straight_line(twists.v[:, None], twists.mean[:, 0], twists.features[:, 0])
-    yaw, _ = straight_line(twists.w[:, None], twists.mean[:, 2], twists.features[:, 2])
-    return float(speed[0]), float(yaw[0])
-
-
 def _twists(model: Model, v: Floats, w: Floats) -> BodyTwists:
     basis = model.motion.basis
     channel = np.repeat(np.arange(3), (len(basis.lon), len(basis.lat), len(basis.ang)))

@@ -12,6 +12,7 @@ from slipwise.student import LEAST_DOF, MOST_DOF
 SCHEMA_VERSION = 3
 READ_VERSIONS = (2, SCHEMA_VERSION)  # 2 lacks how slip wanders
 
+UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
 

@@ -17,6 +17,7 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export import ExportOptions, export_model
 from slipwise.export.diff_drive import PUBLISH_RATE
+from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.wheel_multipliers import wheel_multipliers
 from slipwise.models import Model
 
@@ -43,8 +44,9 @@ def test_multipliers_undo_slip() -> None:
     """Wheels that the controller drives with its multipliers give the body the twist that was asked for."""
     radius, (v, omega) = 0.16, (0.7, 0.4)
     found = wheel_multipliers(make_model(EDD_2), ExportOptions())
-    half = omega * SEPARATION * found.separation / 2.0
-    left, right = (v - half) / (radius * found.left_radius), (v + half) / (radius * found.right_radius)
+    half = omega * SEPARATION * found.separation.value / 2.0
+    left = (v - half) / (radius * found.left_radius.value)
+    right = (v + half) / (radius * found.right_radius.value)
     seen_v, seen_omega = radius * (left + right) / 2.0, radius * (right - left) / SEPARATION  # (2.2)
     state = _core.SlipState(seen_v, seen_omega, 0.0, 0.0)
     slip = _core.slip_rate(_core.named_basis("edd-2"), np.array([-0.08, -0.5]), state)
@@ -79,7 +81,7 @@ def test_a_richer_model_maps_by_least_squares_over_its_range_and_says_what_is_le
     forward, turn = 0.95 * v + 0.02 * v * np.abs(w), 0.6 * w - 0.1 * w * np.abs(w)
     g, h = np.sum(v * forward) / np.sum(v * v), np.sum(w * turn) / np.sum(w * w)
     found = wheel_multipliers(model, ExportOptions())
-    assert (found.left_radius, found.separation) == pytest.approx((g, g / h))
+    assert (found.left_radius.value, found.separation.value) == pytest.approx((g, g / h))
     left = [np.sqrt(np.mean(np.square(part))) for part in (forward - g * v, 0.07 * w, turn - h * w)]
     assert found.residual == pytest.approx(left)
     text = export_model(model, "diff-drive", name="model.yaml").text
@@ -100,16 +102,17 @@ def test_stated_sigma_is_that_of_drawn_parameters() -> None:
     for _ in range(60):
         values = dict(zip(names, rng.normal(model.mean, 0.003).tolist(), strict=True))
         other = make_model(Made(_core.named_basis("odd-even-10"), values))
-        drawn.append(wheel_multipliers(other, ExportOptions()).separation)
-    assert np.std(drawn) == pytest.approx(wheel_multipliers(model, ExportOptions()).separation_std, rel=0.3)
+        drawn.append(wheel_multipliers(other, ExportOptions()).separation.value)
+    reported = LearnedNumbers(model).std(wheel_multipliers(model, ExportOptions()).separation)
+    assert np.std(drawn) == pytest.approx(reported, rel=0.3)
 
 
 def test_a_perfect_robot_has_multipliers_of_one_within_three_sigma() -> None:
     log = simulated_log(Drive(seconds=90.0, slip_psd=(1e-5, 1e-5, 1e-5)))
     model = calibrate(log, input_name="wheel", settings=make_settings({"basis": "odd-even-10"})).model
-    found = wheel_multipliers(model, ExportOptions())
-    assert abs(found.left_radius - 1.0) < 3.0 * found.radius_std < 0.1
-    assert abs(found.separation - 1.0) < 3.0 * found.separation_std < 0.1
+    found, numbers = wheel_multipliers(model, ExportOptions()), LearnedNumbers(model)
+    for multiplier in (found.left_radius, found.separation):
+        assert abs(multiplier.value - 1.0) < 3.0 * numbers.std(multiplier) < 0.1
 
 
 def test_twist_covariance_gives_the_models_covariance_after_the_horizon() -> None:

@@ -98,5 +98,5 @@ def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
             (node,) = yaml.safe_load(exported.text).values()
             assert node["ros__parameters"]
     found = wheel_multipliers(learned["wheel"], options)
-    assert 1.7 < found.separation < 2.4  # Clearpath ships 1.875
-    assert 0.9 < found.right_radius < found.left_radius < 1.0  # its tyres were deflated
+    assert 1.7 < found.separation.value < 2.4  # Clearpath ships 1.875
+    assert 0.9 < found.right_radius.value < found.left_radius.value < 1.0  # its tyres were deflated

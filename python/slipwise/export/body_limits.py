@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Learned limits of the drive, those of its sides too, as limits of the body's speed and yaw rate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.models.body_gains import BodyTwists, straight_line
+from slipwise.models.schema import LearnedLimit, LimitsSection
+
+Gains = tuple[LearnedNumber, LearnedNumber]  # of the body over the input, speed and yaw rate
+
+
+@dataclass(frozen=True, eq=False)
+class BodyLimits:
+    """What bounds the body's speed (v) and yaw rate (omega); none of several may be passed."""
+
+    top_v: Sequence[LearnedNumber] = ()  # m/s
+    top_omega: Sequence[LearnedNumber] = ()  # rad/s
+    acceleration_v: Sequence[LearnedNumber] = ()  # m/s^2
+    acceleration_omega: Sequence[LearnedNumber] = ()  # rad/s^2
+    braking_v: Sequence[LearnedNumber] = ()  # m/s^2
+    braking_omega: Sequence[LearnedNumber] = ()  # rad/s^2
+
+
+def slip_gains(numbers: LearnedNumbers, twists: BodyTwists) -> Gains:
+    """Return body speed per speed and body yaw rate per yaw rate, by least squares."""
+    speed, by_speed = straight_line(twists.v[:, None], twists.mean[:, 0], twists.features[:, 0])
+    yaw, by_yaw = straight_line(twists.w[:, None], twists.mean[:, 2], twists.features[:, 2])
+    return (
+        numbers.of_parameters(float(speed[0]), by_speed[0]),
+        numbers.of_parameters(float(yaw[0]), by_yaw[0]),
+    )
+
+
+def body_limits(limits: LimitsSection | None, gains: Gains, numbers: LearnedNumbers) -> BodyLimits:
+    """Fold the limits of speed, yaw rate and sides into those of the body.
+
+    A side at its limit a leaves the body a in speed, or 2 a / separation in yaw rate, where it does not do
+    both. What the body does beyond its drive is never counted on.
+
+    Args:
+        limits: as the model has them.
+        gains: of the body over what is behind the limits.
+        numbers: of the model.
+    """
+    if limits is None:
+        return BodyLimits()
+    speed, yaw_rate, side = limits.speed, limits.yaw_rate, limits.side
+    apart = numbers.limit(LearnedLimit(value=limits.track, std=limits.track_std))
+
+    def of_speed(own: LearnedLimit | None, of_side: LearnedLimit | None) -> list[LearnedNumber]:
+        found = [] if own is None else [numbers.limit(own) * limits.gain_v * gains[0]]
+        return found if of_side is None else [*found, _at_most_drive(numbers.limit(of_side), gains[0])]
+
+    def of_yaw(own: LearnedLimit | None, of_side: LearnedLimit | None) -> list[LearnedNumber]:
+        found = [] if own is None else [numbers.limit(own) * limits.gain_omega * gains[1]]
+        if of_side is None:
+            return found
+        return [*found, _at_most_drive(numbers.limit(of_side) * 2.0 / apart, gains[1])]
+
+    return BodyLimits(
+        top_v=of_speed(speed.top, side.top),
+        top_omega=of_yaw(yaw_rate.top, side.top),
+        acceleration_v=of_speed(speed.acceleration, side.acceleration),
+        acceleration_omega=of_yaw(yaw_rate.acceleration, side.acceleration),
+        braking_v=of_speed(speed.braking, side.braking),
+        braking_omega=of_yaw(yaw_rate.braking, side.braking),
+    )
+
+
+def strictest(found: Sequence[LearnedNumber], numbers: LearnedNumbers) -> LearnedNumber:
+    """Return the smallest of the bounds that may be stated; where none may, the smallest."""
+    usable = [number for number in found if not numbers.objection(number)]
+    return min(usable or found, key=lambda number: abs(number.value))
+
+
+def _at_most_drive(limit: LearnedNumber, gain: LearnedNumber) -> LearnedNumber:
+    return limit * gain if gain.value < 1.0 else limit

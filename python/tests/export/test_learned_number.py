@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers carry their uncertainty through arithmetic, and what is not known is written by no exporter."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import yaml
+from sample_models import LIMITS, Made, make_model, named
+
+from slipwise.errors import ModelError
+from slipwise.export import ExportOptions, export_model
+from slipwise.export.chain import chain_of
+from slipwise.export.learned_number import LearnedNumbers
+from slipwise.models import Model, ModelFile
+from slipwise.models.schema import LearnedLimit
+
+WHEEL = named("edd-2", lon__V=-0.1, ang__w=-0.4)
+COMMAND = replace(WHEEL, commands=True)
+SEPARATED = ExportOptions(wheel_separation=0.5)
+KILTED = ExportOptions(nav2="kilted")
+
+
+def changed(made: Made, parameters: Mapping[str, Mapping[str, Any]], *, windows: int = 600) -> Model:
+    """Return a model in which some parameters are known worse, independently of the others."""
+    content = make_model(made).content.model_dump(mode="json")
+    content["provenance"]["learned_windows"] = windows
+    for i, parameter in enumerate(content["parameters"]):
+        parameter.update(parameters.get(parameter["name"], {}))
+        content["covariance"][i][i] = parameter["std"] ** 2
+    return Model(ModelFile.model_validate(content))
+
+
+def exported(model: Model, target: str, options: ExportOptions | None = None) -> Any:
+    return export_model(model, target, name="m.yaml", options=options)
+
+
+def test_the_standard_deviation_is_that_of_drawn_parameters() -> None:
+    model = changed(
+        replace(COMMAND, response=True),
+        {"log_lag_v": {"std": 0.1}, "slow_share_v": {"std": 0.05}, "gain_v": {"std": 0.04}},
+    )
+    numbers, rng = LearnedNumbers(model), np.random.default_rng(3)
+    number = chain_of(model).v.gain * 1.5 / chain_of(model).v.mean_delay
+    names = [p.name for p in model.content.parameters]
+    drawn = []
+    for values in rng.multivariate_normal(model.mean, model.covariance, 300).tolist():
+        v = chain_of(changed(with_values(dict(zip(names, values, strict=True))), {})).v
+        drawn.append(v.gain.value * 1.5 / v.mean_delay.value)
+    assert numbers.std(number) == pytest.approx(np.std(drawn), rel=0.15)
+
+
+def with_values(values: dict[str, float]) -> Made:
+    return replace(COMMAND, response=True, values=values)
+
+
+@pytest.mark.parametrize(("std", "written"), [(0.29, True), (0.31, False)])
+def test_three_tenths_of_a_number_is_the_most_it_may_be_unsure(std: float, written: bool) -> None:
+    numbers = LearnedNumbers(make_model(WHEEL))
+    why = numbers.objection(numbers.limit(LearnedLimit(value=1.0, std=std)))
+    assert (why == "") is written
+    assert written or "known well enough" in why
+
+
+def test_what_the_log_says_little_about_is_not_written_however_narrow_its_prior_is() -> None:
+    model = changed(WHEEL, {"lon.V": {"std": 0.028, "prior_std": 0.03, "determined": False}})
+    file = exported(model, "diff-drive")
+    assert {"left_wheel_radius_multiplier", "right_wheel_radius_multiplier"} <= set(file.kept)
+    assert "the log does not determine it" in file.kept["left_wheel_radius_multiplier"]
+    assert "wheel_separation_multiplier" in file.values  # its prior was far wider
+
+
+def test_what_is_known_together_is_written_though_its_parts_are_not() -> None:
+    """Lag and delay trade places: each is known badly, their sum well."""
+    content = changed(COMMAND, {"log_lag_v": {"std": 0.4}, "log_delay_v": {"std": 0.6}}).content
+    dump = content.model_dump(mode="json")
+    lag, delay = ([p.name for p in content.parameters].index(name) for name in ("log_lag_v", "log_delay_v"))
+    dump["covariance"][lag][delay] = dump["covariance"][delay][lag] = -0.99 * 0.4 * 0.6
+    together = Model(ModelFile.model_validate(dump))
+    assert exported(together, "mppi").values["FollowPath.model_delay_vx"] == pytest.approx(0.5)
+    assert "FollowPath.model_delay_vx" in exported(Model(content), "mppi").kept
+
+
+BADLY = {name: {"std": 0.5} for name in ("lon.V", "ang.w")}
+BADLY |= {name: {"std": 2.0} for name in ("log_lag_v", "log_lag_omega")}
+EVERYTHING = (
+    ("diff-drive", WHEEL, SEPARATED),
+    ("diff-drive", WHEEL, None),
+    ("mppi", replace(COMMAND, limits=LIMITS), None),
+    ("mppi", replace(COMMAND, limits=LIMITS), KILTED),
+    ("mppi", COMMAND, replace(KILTED, min_turning_radius=0.8)),
+    ("robot-localization", COMMAND, None),
+    ("robot-localization", WHEEL, None),
+)
+GIVEN = {
+    "wheel_separation",
+    "publish_rate",
+    "FollowPath.motion_model",
+    "FollowPath.diff_drive.plugin",
+    "frequency",
+    "two_d_mode",
+    "dynamic_process_noise_covariance",
+    "use_control",
+}
+
+
+@pytest.mark.parametrize(("target", "made", "options"), EVERYTHING)
+def test_of_a_model_that_knows_nothing_no_learned_number_is_written(
+    target: str, made: Made, options: ExportOptions | None
+) -> None:
+    model = changed(made, BADLY, windows=10)
+    if made.limits is not None:
+        dump = model.content.model_dump(mode="json")
+        for axis in ("speed", "yaw_rate", "side"):
+            for limit in filter(None, dump["limits"][axis].values()):
+                limit["std"] = 1.3e7
+        model = Model(ModelFile.model_validate(dump))
+    before = set(exported(make_model(made), target, options).values)
+    file = exported(model, target, options)
+    left = set(file.values) - GIVEN
+    if target == "robot-localization":  # all fifteen stay at the filter's own
+        assert "x and y too: learned" in file.text
+        left -= {"process_noise_covariance"}
+    assert left == set()
+    assert set(file.kept) >= before - GIVEN - {"process_noise_covariance"} - CONTROL
+    for name, why in file.kept.items():
+        assert f"# {name} is left at the tool's own value:\n" in file.text
+        assert why.splitlines()[0] in file.text
+    assert yaml.safe_load(file.text)
+
+
+CONTROL = {
+    "control_config",
+    "acceleration_gains",
+    "deceleration_gains",
+    "acceleration_limits",
+    "deceleration_limits",
+}
+
+
+def test_amcl_gets_no_alphas_from_ten_windows() -> None:
+    with pytest.raises(ModelError, match=r"none of AMCL's alphas is known: learned .* not known well enough"):
+        exported(changed(WHEEL, {}, windows=10), "amcl")
+    assert set(exported(changed(WHEEL, {}, windows=30), "amcl").values) >= {f"alpha{i}" for i in range(1, 6)}
+
+
+def test_an_alpha_that_is_the_prior_of_a_parameter_is_no_alpha() -> None:
+    model = changed(WHEEL, {"ang.w": {"std": 0.29, "determined": False}})
+    file = exported(model, "amcl")
+    assert "the log does not determine it" in file.kept["alpha1"]
+    assert "alpha3" in file.values
+    assert "# alpha1: the log does not determine it" in file.text  # nor for the other sample model
+
+
+def test_the_filter_controls_only_the_speed_whose_lag_is_known() -> None:
+    file = exported(changed(COMMAND, {"log_lag_omega": {"std": 0.5}}), "robot-localization")
+    assert file.values["control_config"] == [True, False, False, False, False, False]
+    assert file.values["acceleration_gains"] == pytest.approx([1.0 / 0.3, 0, 0, 0, 0, 0])
+    assert "not the yaw rate: learned 0.30 +- 0.15, which is not known well enough" in file.text
+
+
+def test_limits_of_the_sides_are_folded_into_those_of_the_body() -> None:
+    """The strictest of what is known counts; one that is not known does not."""
+    limits = {"speed": {"acceleration": 12.5}, "side": {"acceleration": 1.67, "braking": 2.0, "top": 1.2}}
+    content = make_model(replace(COMMAND, limits=limits)).content.model_dump(mode="json")
+    content["limits"]["speed"]["acceleration"]["std"] = 1.3e7
+    model = Model(ModelFile.model_validate(content))
+    values = {k.removeprefix("FollowPath."): v for k, v in exported(model, "mppi").values.items()}
+    separation = content["limits"]["track"]
+    assert values["ax_max"] == pytest.approx(0.9 * 1.67)
+    assert values["ax_min"] == pytest.approx(-0.9 * 2.0)
+    assert values["az_max"] == pytest.approx(0.6 * 2.0 * 1.67 / separation)
+    assert values["vx_max"] == pytest.approx(0.9 * 1.2)
+    rates = exported(model, "robot-localization").values["acceleration_limits"]
+    assert rates[0] <= 1.67
+    assert rates[5] <= 2.0 * 1.67 / separation
+
+
+def test_a_body_faster_than_its_sides_is_not_counted_on() -> None:
+    made = replace(named("edd-2", lon__V=0.1), commands=True, limits={"side": {"acceleration": 1.67}})
+    assert exported(make_model(made), "mppi").values["FollowPath.ax_max"] == pytest.approx(1.67)
+
+
+def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
+    made = replace(COMMAND, limits={"speed": {"acceleration": 12.5, "top": 1.0}})
+    content = changed(made, {"log_lag_v": {"std": 0.9}}).content.model_dump(mode="json")
+    content["limits"]["speed"]["acceleration"]["std"] = 1.3e7
+    model = Model(ModelFile.model_validate(content))
+    lines = exported(model, "c-header").text.splitlines()
+    (lag,) = (line for line in lines if line.startswith("#define SLIPWISE_LAG_V "))
+    (other,) = (line for line in lines if line.startswith("#define SLIPWISE_LAG_OMEGA "))
+    assert "not identified" in lag
+    assert f"SLIPWISE_R({math.exp(model.mean[2])!r})" in lag
+    assert "0.300 +- 0.003" in other
+    assert "not identified" not in other
+    assert "/* limits.speed.acceleration, 12.5 +- 1.3e+07, not identified */" in lines
+    assert "/* limits.speed.top, 1.000 +- 0.010 */" in lines
