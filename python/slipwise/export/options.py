@@ -3,13 +3,21 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Literal
 
 from slipwise.errors import SettingsError
 
 NAV2_NAMES = ("rolling", "kilted")
+
+#: What makes sense of each number; far outside of these it has another unit.
+_BOUNDS = {
+    "horizon": (0.01, 1000.0, "s"),
+    "wheel_separation": (0.001, 100.0, "m"),
+    "logged_separation_multiplier": (0.01, 100.0, ""),
+    "logged_radius_multiplier": (0.01, 100.0, ""),
+    "min_turning_radius": (0.001, 10000.0, "m"),
+}
 
 
 @dataclass(frozen=True)
@@ -17,7 +25,7 @@ class ExportOptions:
     """Numbers of the robot and of its tools that a model does not hold.
 
     Raises:
-        SettingsError: a number is not positive.
+        SettingsError: a number makes no sense.
     """
 
     horizon: float = 1.0  # s; noise that lasts is spread over this time as if it were white
@@ -28,14 +36,13 @@ class ExportOptions:
     nav2: Literal["rolling", "kilted"] = "rolling"  # whose parameter names MPPI gets
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = getattr(self, field.name)
-            if isinstance(value, str) or value is None:
-                continue
-            if not (math.isfinite(value) and value > 0.0):
+        for name, (least, most, unit) in _BOUNDS.items():
+            value = getattr(self, name)
+            if value is not None and not least <= value <= most:
                 raise SettingsError(
-                    f"{field.name.replace('_', ' ')} must be positive, got {value:g}",
-                    advice="leave it out, or give the robot's",
+                    f"{name.replace('_', ' ')} is {value:g}",
+                    where=f"--{name.replace('_', '-')}",
+                    advice=f"give {least:g} to {most:g} {unit}".rstrip(),
                 )
         if self.nav2 not in NAV2_NAMES:
             raise SettingsError(

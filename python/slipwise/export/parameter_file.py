@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+
+import yaml
 
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
@@ -98,7 +99,7 @@ def yaml_value(value: Value) -> str:
     if isinstance(value, float):
         return _float_text(value)
     if isinstance(value, str):
-        return json.dumps(value)  # a YAML string in double quotes, whatever is in it
+        return str(yaml.safe_dump(value, default_style='"', width=math.inf)).rstrip("\n")
     return f"[{', '.join(yaml_value(item) for item in value)}]"
 
 

@@ -41,6 +41,12 @@ class Model:
                 f"the parameters are {', '.join(stated)} where slip and chain have {', '.join(names)}",
                 advice="calibrate again, or restore the file",
             )
+        for info, parameter in zip(self.motion.parameters, self.content.parameters, strict=True):
+            if parameter.unit != info.unit:
+                raise ModelError(
+                    f"the unit of {info.name} is {info.unit}, not {parameter.unit[:40]!r}",
+                    advice="calibrate again, or restore the file",
+                )
         seconds = np.exp([min(p.value, 700.0) for p in self.content.parameters if p.name.startswith("log_")])
         if (seconds > LONGEST_CHAIN).any():
             raise ModelError(

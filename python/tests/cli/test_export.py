@@ -95,10 +95,17 @@ REFUSED = {
     "no model": (("none.yaml", "--to", "all"), "cannot read"),
     "other schema": (("other.yaml", "--to", "all"), "schema version 99, this slipwise reads"),
     "not a model": (("text.yaml", "--to", "all"), "the file holds no keys"),
-    "no horizon": (("wheel.yaml", "--to", "amcl", "--horizon", "0"), "horizon must be positive"),
+    "no horizon": (
+        ("wheel.yaml", "--to", "amcl", "--horizon", "0"),
+        "horizon is 0 (--horizon): give 0.01 to 1000 s",
+    ),
+    "endless horizon": (
+        ("wheel.yaml", "--to", "all", "-o", "config", "--horizon", "1e300"),
+        "horizon is 1e+300 (--horizon): give 0.01 to 1000 s",
+    ),
     "endless separation": (
         ("wheel.yaml", "--to", "diff-drive", "--wheel-separation", "inf"),
-        "wheel separation must be positive",
+        "wheel separation is inf (--wheel-separation): give 0.001 to 100 m",
     ),
     "into a file's folder": (("wheel.yaml", "--to", "all", "-o", "wheel.yaml/x"), "cannot write"),
     "onto a folder": (("wheel.yaml", "--to", "all", "-o", "wheel.yaml"), "cannot write"),

@@ -8,7 +8,8 @@ import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 
-from slipwise.export.parameter_file import Entry, ParameterFile, Value, yaml_value
+from slipwise.errors import ModelError
+from slipwise.export.parameter_file import Entry, Kept, ParameterFile, Value, yaml_value
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False, min_value=-1e30, max_value=1e30))
@@ -21,6 +22,23 @@ def test_a_float_is_read_back_as_a_float(value: float) -> None:
 @pytest.mark.parametrize("value", [True, False, "mppi::DiffDriveMotionModel", [True, False], [1.0, -2.5e-8]])
 def test_a_value_is_read_back(value: Value) -> None:
     assert yaml.safe_load(yaml_value(value)) == value
+
+
+@given(st.text())
+def test_any_string_is_read_back(text: str) -> None:
+    assert yaml.safe_load(yaml_value(text)) == text
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), [1.0, float("-inf")]])
+def test_what_is_no_number_is_refused(value: Value) -> None:
+    with pytest.raises(ModelError, match=r"a parameter would be .*, which is no number"):
+        yaml_value(value)
+
+
+def test_no_line_of_a_comment_can_end_it() -> None:
+    hostile = "a\rb: 1\x85c: 2\u2028d: 3\ne: 4"
+    file = ParameterFile("node", [Entry(("x",), 1.0, hostile), Kept(("y",), hostile)], notes=[hostile])
+    assert yaml.safe_load(file.text([hostile])) == {"node": {"ros__parameters": {"x": 1.0}}}
 
 
 def test_nested_keys_are_written_once_and_comments_are_comments() -> None:
