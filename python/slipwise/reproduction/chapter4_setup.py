@@ -68,10 +68,10 @@ def vehicle() -> Exhibit:
         thesis="Figure 4.8",
         title="The vehicle",
         shows="The simulated vehicle from above, and its constants.",
-        agrees="Six driven wheels, skid-steered, closed-loop speed control per side; delay and time "
-        "constant are those of the thesis's section 8.1.",
-        differs="The thesis shows a photograph. The other constants are plausible for a vehicle of its "
-        "kind, not its own.",
+        agrees="Six driven wheels, skid-steered, closed-loop speed control per side.",
+        differs="The thesis shows a photograph and gives no delay and no time constant; its section 8.1 "
+        "names both as future work. Those here were published for the Land Tamer later (Seegmiller et al. "
+        "2013). The other constants are plausible for a vehicle of its kind, not its own.",
         source="slipwise.simulation.LandTamer",
         parts=(
             Panel("From above", "x, forward [m]", "y, left [m]", tuple(lines), equal_axes=True),

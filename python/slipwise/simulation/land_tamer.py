@@ -17,7 +17,8 @@ GRAVITY = 9.81  # [m/s^2]
 class LandTamer:
     """The vehicle's constants; every one is stated here and nowhere else.
 
-    Delay and lag are the values of the thesis's section 8.1; the rest are plausible for its size.
+    Delay and lag are those published for the vehicle (Seegmiller et al., IJRR 2013; the thesis gives none);
+    the rest are plausible for its size.
     Wheels are numbered front left, front right, middle left, middle right, rear left, rear right.
     """
 

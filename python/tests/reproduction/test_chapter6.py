@@ -20,7 +20,14 @@ from slipwise.reproduction.chapter6_convergence import without_slip
 from slipwise.reproduction.chapter6_jacobian import shares_wrong
 from slipwise.reproduction.chapter6_recording import EXACT, Course, drive_windows, record
 from slipwise.reproduction.chapter6_smoothing import drifting_drive
-from slipwise.reproduction.chapter6_table import METHODS, PRINTED
+from slipwise.reproduction.chapter6_table import (
+    METHODS,
+    PRINTED,
+    Contest,
+    Errors,
+    gain_findings,
+    order_findings,
+)
 
 pytest.importorskip("mujoco")
 
@@ -78,6 +85,38 @@ def test_ratios_of_the_thesis_are_those_of_its_errors() -> None:
     for name, _, _, told in PRINTED:
         ratios = [plain / mine for plain, mine in zip(errors["None"], errors[name], strict=True)]
         np.testing.assert_allclose([float(value) for value in told.split(", ")], ratios, rtol=0.02)
+
+
+def contest_of(**in_sample: tuple[float, float]) -> Contest:
+    """Return errors of two segments each, with these means, position [m] and heading [rad]."""
+    return {name.replace("_", "-"): Errors(*[np.array([mean, mean])] * 2) for name, mean in in_sample.items()}
+
+
+def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
+    plain, default = (1.0, 0.8), (0.1, 0.02)
+    as_printed = contest_of(none=plain, auto=default, gradient_descent=(0.4, 0.08), ekf_thesis=(0.2, 0.04))
+    turned = contest_of(none=plain, auto=(0.3, 0.02), gradient_descent=(0.2, 0.08), ekf_thesis=(0.4, 0.04))
+    contests = {"wheel": as_printed, "command": turned}
+    gained, ordered = gain_findings(contests), order_findings(contests)
+    assert [finding.same for finding in gained] == [True, True, False, False]
+    assert [finding.same for finding in ordered] == [True, True, False, True]
+    assert gained[3].text == "from commands the thesis's own filter 2.5 and 20"
+    assert ordered[2].text == "from commands in position (0.400 beside 0.200 m)"
+
+
+def test_the_table_says_where_it_contradicts_the_thesis(exhibits: Exhibits) -> None:
+    """Each in-sample comparison of its own rows stands once, on the side where it belongs."""
+    for ground in ("tyre-force", "contact-friction"):
+        exhibit = exhibits[f"table-6-2-{ground}"]
+        for grid, name in zip(exhibit.grids, ("commands", "wheel speeds"), strict=False):
+            rows = {row[0]: row for row in grid.rows}
+            for what, unit in (("position", "m"), ("heading", "rad")):
+                place = grid.columns.index(f"in-sample {what} [{unit}]")
+                kalman, descent = (rows[n][place].split(" ±")[0] for n in ("ekf-thesis", "gradient-descent"))
+                text = f"from {name} in {what} ({kalman} beside {descent} {unit})"
+                agrees = float(kalman) < float(descent)
+                assert (text in exhibit.agrees) is agrees
+                assert (text in exhibit.differs) is not agrees
 
 
 def test_correlations_are_ones_on_the_diagonal(exhibits: Exhibits) -> None:
