@@ -167,8 +167,8 @@ def gain_findings(contests: dict[str, Contest]) -> list[_Finding]:
         for name, said in ((DEFAULT, "the default"), ("ekf-thesis", "the thesis's own filter")):
             position, heading = gains(found, name).tolist()
             same = position >= THESIS_RATIO[0] and heading >= THESIS_RATIO[1]
-            pair = f"{number_text(position, 2)} and {number_text(heading, 2)}"
-            text = f"from {INPUTS[input_name]} {said} {pair}"
+            pair = f"{number_text(position, 2)} and {number_text(heading, 2)} times"
+            text = f"{said} from {INPUTS[input_name]} ({pair})"
             findings.append(_Finding(same, text))
     return findings
 
@@ -207,7 +207,9 @@ def _against_the_thesis(contests: dict[str, Contest]) -> list[str]:
     said = []
     short = _listed(gain_findings(contests), same=False)
     if short:
-        said.append(f"Less than the thesis's 4.4 and 19.5 times is gained in-sample {short}.")
+        said.append(
+            f"The in-sample gain of {short} is less than the 4.4 and 19.5 times that the thesis prints."
+        )
     turned = _listed(order_findings(contests), same=False)
     if turned:
         (_, *descent, _), (_, *kalman, _) = PRINTED[1:]

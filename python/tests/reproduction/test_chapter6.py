@@ -100,7 +100,7 @@ def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
     gained, ordered = gain_findings(contests), order_findings(contests)
     assert [finding.same for finding in gained] == [True, True, False, False]
     assert [finding.same for finding in ordered] == [True, True, False, True]
-    assert gained[3].text == "from commands the thesis's own filter 2.5 and 20"
+    assert gained[3].text == "the thesis's own filter from commands (2.5 and 20 times)"
     assert ordered[2].text == "from commands in position (0.400 beside 0.200 m)"
 
 
