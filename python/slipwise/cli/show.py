@@ -24,10 +24,12 @@ def show(model: ModelFile, json: Json = None) -> int:
     """  # noqa: D301
     from slipwise.cli.output import Output
     from slipwise.cli.tables import show_parameters, show_summary, show_verdict
+    from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
     from slipwise.models.summary import summarise
 
     out = Output(json)
+    refuse_unwritable(out.written_file, inputs=[model])
     learned = load_model(model)
     summary = summarise(learned)
     out.document(_document(learned, summary))

@@ -92,6 +92,7 @@ DESTROYING = (
     "export m.yaml --to amcl -o m.yaml",
     "export m.yaml --to all -o config --json m.yaml",
     "lattice m.yaml --json m.yaml --no-picture",
+    "show m.yaml --json m.yaml",
     "plan --model m.yaml --map map.yaml --json m.yaml",
     "plan --model m.yaml --map map.yaml --json map.yaml",
     "plan --model m.yaml --map map.yaml -o map",
