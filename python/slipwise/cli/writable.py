@@ -61,8 +61,12 @@ def _refuse_unwritable(path: Path) -> None:
 def _refuse_destroying(outputs: Sequence[Path], inputs: Sequence[Path]) -> None:
     for path in outputs:
         for source in inputs:
-            if _same_file(path, source) or _is_part_of(path, source):
+            where = ""
+            if _same_file(path, source):
                 where = str(path) if path == source else f"{path}, which is {source}"
+            elif _is_part_of(path, source):
+                where = f"{path}, a part of {source}"
+            if where:
                 raise OutputError("this would replace what is read", where=where, advice="name another file")
     for first, second in combinations(outputs, 2):
         if _same_file(first, second):
