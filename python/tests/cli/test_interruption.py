@@ -94,6 +94,20 @@ def test_ctrl_c_while_writing_leaves_the_old_file(interrupted: Slipwise, long_cs
     assert old.read_text() == "old"
 
 
+@pytest.mark.slow
+def test_what_a_killed_conversion_leaves_is_swept_by_the_next(
+    interrupted: Slipwise, slipwise: Slipwise, long_csv: Path
+) -> None:
+    def writing(_: int) -> bool:
+        return any(long_csv.parent.glob(".slipwise-*.part/bag/*"))
+
+    result = interrupted("convert", "long.csv", "-o", "long.mcap", at_work=writing, sent=signal.SIGKILL)
+    assert result.code == -signal.SIGKILL
+    assert any(long_csv.parent.glob(".slipwise-*.part"))
+    assert slipwise("convert", "long.csv", "-o", "again.csv").code == 0
+    assert left_in(long_csv.parent) == {"long.csv", "again.csv"}
+
+
 @pytest.mark.parametrize(
     "arguments",
     [
