@@ -157,7 +157,7 @@ def _report(out: Output, made: _Made, paths: dict[str, Path]) -> None:
     out.table("Exported", (Column("for", whole=True), Column("parameter"), Column("value")), rows)
     for target, exported in made.files:
         for name, reason in exported.kept.items():
-            out.line(f"left at the tool's own value: {target.name}: {name}: {' '.join(reason.split())}")
+            out.line(f"left at the tool's own value: {target.name}: {name}: {reason}")
     for name, reason in made.left_out:
         out.line(f"left out: {name}: {reason}")
     show_files(out, paths)

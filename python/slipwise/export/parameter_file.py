@@ -81,7 +81,8 @@ class ParameterFile:
 
     def kept(self) -> dict[str, str]:
         """Return why parameters are left at the tool's own value, by their full names."""
-        return {entry.name: entry.why for entry in self.entries if isinstance(entry, Kept)}
+        kept = (entry for entry in self.entries if isinstance(entry, Kept))
+        return {entry.name: " ".join(entry.why.split()) for entry in kept}
 
 
 def stated(

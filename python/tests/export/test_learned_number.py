@@ -130,7 +130,7 @@ def test_of_a_model_that_knows_nothing_no_learned_number_is_written(
     assert set(file.kept) >= before - GIVEN - {"process_noise_covariance"} - CONTROL
     for name, why in file.kept.items():
         assert f"# {name} is left at the tool's own value:\n" in file.text
-        assert why.splitlines()[0] in file.text
+        assert why[:40] in file.text
     assert yaml.safe_load(file.text)
 
 
