@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
+from sample_models import make_model, named
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate
@@ -17,7 +18,9 @@ from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.limit_watch import FIRST, GROWTH_FAILING, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.recent_twists import SPACING
-from slipwise.export.mppi_limits import with_limits
+from slipwise.export.body_limits import body_limits
+from slipwise.export.learned_number import LearnedNumbers
+from slipwise.export.mppi_limits import Bound, dead_bands, with_limits
 from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
@@ -152,13 +155,24 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
     section = LimitsSection(
         speed=lane, yaw_rate=none, side=none, track=1.0, track_std=0.0, gain_v=1.0, gain_omega=1.0
     )
-    known = [Entry(("vx_max",), 3.0, "as far as the log went"), Entry(("wz_max",), 2.0, "the same")]
-    entries = {entry.key: entry.value for entry in with_limits(known, section, (0.9, 1.0))}
+    numbers = LearnedNumbers(make_model(replace(named("edd-2"), commands=True)))
+    gains = (numbers.exactly(0.9), numbers.exactly(1.0))
+    bounds = {
+        "vx_max": [Bound(numbers.exactly(3.0), "as far as the log went")],
+        "wz_max": [Bound(numbers.exactly(2.0), "the same")],
+    }
+    made = [
+        *with_limits(bounds, body_limits(section, gains, numbers), numbers),
+        *dead_bands(section, numbers),
+    ]
+    entries = {entry.key: entry.value for entry in made if isinstance(entry, Entry)}
     assert entries[("vx_max",)] == pytest.approx(0.9)
     assert entries[("wz_max",)] == 2.0
     assert entries[("ax_max",)] == pytest.approx(1.8)
     assert entries[("VelocityDeadbandCritic", "deadband_velocities")] == [0.1, 0.0, 0.0]
-    assert with_limits(known, None, (0.9, 1.0)) == known
+    free = with_limits(bounds, body_limits(None, gains, numbers), numbers)
+    assert free == [Entry(("vx_max",), 3.0, "as far as the log went"), Entry(("wz_max",), 2.0, "the same")]
+    assert dead_bands(None, numbers) == []
 
 
 def test_a_watch_sees_nothing_of_the_future(log: Log) -> None:
