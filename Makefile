@@ -23,31 +23,37 @@ PYTHON_CHECKED := python/slipwise tools
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build demo test test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build demo test test-slow test-cpp test-python test-python-slow asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-tidy format bench thesis clean distclean FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
-env: $(STAMPS)/run ## create .venv and install what slipwise needs
+env: $(STAMPS)/native ## create .venv and install what building slipwise needs
 
 build: $(STAMPS)/slipwise ## build the C++ core and install slipwise into .venv, editable
 
 demo: build ## simulate a robot, learn its motion model, score it, write a report
 	@$(VENV)/bin/slipwise demo $(ARGS)
 
-test: ## run all C++ and Python tests
+test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-cpp: $(STAMPS)/doctest ## run the C++ tests
-	@cmake --preset dev > /dev/null
-	@cmake --build --preset dev
-	@ctest --preset dev
+test-slow: ## run the slow tests: coverage, physics, browsers, compilers, sanitizers, the thesis
+	@$(MAKE) --no-print-directory -k test-python-slow asan
 
-test-python: build $(STAMPS)/dev ## run the Python tests; ARGS="-k name" chooses
-	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile $(ARGS)
+test-cpp: build $(STAMPS)/doctest ## run the C++ tests
+	@cmake --preset package -DSLIPWISE_TESTS=ON > /dev/null
+	@cmake --build --preset package
+	@ctest --preset package
 
-asan: $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
+test-python: build $(STAMPS)/dev ## run the quick Python tests; ARGS="-k name" chooses
+	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m "not slow" $(ARGS)
+
+test-python-slow: build $(STAMPS)/dev $(STAMPS)/doctest
+	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
+
+asan: build $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
 	@cmake --preset asan > /dev/null
 	@cmake --build --preset asan
 	@ctest --preset asan
@@ -85,7 +91,7 @@ format: $(STAMPS)/dev ## lay out all Python and C++ sources
 bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
 	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
 
-thesis: build ## make the thesis's figures and tables again, and docs/thesis from them
+thesis: $(STAMPS)/thesis ## make the thesis's figures and tables again, and docs/thesis from them
 	@$(VENV)/bin/slipwise reproduce thesis -o build/thesis $(ARGS)
 	@rm -rf docs/thesis && cp -r build/thesis/markdown docs/thesis
 
@@ -103,15 +109,15 @@ $(STAMPS)/env: FORCE
 	@sh tools/make_env.sh $(VENV)
 	@test -f $@ || { mkdir -p $(STAMPS) && touch $@; }
 
-$(STAMPS)/run: $(STAMPS)/env pyproject.toml constraints.txt
-	@echo "installing what slipwise needs"
-	@$(PYTHON_IN) tools/requirements.py build native run gp sim thesis > $(STAMPS)/run.txt
-	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/run.txt
+$(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
+	@echo "installing the build tools"
+	@$(PYTHON_IN) tools/requirements.py build native > $(STAMPS)/native.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/native.txt
 	@touch $@
 
-$(STAMPS)/dev: $(STAMPS)/run
+$(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev gp thesis > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 
@@ -121,7 +127,13 @@ $(STAMPS)/bench: $(STAMPS)/dev
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/bench.txt
 	@touch $@
 
-$(STAMPS)/doctest: $(STAMPS)/run
+$(STAMPS)/thesis: pyproject.toml constraints.txt | $(STAMPS)/slipwise
+	@echo "installing what the thesis's figures need"
+	@$(PYTHON_IN) tools/requirements.py gp thesis > $(STAMPS)/thesis.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/thesis.txt
+	@touch $@
+
+$(STAMPS)/doctest: $(STAMPS)/native
 	@$(PYTHON_IN) tools/fetch_doctest.py $(DOCTEST)
 	@touch $@
 
@@ -129,9 +141,9 @@ $(STAMPS)/python-files: $(STAMPS)/env FORCE
 	@find python/slipwise -type f ! -path '*/__pycache__/*' ! -name '_core.*' | sort > $@.new
 	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
-$(STAMPS)/slipwise: $(STAMPS)/run $(STAMPS)/python-files CMakeLists.txt $(CPP_SOURCES)
-	@echo "building slipwise"
-	@$(PIP) install --quiet --no-index --no-deps --no-build-isolation --editable .
+# What pip fetches is installed while the core is compiled; afterwards only where the requirements have changed.
+$(STAMPS)/slipwise: $(STAMPS)/native $(STAMPS)/python-files pyproject.toml constraints.txt CMakeLists.txt CMakePresets.json $(CPP_SOURCES)
+	@$(PYTHON_IN) tools/build.py $(if $(filter pyproject.toml constraints.txt,$?),run sim)
 	@cp $(VENV)/lib/python3*/site-packages/slipwise/_core.pyi python/slipwise/_core.pyi
 	@touch $@
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "slipwise/linear/cholesky.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -67,7 +69,7 @@ class BatchProblem {
         data_(data),
         errors_(new_errors(data)),
         huber_(huber),
-        prior_information_(prior.covariance.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))) {}
+        prior_information_(Cholesky(prior.covariance).inverse()) {}
 
   NormalEquations linearize(const Eigen::VectorXd& mean) const {
     std::vector<SegmentLinearization> at;
@@ -118,7 +120,7 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
                                 std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
                                 " x " + std::to_string(prior.covariance.cols()));
   }
-  if (prior.covariance.llt().info() != Eigen::Success) {
+  if (!Cholesky(prior.covariance).positive_definite()) {
     throw std::invalid_argument("the prior's covariance must be positive definite; give every parameter some spread");
   }
   if (data.empty()) {
@@ -127,7 +129,7 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Segment& segment = data[i].segment;
     if (data[i].inputs == nullptr || !(segment.end > segment.start) || !segment.measured.vector().allFinite() ||
-        data[i].noise.llt().info() != Eigen::Success) {
+        !Cholesky(data[i].noise).positive_definite()) {
       throw std::invalid_argument("segment " + std::to_string(i) +
                                   " must have inputs, end after it starts, and have finite measurements and a positive "
                                   "definite noise covariance");
@@ -161,7 +163,7 @@ BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<co
     ++fit.iterations;
     Eigen::MatrixXd damped = now.information;
     damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd step = damped.llt().solve(now.gradient);
+    const Eigen::VectorXd step = Cholesky(damped).solve(now.gradient);
     const double promised = step.dot(now.gradient + damping * now.information.diagonal().cwiseProduct(step));
     const double little = settings.tolerance * now.cost;
     if (damping == kLeastDamping && promised <= little) {
@@ -183,7 +185,7 @@ BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<co
   }
   fit.cost = now.cost;
   fit.at = std::move(now.at);
-  fit.estimate = {mean, now.information.llt().solve(Eigen::MatrixXd::Identity(model.size(), model.size()))};
+  fit.estimate = {mean, Cholesky(now.information).inverse()};
   return fit;
 }
 

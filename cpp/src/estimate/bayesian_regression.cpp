@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/cholesky.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -20,7 +22,7 @@ bool semi_definite(const Eigen::MatrixXd& part, const Eigen::VectorXd& whole) {
   const Eigen::VectorXd inverse = whole.cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd relative = inverse.asDiagonal() * part * inverse.asDiagonal();
   relative.diagonal().array() += kRounding;
-  return relative.llt().info() == Eigen::Success;
+  return Cholesky(relative).positive_definite();
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 // The causal filter of one model.
 #include "slipwise/estimate/causal_filter.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,6 +10,8 @@
 
 #include "slipwise/estimate/heavy_tails.hpp"
 #include "slipwise/estimate/sandwich.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 namespace {
@@ -112,7 +113,7 @@ struct CausalFilter::KeptData {
 /// fit does not settle, what was learned one by one stands.
 void CausalFilter::relearn() {
   KeptData kept = kept_data();
-  if (kept.data.empty() || before_.covariance.llt().info() != Eigen::Success) {
+  if (kept.data.empty() || !Cholesky(before_.covariance).positive_definite()) {
     return;
   }
   constexpr double kWeighed = std::numeric_limits<double>::infinity();
@@ -149,7 +150,7 @@ CausalFilter::KeptData CausalFilter::kept_data() const {
     const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, settings_.noise.shape, noise_scale_.value());
     const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
     const Eigen::Matrix3d covariance = at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
-    const double nis = innovation.dot(covariance.llt().solve(innovation));
+    const double nis = normalised_square(innovation, covariance);
     if (!(nis <= settings_.iekf.gate)) {
       last = nullptr;
       continue;

@@ -2,13 +2,13 @@
 // Window by window, and all windows at once where linearisations have moved.
 #include "slipwise/estimate/chain_channel.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise {
@@ -157,11 +157,11 @@ double ChainChannel::mean_nis(const WheelMeans& seen, const Eigen::VectorXd& inn
     }
   }
   const Eigen::VectorXd error = mean * innovation;
-  return error.dot((mean * covariance * mean.transpose()).llt().solve(error));
+  return error.dot(Cholesky(mean * covariance * mean.transpose()).solve(error));
 }
 
 /// One step of expectation-maximisation for the size of the noise, given its shape: what of the innovation is noise.
-void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
+void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Cholesky& covariance,
                               const Eigen::MatrixXd& noise) {
   const Eigen::VectorXd whitened = covariance.solve(innovation);
   const double surprise = whitened.dot(noise * whitened) - covariance.solve(noise).trace();
@@ -174,14 +174,14 @@ void ChainChannel::learn_size(const Eigen::VectorXd& innovation, const Eigen::LL
 /// As in iekf_update: how far the window bends away over what is left open of the parameters.
 Eigen::MatrixXd ChainChannel::bending(const Values& values, const PassagePoint& point) const {
   const Eigen::MatrixXd left = start_covariance(joint_, point.at);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> open(left.topLeftCorner(kChannelParameters, kChannelParameters));
+  const SymmetricEigen open = symmetric_eigen(left.topLeftCorner(kChannelParameters, kChannelParameters));
   Eigen::MatrixXd spread = Eigen::MatrixXd::Zero(point.at.value.size(), point.at.value.size());
   for (Eigen::Index i = 0; i < kChannelParameters; ++i) {
-    const double std = std::sqrt(std::max(open.eigenvalues()[i], 0.0));
+    const double std = std::sqrt(std::max(open.values[i], 0.0));
     if (std < kStraight) {
       continue;
     }
-    const Eigen::VectorXd step = left.leftCols(kChannelParameters) * open.eigenvectors().col(i) / std;
+    const Eigen::VectorXd step = left.leftCols(kChannelParameters) * open.vectors.col(i) / std;
     const Eigen::VectorXd second = (values(point.state + step) + values(point.state - step)) / 2.0 - point.at.value;
     spread += 2.0 * second * second.transpose();
   }
@@ -208,9 +208,9 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
   Passage expected = foretell(window, noise, joint_.mean);
   const Eigen::VectorXd innovation = z - expected.seen();
   const Eigen::MatrixXd s = innovation_covariance(joint_, expected);
-  const Eigen::LLT<Eigen::MatrixXd> s_llt(s);
+  const Cholesky s_llt(s);
   const double nis = innovation.dot(s_llt.solve(innovation));
-  const double log_determinant = 2.0 * s_llt.matrixLLT().diagonal().array().log().sum();
+  const double log_determinant = s_llt.log_determinant();
   ChannelUpdate update{.log_score = -0.5 * student_cost(nis, log_determinant, z.size()),
                        .nis = mean_nis(seen, innovation, s)};
   const double larger = noise_inflation(nis, z.size(), model_.iekf);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -49,7 +50,7 @@ class ChannelWalk {
       : model_(model), size_(size), point_(point) {
     const Eigen::VectorXd away = point - model.prior.mean;
     cost_ = away.cwiseQuotient(model.prior.covariance.diagonal().cwiseSqrt()).squaredNorm();
-    information_ = model.prior.covariance.llt().solve(Information::Identity());
+    information_ = Cholesky(model.prior.covariance).inverse();
     gradient_ = -information_ * away;
   }
 
@@ -83,7 +84,7 @@ class ChannelWalk {
   }
 
   ChainPass result() const {
-    const Information covariance = information_.llt().solve(Information::Identity());
+    const Information covariance = Cholesky(information_).inverse();
     const ChannelParameters step = covariance * gradient_;
     const Eigen::Index states = kLaneStates * std::ssize(lanes_);
     Eigen::VectorXd mean(states);

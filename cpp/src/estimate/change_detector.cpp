@@ -2,7 +2,6 @@
 // A Bayesian form of the generalised likelihood ratio of Willsky and Jones (1976), with heavy tails.
 #include "slipwise/estimate/change_detector.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -54,7 +54,8 @@ Fitted fit(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change) {
   Fitted at{Eigen::VectorXd::Zero(changes), Eigen::VectorXd::Ones(residuals.size()),
             Eigen::VectorXd::Constant(changes, kStart)};
   for (int i = 0; i < kIterations; ++i) {
-    at.change = normal_matrix(by_change, at).llt().solve(by_change.transpose() * at.row_weight.cwiseProduct(residuals));
+    at.change =
+        Cholesky(normal_matrix(by_change, at)).solve(by_change.transpose() * at.row_weight.cwiseProduct(residuals));
     reweigh(at, residuals - by_change * at.change);
   }
   return at;
@@ -67,10 +68,10 @@ ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by
   const Eigen::ArrayXd before = squares_by_segment(residuals);
   const Eigen::ArrayXd after = squares_by_segment(residuals - by_change * at.change);
   const double explained = 0.5 * (kTailDegrees + 3.0) * ((kTailDegrees + before) / (kTailDegrees + after)).log().sum();
-  const Eigen::LLT<Eigen::MatrixXd> normal(normal_matrix(by_change, at));
-  const Eigen::MatrixXd spread = normal.solve(Eigen::MatrixXd::Identity(at.change.size(), at.change.size()));
+  const Cholesky normal(normal_matrix(by_change, at));
+  const Eigen::MatrixXd spread = normal.inverse();
   const double gain = explained - (at.change.array().square() / 2.0).log1p().sum();
-  const double occam = normal.matrixLLT().diagonal().array().log().sum();  // half the log determinant
+  const double occam = normal.log_determinant() / 2.0;
   const double determined = (1.0 - spread.diagonal().array() * at.prior_weight.array()).sum();
   return {.log_odds = gain - occam, .gain = gain, .expected_gain = 0.5 * determined};
 }

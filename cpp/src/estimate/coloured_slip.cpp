@@ -2,7 +2,6 @@
 // A bank of small Kalman filters over the deviation of slip from what was learned (derivations.md, section 18).
 #include "slipwise/estimate/coloured_slip.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -11,6 +10,7 @@
 
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/innovation.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
@@ -104,7 +104,7 @@ void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, c
   for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
     const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
-    const double nis = innovation.dot(next.noise.llt().solve(innovation));
+    const double nis = normalised_square(innovation, next.noise);
     scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
   }
   law_.weights = reweighed(law_.weights, scores, prior_, weighing_, seen_);

@@ -2,13 +2,14 @@
 // Augmented filter over parameters, present pose and cloned pose.
 #include "slipwise/estimate/delayed_state.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 namespace {
@@ -104,7 +105,7 @@ void DelayedState::advance_at(const Point& point, const InputTrack& inputs, cons
 void DelayedState::update(Eigen::Index row, const Pose2& measured, const Eigen::Matrix3d& noise) {
   const Eigen::Index n = joint_.mean.size();
   const Eigen::Matrix3d s = joint_.covariance.block<3, 3>(row, row) + noise;
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = s.llt().solve(joint_.covariance.middleRows<3>(row)).transpose();
+  const Eigen::MatrixX3d gain = kalman_gain(s, joint_.covariance.middleRows<3>(row));
   joint_.mean += gain * (measured.vector() - joint_.mean.segment<3>(row));
   Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(n, n);
   keep.middleCols<3>(row) -= gain;
@@ -128,7 +129,7 @@ IekfUpdate DelayedState::judge(const Pose2& end) const {
                     .nis = 0.0,
                     .weight = 1.0,
                     .status = Status::Converged};
-  update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
+  update.nis = normalised_square(update.innovation, update.innovation_covariance);
   if (!(update.nis <= iekf_.gate)) {
     update.weight = 0.0;
     update.status = Status::Rejected;
@@ -207,7 +208,7 @@ bool DelayedState::change_prior(const Eigen::VectorXd& old_std, const Eigen::Vec
   const Eigen::VectorXd per_unit = changed.covariance.diagonal().head(m).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd correlation =
       per_unit.asDiagonal() * changed.covariance.topLeftCorner(m, m) * per_unit.asDiagonal();
-  if (!changed.covariance.allFinite() || !correlation.allFinite() || correlation.llt().info() != Eigen::Success) {
+  if (!changed.covariance.allFinite() || !correlation.allFinite() || !Cholesky(correlation).positive_definite()) {
     return false;
   }
   joint_ = std::move(changed);

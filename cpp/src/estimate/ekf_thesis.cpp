@@ -2,11 +2,11 @@
 // Table 6.1, line by line. Errata that change nothing but the letters are corrected in the comments.
 #include "slipwise/estimate/ekf_thesis.hpp"
 
-#include <Eigen/Cholesky>
 #include <optional>
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 
@@ -30,8 +30,7 @@ IekfUpdate EkfThesis::learn(const InputTrack& inputs, const Segment& segment) {
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, Eigen::Vector3d::Ones());
   const Eigen::Matrix<double, 3, Eigen::Dynamic> spread = jacobian * covariance;
   const Eigen::Matrix3d s = spread * jacobian.transpose() + noise;
-  const auto factor = s.llt();
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = factor.solve(spread).transpose();
+  const Eigen::MatrixX3d gain = kalman_gain(s, spread);
   // 4. and 5. No iteration, no gate.
   const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
   estimate_.mean += gain * residual;
@@ -40,7 +39,7 @@ IekfUpdate EkfThesis::learn(const InputTrack& inputs, const Segment& segment) {
   return {.estimate = estimate_,
           .innovation = residual,
           .innovation_covariance = s,
-          .nis = residual.dot(factor.solve(residual)),
+          .nis = normalised_square(residual, s),
           .weight = 1.0,
           .status = Status::Converged};
 }

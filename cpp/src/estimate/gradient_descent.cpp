@@ -2,8 +2,9 @@
 // The damped, weighted step of (6.12).
 #include "slipwise/estimate/gradient_descent.hpp"
 
-#include <Eigen/Cholesky>
 #include <utility>
+
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 
@@ -17,7 +18,7 @@ IekfUpdate GradientDescent::learn(const InputTrack& inputs, const Segment& segme
   const Eigen::Matrix3d damped =
       jacobian * metric.asDiagonal() * jacobian.transpose() + settings_.damping * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();  // (6.4)
-  const Eigen::Vector3d solved = damped.llt().solve(residual);
+  const Eigen::Vector3d solved = solve_innovation(damped, residual);
   estimate_.mean += settings_.learning_rate * metric.asDiagonal() * (jacobian.transpose() * solved);  // (6.12)
   return {.estimate = estimate_,
           .innovation = residual,

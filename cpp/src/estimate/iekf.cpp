@@ -2,13 +2,14 @@
 // The IEKF update: Gauss-Newton on the MAP cost of one segment, covariance once at the end in Joseph form.
 #include "slipwise/estimate/iekf.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -45,7 +46,7 @@ class MapProblem {
   /// The prior's mean, where the segment is linearised `at`.
   Iterate begin(SegmentLinearization at) const {
     const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
-    return {Eigen::VectorXd::Zero(prior_.mean.size()), prior_.mean, std::move(at), r, r.dot(noise_.llt().solve(r))};
+    return {Eigen::VectorXd::Zero(prior_.mean.size()), prior_.mean, std::move(at), r, normalised_square(r, noise_)};
   }
 
   Iterate evaluate(Eigen::VectorXd dual) const {
@@ -53,7 +54,7 @@ class MapProblem {
     Eigen::VectorXd mean = prior_.mean + away;
     SegmentLinearization at = linearize_segment(model_, mean, inputs_, segment_);
     const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
-    const double cost = dual.dot(away) + r.dot(noise_.llt().solve(r));
+    const double cost = dual.dot(away) + normalised_square(r, noise_);
     return {std::move(dual), std::move(mean), std::move(at), r, cost};
   }
 
@@ -61,14 +62,14 @@ class MapProblem {
   Eigen::VectorXd gauss_newton_dual(const Iterate& i) const {
     const auto& jacobian = i.at.by_parameter;
     const Eigen::Matrix3d s = innovation_covariance(prior_.covariance, jacobian, noise_);
-    return jacobian.transpose() * s.llt().solve(i.innovation - jacobian * (prior_.mean - i.mean));
+    return jacobian.transpose() * solve_innovation(s, i.innovation - jacobian * (prior_.mean - i.mean));
   }
 
   /// What a step in dual coordinates lowers the cost by, were the segment linear.
   double promised(const Iterate& i, const Eigen::VectorXd& step) const {
     const Eigen::VectorXd moved = prior_.covariance * step;
     const Eigen::Vector3d seen = i.at.by_parameter * moved;
-    return step.dot(moved) + seen.dot(noise_.llt().solve(seen));
+    return step.dot(moved) + normalised_square(seen, noise_);
   }
 
   /// Goes a step, or half of it and so on while the MAP cost grows. False when nothing helps.
@@ -116,7 +117,7 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
   }
   const Jacobian spread = jacobian * prior;
   const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
-  const Eigen::Matrix<double, Eigen::Dynamic, 3> gain = s.llt().solve(spread).transpose();
+  const Eigen::MatrixX3d gain = kalman_gain(s, spread);
   const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
   const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
   return (posterior + posterior.transpose()) / 2.0;
@@ -128,13 +129,13 @@ Eigen::Matrix3d bending(const MotionModel& model, const Estimate& estimate, cons
                         const Segment& segment, const Eigen::Vector3d& predicted) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
   const auto rows = Eigen::seqN(model.slip_size(), model.chain_size());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> open(estimate.covariance(rows, rows));
+  const SymmetricEigen open = symmetric_eigen(estimate.covariance(rows, rows));
   for (Eigen::Index i = 0; i < model.chain_size(); ++i) {
-    const double std = std::sqrt(std::max(open.eigenvalues()[i], 0.0));
+    const double std = std::sqrt(std::max(open.values[i], 0.0));
     if (std < kStraight) {
       continue;
     }
-    const Eigen::VectorXd step = estimate.covariance(Eigen::all, rows) * open.eigenvectors().col(i) / std;
+    const Eigen::VectorXd step = estimate.covariance(Eigen::all, rows) * open.vectors.col(i) / std;
     const auto at = [&](double sign) {
       return integrate_segment(model, estimate.mean + sign * step, inputs, segment).sensor_motion().vector();
     };
@@ -154,7 +155,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
   if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
   }
-  if (!noise.allFinite() || noise.llt().info() != Eigen::Success) {
+  if (!noise.allFinite() || !Cholesky(noise).positive_definite()) {
     throw std::invalid_argument("a segment's noise covariance must be finite and positive definite");
   }
 }
@@ -182,7 +183,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
                     .weight = 1.0,
                     .status = Status::Converged,
                     .at = now.at};
-  update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
+  update.nis = normalised_square(update.innovation, update.innovation_covariance);
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
     update.status = Status::Rejected;

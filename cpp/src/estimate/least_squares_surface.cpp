@@ -45,6 +45,27 @@ Eigen::VectorXd column_scale(const Eigen::MatrixXd& design) {
   return (scale.array() > kFloor).select(scale, 1.0);
 }
 
+/// A = U diag(values) V^T, the values in falling order.
+struct SingularValues {
+  Eigen::MatrixXd u;  ///< [rows, columns]
+  Eigen::VectorXd values;
+  Eigen::MatrixXd v;  ///< [columns, columns]
+};
+
+/// By QR first, since designs are tall: A = Q R, and R is small. Rows of zeros make a flat design square.
+SingularValues singular_values(const Eigen::MatrixXd& design) {
+  const Eigen::Index n = design.cols(), rows = std::max(design.rows(), n);
+  Eigen::MatrixXd padded = Eigen::MatrixXd::Zero(rows, n);
+  padded.topRows(design.rows()) = design;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(padded);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
+  const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::MatrixXd u = Eigen::MatrixXd::Zero(rows, n);
+  u.topRows(n) = svd.matrixU();
+  u.applyOnTheLeft(qr.householderQ());
+  return {u.topRows(design.rows()), svd.singularValues(), svd.matrixV()};
+}
+
 void check(const Eigen::Ref<const Eigen::MatrixXd>& design, const Eigen::Ref<const Eigen::VectorXd>& output,
            const Eigen::Ref<const Eigen::VectorXd>& relative_std) {
   if (design.rows() == 0 || output.size() != design.rows() || relative_std.size() != design.rows()) {
@@ -80,18 +101,17 @@ LeastSquaresFit fit_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& desig
   const Eigen::VectorXd weight = relative_std.cwiseInverse();
   const Eigen::VectorXd scale = column_scale(design);
   const Eigen::MatrixXd scaled = weight.asDiagonal() * design * scale.cwiseInverse().asDiagonal();
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeFullV);
-  const Eigen::VectorXd& values = svd.singularValues();
-  const double limit = values.size() > 0 ? std::max(kRankTolerance * values[0], kFloor) : 0.0;
-  const Eigen::Index rank = (values.array() > limit).count();
-  const Eigen::MatrixXd u = svd.matrixU().leftCols(rank);
-  const Eigen::MatrixXd v = scale.cwiseInverse().asDiagonal() * svd.matrixV().leftCols(rank);
-  const Eigen::VectorXd inverse = values.head(rank).cwiseInverse();
+  const SingularValues svd = singular_values(scaled);
+  const double limit = std::max(kRankTolerance * svd.values[0], kFloor);
+  const Eigen::Index rank = (svd.values.array() > limit).count();
+  const Eigen::MatrixXd u = svd.u.leftCols(rank);
+  const Eigen::MatrixXd v = scale.cwiseInverse().asDiagonal() * svd.v.leftCols(rank);
+  const Eigen::VectorXd inverse = svd.values.head(rank).cwiseInverse();
 
   LeastSquaresFit fit;
   fit.scale = scale;
   fit.coefficients = v * (inverse.asDiagonal() * (u.transpose() * weight.cwiseProduct(output)));
-  fit.undetermined = sparse_directions(svd.matrixV().rightCols(design.cols() - rank));
+  fit.undetermined = sparse_directions(svd.v.rightCols(design.cols() - rank));
   fit.residual = output - design * fit.coefficients;
   fit.leverage = u.rowwise().squaredNorm();
   const double left = static_cast<double>(std::max<Eigen::Index>(design.rows() - rank, 1));

@@ -2,13 +2,13 @@
 // A Student t likelihood of wheel speeds of a limited drive, and its descent.
 #include "slipwise/estimate/limited_drive_fit.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "slipwise/actuator/chain_output.hpp"
 #include "slipwise/estimate/limited_drive_parameters.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -274,7 +274,7 @@ void LimitedDriveFit::step(FittedDrive& best, const Normal& normal, const std::v
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     Eigen::MatrixXd damped = normal.information;
     damped.diagonal() += damping * normal.information.diagonal() + Eigen::VectorXd::Constant(normal.pull.size(), 1e-9);
-    const Eigen::VectorXd way = damped.ldlt().solve(normal.pull).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
+    const Eigen::VectorXd way = solve_symmetric(damped, normal.pull).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
     DriveParameters moved = p;
     for (Eigen::Index k = 0; k < way.size(); ++k) {
       moved[free[static_cast<std::size_t>(k)]] += way[k];
@@ -356,7 +356,7 @@ LimitedDriveFit::Spread LimitedDriveFit::spread(const LimitedDrive& drive) const
       meat += block * block.transpose();
     }
   }
-  const Eigen::MatrixXd inverse = bread.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  const Eigen::MatrixXd inverse = solve_symmetric_columns(bread, Eigen::MatrixXd::Identity(size, size));
   // A limit may show in a few stretches alone, which the fit then follows: their residuals are too small to tell.
   const Eigen::MatrixXd unlike = inverse * alone * inverse;
   const Eigen::VectorXd variance = (inverse * meat * inverse).diagonal().cwiseMax(unlike.diagonal());

@@ -2,8 +2,6 @@
 // Both objectives are linear in the variances: normal equations with different weights, solved for x >= 0.
 #include "slipwise/estimate/noise_fit.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,8 @@
 #include <string>
 
 #include "slipwise/estimate/nonnegative.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 
 namespace slipwise {
 namespace {
@@ -44,7 +44,7 @@ std::array<Eigen::MatrixXd, 6> test_matrices(const GroupScatter& group, const Ei
                                              NoiseObjective objective) {
   std::array<Eigen::MatrixXd, 6> tests;
   if (objective == NoiseObjective::Fisher) {
-    const Eigen::LLT<Eigen::MatrixXd> factor(expected);
+    const Cholesky factor(expected);
     for (std::size_t i = 0; i < 6; ++i) {
       const Eigen::MatrixXd half = factor.solve(group.parts[i]);
       tests[i] = 0.5 * group.freedom * factor.solve(half.transpose());
@@ -96,8 +96,7 @@ NormalEquations normal_equations(std::span<const GroupScatter> groups, const Vec
   }
   const Vector6 scale = equations.matrix.diagonal().cwiseSqrt().cwiseInverse();
   const Matrix6 scaled = scale.asDiagonal() * equations.matrix * scale.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled, Eigen::EigenvaluesOnly);
-  if (!scaled.allFinite() || solver.eigenvalues()[0] < kDistinct) {
+  if (!scaled.allFinite() || symmetric_eigen(scaled).values[0] < kDistinct) {
     throw std::invalid_argument(
         "slip noise and start uncertainty cannot be told apart; give at least two times, far from each other");
   }
@@ -109,8 +108,7 @@ bool has_rank_three(const Eigen::MatrixXd& scatter) {
     const Eigen::Matrix3d block = scatter.block<3, 3>(k, k);
     const Eigen::Vector3d scale = block.diagonal().cwiseSqrt().cwiseInverse();
     const Eigen::Matrix3d correlation = scale.asDiagonal() * block * scale.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(correlation, Eigen::EigenvaluesOnly);
-    if (!correlation.allFinite() || solver.eigenvalues()[0] < kDefinite) {
+    if (!correlation.allFinite() || symmetric_eigen(correlation).values[0] < kDefinite) {
       return false;
     }
   }
@@ -142,7 +140,7 @@ Vector6 first_guess(std::span<const GroupScatter> groups) {
 }
 
 Matrix6 covariance_of(const NormalEquations& at) {
-  const Matrix6 inverse = at.matrix.llt().solve(Matrix6::Identity());
+  const Matrix6 inverse = Cholesky(at.matrix).inverse();
   return inverse * at.spread * inverse;  // for Fisher scoring, spread = matrix
 }
 

@@ -2,10 +2,11 @@
 // Unknowns enter one by one where that lowers the cost, and leave where the solution would turn negative.
 #include "slipwise/estimate/nonnegative.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <stdexcept>
 #include <vector>
+
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -17,7 +18,7 @@ Eigen::VectorXd restricted_solution(const Eigen::MatrixXd& a, const Eigen::Vecto
   if (!free.empty()) {
     const Eigen::MatrixXd matrix = a(free, free);
     const Eigen::VectorXd vector = b(free);
-    const Eigen::VectorXd solution = matrix.llt().solve(vector);
+    const Eigen::VectorXd solution = Cholesky(matrix).solve(vector);
     x(free) = solution;
   }
   return x;
@@ -41,7 +42,7 @@ void step_to_border(Eigen::VectorXd& x, const Eigen::VectorXd& target, std::vect
 }  // namespace
 
 Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
-  if (a.rows() != b.size() || a.cols() != b.size() || a.llt().info() != Eigen::Success) {
+  if (a.rows() != b.size() || a.cols() != b.size() || !Cholesky(a).positive_definite()) {
     throw std::invalid_argument("non-negative least squares needs a positive definite matrix of the vector's size");
   }
   // Unit diagonal: variances of metres and of radians differ by orders of magnitude.

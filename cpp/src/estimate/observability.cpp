@@ -2,11 +2,12 @@
 // Posterior against prior, in units of the prior (derivations.md, section 6).
 #include "slipwise/estimate/observability.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <stdexcept>
+
+#include "slipwise/linear/symmetric_eigen.hpp"
 
 namespace slipwise {
 
@@ -19,11 +20,9 @@ Observability observability(const Estimate& posterior, const Eigen::Ref<const Ei
   }
   const Eigen::VectorXd inverse = prior_std.cwiseInverse();
   const Eigen::MatrixXd relative = inverse.asDiagonal() * posterior.covariance * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(relative);
+  const SymmetricEigen eigen = symmetric_eigen(relative);
   const Eigen::Index last = prior_std.size() - 1;
-  return {.ratio = relative.diagonal(),
-          .weakest = solver.eigenvectors().col(last),
-          .weakest_ratio = solver.eigenvalues()[last]};
+  return {.ratio = relative.diagonal(), .weakest = eigen.vectors.col(last), .weakest_ratio = eigen.values[last]};
 }
 
 std::vector<CorrelatedPair> correlated_pairs(const Eigen::Ref<const Eigen::MatrixXd>& covariance, double least) {

@@ -2,9 +2,10 @@
 // Gauss-Newton over the start of a passage, and conditioning of its end.
 #include "slipwise/estimate/passage.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <utility>
+
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 namespace {
@@ -21,7 +22,7 @@ struct Iterate {
 Iterate evaluated(const Estimate& prior, PassagePoint point, const Eigen::VectorXd& measured, Eigen::VectorXd dual) {
   const Eigen::VectorXd away = prior.covariance * dual;
   const Eigen::VectorXd r = measured - point.at.seen();
-  const double cost = dual.dot(away) + r.dot(point.at.seen_noise().llt().solve(r));
+  const double cost = dual.dot(away) + r.dot(Cholesky(point.at.seen_noise()).solve(r));
   return {std::move(dual), std::move(point), cost};
 }
 
@@ -34,7 +35,7 @@ Iterate evaluate(const Estimate& prior, const Foretell& foretell, const Eigen::V
 Eigen::VectorXd gauss_newton_dual(const Estimate& prior, const Iterate& i, const Eigen::VectorXd& measured) {
   const Passage& at = i.point.at;
   const Eigen::VectorXd left = measured - at.seen() - at.seen_slope() * (prior.mean - i.point.state);
-  return at.seen_slope().transpose() * innovation_covariance(prior, at).llt().solve(left);
+  return at.seen_slope().transpose() * Cholesky(innovation_covariance(prior, at)).solve(left);
 }
 
 }  // namespace
@@ -67,7 +68,7 @@ PassagePoint settle(const Estimate& prior, Passage expected, const Foretell& for
 
 Eigen::MatrixXd start_covariance(const Estimate& prior, const Passage& at) {
   const Eigen::MatrixXd spread = at.seen_slope() * prior.covariance;
-  return prior.covariance - spread.transpose() * innovation_covariance(prior, at).llt().solve(spread);
+  return prior.covariance - spread.transpose() * Cholesky(innovation_covariance(prior, at)).solve(spread);
 }
 
 Estimate end_estimate(const Estimate& prior, const PassagePoint& point, const Eigen::VectorXd& measured) {
@@ -76,7 +77,7 @@ Estimate end_estimate(const Estimate& prior, const PassagePoint& point, const Ei
   const Eigen::MatrixXd& h = at.slope.topRows(at.measured);
   const Eigen::MatrixXd& a = at.slope.bottomRows(n);
   const Eigen::MatrixXd cross = a * prior.covariance * h.transpose() + at.noise.bottomLeftCorner(n, at.measured);
-  const Eigen::MatrixXd gain = innovation_covariance(prior, at).llt().solve(cross.transpose()).transpose();
+  const Eigen::MatrixXd gain = Cholesky(innovation_covariance(prior, at)).solve(cross.transpose()).transpose();
   Eigen::MatrixXd mixed(n, at.measured + n);  // of the noise, what reaches the estimate
   mixed << -gain, Eigen::MatrixXd::Identity(n, n);
   const Eigen::MatrixXd keep = a - gain * h;

@@ -2,7 +2,7 @@
 // Scoring predictions of segments.
 #include "slipwise/estimate/predictive_score.hpp"
 
-#include <Eigen/Cholesky>
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 
@@ -15,7 +15,7 @@ ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& e
   const Eigen::Matrix3d covariance = open + scaled_covariance(expected, noise_scale_.value());
   const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
   noise_scale_.learn_prediction(innovation.cwiseAbs2(), open.diagonal(), expected.diagonal());
-  return {innovation, covariance, innovation.dot(covariance.llt().solve(innovation))};
+  return {innovation, covariance, normalised_square(innovation, covariance)};
 }
 
 }  // namespace slipwise

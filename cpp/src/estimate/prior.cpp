@@ -2,9 +2,9 @@
 // Priors in physical units (derivations.md, section 10).
 #include "slipwise/estimate/prior.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
+#include "slipwise/linear/cholesky.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
 namespace slipwise {
@@ -65,17 +65,17 @@ std::optional<Estimate> change_slip_prior(const Estimate& estimate, const Eigen:
   // In units of the present standard deviations, so that terms of very different size do not spoil the inverse.
   const Eigen::VectorXd unit = estimate.covariance.diagonal().cwiseSqrt();
   const Eigen::VectorXd per_unit = unit.cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> correlation(per_unit.asDiagonal() * estimate.covariance * per_unit.asDiagonal());
-  Eigen::MatrixXd information = correlation.solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+  const Cholesky correlation(per_unit.asDiagonal() * estimate.covariance * per_unit.asDiagonal());
+  Eigen::MatrixXd information = correlation.inverse();
   const Eigen::VectorXd evidence = information * per_unit.cwiseProduct(estimate.mean);
   const Eigen::Index slip = old_std.size();
   information.diagonal().head(slip) +=
       unit.head(slip).cwiseAbs2().cwiseProduct(new_std.cwiseAbs2().cwiseInverse() - old_std.cwiseAbs2().cwiseInverse());
-  const Eigen::LLT<Eigen::MatrixXd> changed(information);
-  if (!information.allFinite() || correlation.info() != Eigen::Success || changed.info() != Eigen::Success) {
+  const Cholesky changed(information);
+  if (!information.allFinite() || !correlation.positive_definite() || !changed.positive_definite()) {
     return std::nullopt;
   }
-  const Eigen::MatrixXd covariance = changed.solve(Eigen::MatrixXd::Identity(unit.size(), unit.size()));
+  const Eigen::MatrixXd covariance = changed.inverse();
   return Estimate{unit.cwiseProduct(changed.solve(evidence)), unit.asDiagonal() * covariance * unit.asDiagonal()};
 }
 

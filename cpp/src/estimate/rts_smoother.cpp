@@ -2,10 +2,10 @@
 // Rauch, Tung and Striebel 1965 over iterated forward updates.
 #include "slipwise/estimate/rts_smoother.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 
+#include "slipwise/linear/cholesky.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
@@ -48,7 +48,8 @@ std::vector<Estimate> rts_smooth(const MotionModel& model, const Estimate& prior
   }
   for (std::size_t k = data.size() - 1; k-- > 0;) {  // backward: C = P_k a P_{k+1|k}^-1
     const double a = kept(distances[k], drift);
-    const Eigen::MatrixXd gain = a * predicted[k + 1].covariance.ldlt().solve(smoothed[k].covariance).transpose();
+    const Eigen::MatrixXd gain =
+        a * solve_symmetric_columns(predicted[k + 1].covariance, smoothed[k].covariance).transpose();
     smoothed[k].mean += gain * (smoothed[k + 1].mean - predicted[k + 1].mean);
     const Eigen::MatrixXd change = smoothed[k + 1].covariance - predicted[k + 1].covariance;
     smoothed[k].covariance += gain * change * gain.transpose();

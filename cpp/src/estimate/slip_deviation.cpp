@@ -2,9 +2,10 @@
 // A small Kalman filter over the deviation of slip from what was learned (derivations.md, section 18).
 #include "slipwise/estimate/slip_deviation.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+
+#include "slipwise/linear/innovation.hpp"
 
 namespace slipwise {
 namespace {
@@ -24,10 +25,9 @@ void SlipDeviation::follow(const SeenSlip& seen) {
   const SeenSlip::ByDeviation& h = seen.by_deviation;
   const Eigen::Vector3d innovation = seen.innovation - h * mean_;
   const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + seen.noise;
-  const double nis = innovation.dot(expected.llt().solve(innovation));
+  const double nis = normalised_square(innovation, expected);
   const Eigen::Matrix3d doubted = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
-  const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::ColMajor, kMostWandering, 3> gain =
-      doubted.llt().solve(h * covariance_).transpose();
+  const Eigen::MatrixX3d gain = kalman_gain(doubted, h * covariance_);
   mean_ += gain * innovation;
   covariance_ -= gain * h * covariance_;
   covariance_ = (covariance_ + covariance_.transpose()).eval() / 2.0;

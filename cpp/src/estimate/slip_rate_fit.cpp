@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "slipwise/linear/cholesky.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -140,8 +142,7 @@ class GroupProblem {
 
 /// Poses of one segment err together, so the covariance of (4.1) is that of whole segments (a sandwich).
 Eigen::MatrixXd covariance_of(const GroupProblem::Equations& at, std::size_t segments, bool weighed) {
-  const auto size = at.information.rows();
-  Eigen::MatrixXd inverse = at.information.llt().solve(Eigen::MatrixXd::Identity(size, size));
+  Eigen::MatrixXd inverse = Cholesky(at.information).inverse();
   if (weighed) {
     return inverse;
   }
@@ -180,7 +181,7 @@ SlipRateFit minimise(const GroupProblem& problem, const Eigen::Vector3d& start, 
     ++fit.iterations;
     const auto equations = problem.equations(fit.slip);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    step.head(problem.unknowns()) = equations.information.llt().solve(equations.gradient);
+    step.head(problem.unknowns()) = Cholesky(equations.information).solve(equations.gradient);
     const double before = fit.cost;
     const bool lower = descend(problem, step, fit);
     // Where no step is downhill, none is left at working precision.

@@ -2,10 +2,10 @@
 // The extended Kalman filter of slip ratios and slip angle.
 #include "slipwise/estimate/slip_ratio_filter.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 #include <stdexcept>
 
+#include "slipwise/linear/innovation.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -60,13 +60,13 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputTrack& wheels, const Segment& 
                          .innovation_covariance = h * prior * h.transpose() + noise,
                          .nis = 0.0,
                          .weight = 1.0};
-  update.nis = update.innovation.dot(update.innovation_covariance.llt().solve(update.innovation));
+  update.nis = normalised_square(update.innovation, update.innovation_covariance);
   if (const double sigmas = std::sqrt(update.nis); sigmas > settings_.huber) {
     update.weight = settings_.huber / sigmas;
   }
   const Eigen::Matrix3d weighted = noise / update.weight;
   const Eigen::Matrix3d s = h * prior * h.transpose() + weighted;
-  const Eigen::Matrix3d gain = s.llt().solve(h * prior).transpose();
+  const Eigen::Matrix3d gain = kalman_gain(s, h * prior);
   const Eigen::Matrix3d keep = Eigen::Matrix3d::Identity() - gain * h;
   const Eigen::Matrix3d posterior = keep * prior * keep.transpose() + gain * weighted * gain.transpose();
   const Eigen::Vector3d mean = estimate_.mean + gain * update.innovation;

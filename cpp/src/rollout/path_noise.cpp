@@ -2,10 +2,11 @@
 // Slip noise of one period, and the paths that it acts on.
 #include "slipwise/rollout/path_noise.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "slipwise/linear/symmetric_eigen.hpp"
 
 namespace slipwise {
 
@@ -37,8 +38,8 @@ RolloutProgram drive_alone(const UncertainModel& model) {
 }
 
 Eigen::MatrixXd covariance_root(const Eigen::Ref<const Eigen::MatrixXd>& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 RolloutPaths roll_paths(const RolloutProgram& program, const RolloutBatch<double>& batch,

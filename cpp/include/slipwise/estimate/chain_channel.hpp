@@ -3,7 +3,6 @@
 // (derivations.md, section 4).
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "slipwise/estimate/chain_pass.hpp"
 #include "slipwise/estimate/passage.hpp"
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 
@@ -46,8 +46,7 @@ class ChainChannel {
   DriveNoiseMeans noise_means(const WheelMeans& seen) const;
   Eigen::VectorXd measured(const WheelMeans& seen) const;
   double mean_nis(const WheelMeans& seen, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) const;
-  void learn_size(const Eigen::VectorXd& innovation, const Eigen::LLT<Eigen::MatrixXd>& covariance,
-                  const Eigen::MatrixXd& noise);
+  void learn_size(const Eigen::VectorXd& innovation, const Cholesky& covariance, const Eigen::MatrixXd& noise);
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one instantiation of Eigen's solver for symmetric matrices of any size.
+#include "slipwise/linear/symmetric_eigen.hpp"
+
+#include <Eigen/Eigenvalues>
+
+namespace slipwise {
+
+SymmetricEigen symmetric_eigen(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
+}  // namespace slipwise

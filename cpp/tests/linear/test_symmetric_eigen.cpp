@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Eigenvalues and eigenvectors put a symmetric matrix together again.
+#include "slipwise/linear/symmetric_eigen.hpp"
+
+#include <doctest/doctest.h>
+
+namespace slipwise {
+namespace {
+
+TEST_CASE("eigenvalues rise, eigenvectors are orthonormal, and together they are the matrix") {
+  Eigen::Matrix3d a;
+  a << 4.0, 1.0, -2.0, 1.0, 3.0, 0.5, -2.0, 0.5, 5.0;
+  const SymmetricEigen eigen = symmetric_eigen(a);
+  CHECK(eigen.values[0] <= eigen.values[1]);
+  CHECK(eigen.values[1] <= eigen.values[2]);
+  CHECK((eigen.vectors.transpose() * eigen.vectors - Eigen::Matrix3d::Identity()).norm() < 1e-14);
+  CHECK((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a).norm() < 1e-13);
+}
+
+}  // namespace
+}  // namespace slipwise
