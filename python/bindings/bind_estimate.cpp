@@ -307,6 +307,13 @@ void bind_estimate(nb::module_& m) {
                              {.dynamics = dynamics, .clock_offset = clock_offset, .mount = mount}, filter, settings);
           },
           "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "mount"_a, "filter"_a, "settings"_a)
+      .def_static(
+          "with_delays",
+          [](std::string name, const std::vector<Basis>& bases, bool mount, const CausalFilterSettings& filter,
+             const ModelAverageSettings& settings) {
+            return ModelAverage(std::move(name), bases, {.mount = mount, .delays = true}, filter, settings);
+          },
+          "name"_a, "bases"_a, "mount"_a, "filter"_a, "settings"_a, "Of delays alone, without an actuator model.")
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })

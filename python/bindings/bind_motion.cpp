@@ -31,6 +31,9 @@ void bind_motion(nb::module_& m) {
             return MotionModel(basis, {.dynamics = true, .clock_offset = clock_offset, .response = true});
           },
           "basis"_a, "clock_offset"_a, "Lag, delay, gain and a slow part per channel, as wheel speeds show them.")
+      .def_static(
+          "with_delays", [](const Basis& basis) { return MotionModel(basis, {.delays = true}); }, "basis"_a,
+          "A delay per channel, and no actuator model behind it.")
       .def(
           "with_mount",
           [](const MotionModel& model, bool mount) {
@@ -41,6 +44,7 @@ void bind_motion(nb::module_& m) {
           "mount"_a, "The same with or without the pose of its pose sensor in base_link as three more parameters.")
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
+      .def_prop_ro("delays", [](const MotionModel& model) { return model.learned().delays; })
       .def_prop_ro("clock_offset", [](const MotionModel& model) { return model.learned().clock_offset; })
       .def_prop_ro("response", [](const MotionModel& model) { return model.learned().response; })
       .def_prop_ro("mount", [](const MotionModel& model) { return model.learned().mount; })

@@ -24,6 +24,7 @@ class Made:
     std: float = 0.01  # of every parameter
     commands: bool = False
     response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
+    delays: tuple[float, float] | None = None  # s, from commands without an actuator model
     clock_offset: float | None = None
     limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by lane
     mount: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
@@ -82,12 +83,15 @@ def make_model(made: Made) -> Model:
     offset = made.clock_offset is not None
     if made.response:
         motion = _core.MotionModel.with_response(made.basis, offset)
+    elif made.delays is not None:
+        motion = _core.MotionModel.with_delays(made.basis)
     else:
         motion = _core.MotionModel(made.basis, made.commands, offset)
     motion = motion.with_mount(made.mount is not None)
     sensor = made.mount or (0.0, 0.0, 0.0)
     values = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), sensor, strict=True))
     values |= {"clock_offset": made.clock_offset or 0.0}
+    values |= dict(zip(("delay_v", "delay_omega"), made.delays or (0.0, 0.0), strict=True))
     for place in ("v", "omega"):
         values |= {f"log_lag_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
         values |= {
@@ -111,7 +115,7 @@ def make_model(made: Made) -> Model:
     ]
     content = {
         "slipwise_model": 3,
-        "input": "command" if made.commands or made.response else "wheel",
+        "input": "wheel" if not (made.commands or made.response or made.delays) else "command",
         "slip": {
             "basis": made.basis.name,
             "lon": made.basis.lon,
@@ -120,6 +124,7 @@ def make_model(made: Made) -> Model:
         },
         "dynamics": made.commands or made.response,
         "response": made.response,
+        "delays": made.delays is not None,
         "clock_offset": made.clock_offset is not None,
         "mount": made.mount is not None,
         "limits": None if made.limits is None else _limits(made.limits),

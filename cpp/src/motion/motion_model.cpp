@@ -2,8 +2,11 @@
 // The layout of a motion model's parameter vector.
 #include "slipwise/motion/motion_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
+#include <iterator>
 #include <stdexcept>
 
 namespace slipwise {
@@ -27,8 +30,10 @@ struct ChainParameter {
   const char* description;
 };
 
-/// In CommandChain's order.
-constexpr std::array<ChainParameter, kChainParameters> kChain{{
+constexpr Eigen::Index kDelayV = kChainParameters;  // row of the first delay in seconds
+
+/// In CommandChain's order, then the delays once more: in seconds, not as logarithms.
+constexpr std::array<ChainParameter, kChainParameters + 2> kChain{{
     {&CommandChain::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
     {&CommandChain::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
     {&CommandChain::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
@@ -40,26 +45,38 @@ constexpr std::array<ChainParameter, kChainParameters> kChain{{
     {&CommandChain::slow_share_omega, false, "slow_share_omega", "-", "share of the yaw rate that follows slowly"},
     {&CommandChain::slow_lag_v, true, "log_slow_lag_v", "ln s", "slow time constant of the speed"},
     {&CommandChain::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
+    {&CommandChain::delay_v, false, "delay_v", "s", "how much later than its command the speed is there"},
+    {&CommandChain::delay_omega, false, "delay_omega", "s", "how much later than its command the yaw rate is there"},
 }};
 
 constexpr double kUsualResponse = 0.3;   // [s]
 constexpr double kShortResponse = 0.03;  // [s]; that much shorter times can hardly be told apart
 
-const ChainParameter& chain_parameter(Eigen::Index place) { return kChain[static_cast<std::size_t>(place)]; }
+const ChainParameter& chain_parameter(Eigen::Index row) { return kChain[static_cast<std::size_t>(row)]; }
+
+Eigen::Index place_of(Eigen::Index row) {
+  constexpr Eigen::Index kFirstDelay = 2;  // in CommandChain's order
+  return row < kDelayV ? row : kFirstDelay + row - kDelayV;
+}
 
 }  // namespace
 
 double even_slope(double seconds) { return (seconds + kShortResponse) / (seconds + kUsualResponse); }
 
 MotionModel::MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {
-  const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> places) {
+  if (learned_.delays && (learned_.dynamics || learned_.response)) {
+    throw std::invalid_argument("a motion model has delays alone, or lags and delays, not both");
+  }
+  const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> rows) {
     if (wanted) {
-      chain_places_.insert(chain_places_.end(), places);
+      chain_rows_.insert(chain_rows_.end(), rows);
     }
   };
   add(learned_.dynamics, {0, 1, 2, 3});
+  add(learned_.delays, {kDelayV, kDelayV + 1});
   add(learned_.response, {5, 6, 7, 8, 9, 10});
   add(learned_.clock_offset, {4});
+  std::ranges::transform(chain_rows_, std::back_inserter(chain_places_), place_of);
 }
 
 std::vector<ParameterInfo> MotionModel::parameters() const {
@@ -67,8 +84,8 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
   for (std::size_t i = 0; i < basis_.size(); ++i) {
     infos.push_back(slip_info(basis_, i));
   }
-  for (const Eigen::Index place : chain_places_) {
-    const ChainParameter& parameter = chain_parameter(place);
+  for (const Eigen::Index row : chain_rows_) {
+    const ChainParameter& parameter = chain_parameter(row);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
   if (learned_.mount) {
@@ -82,8 +99,8 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
 CommandChain MotionModel::chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   CommandChain chain;
   Eigen::Index at = slip_size();
-  for (const Eigen::Index place : chain_places_) {
-    const ChainParameter& parameter = chain_parameter(place);
+  for (const Eigen::Index row : chain_rows_) {
+    const ChainParameter& parameter = chain_parameter(row);
     chain.*parameter.value = parameter.logarithm ? std::exp(parameters[at]) : parameters[at];
     ++at;
   }
@@ -97,8 +114,8 @@ Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) co
 Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
   Eigen::VectorXd scales(chain_size());
   Eigen::Index at = 0;
-  for (const Eigen::Index place : chain_places_) {
-    const ChainParameter& parameter = chain_parameter(place);
+  for (const Eigen::Index row : chain_rows_) {
+    const ChainParameter& parameter = chain_parameter(row);
     scales[at++] = parameter.logarithm ? chain.*parameter.value : 1.0;
   }
   return scales;
@@ -107,8 +124,8 @@ Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
 Eigen::VectorXd MotionModel::even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   Eigen::VectorXd slopes = Eigen::VectorXd::Ones(size());
   Eigen::Index at = slip_size();
-  for (const Eigen::Index place : chain_places_) {
-    if (chain_parameter(place).logarithm) {
+  for (const Eigen::Index row : chain_rows_) {
+    if (chain_parameter(row).logarithm) {
       slopes[at] = even_slope(std::exp(parameters[at]));
     }
     ++at;

@@ -276,6 +276,8 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
   alpha_ = parameters.head(model.slip_size());
   chain_ = model.chain(parameters);
   chain_.clock_offset = 0.0;
+  chain_.delay_v = std::max(chain_.delay_v, 0.0);  // what is learned as less is an offset of clocks too
+  chain_.delay_omega = std::max(chain_.delay_omega, 0.0);
 }
 
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,

@@ -30,6 +30,7 @@ TEST_CASE("what is not learned is not a parameter") {
   CHECK(names(MotionModel(basis, {.clock_offset = true})) == Names{"lon.V", "ang.w", "clock_offset"});
   CHECK(names(MotionModel(basis, {.dynamics = true})) ==
         Names{"lon.V", "ang.w", chain[0], chain[1], chain[2], chain[3]});
+  CHECK(names(MotionModel(basis, {.delays = true})) == Names{"lon.V", "ang.w", "delay_v", "delay_omega"});
   CHECK(names(MotionModel(basis, {.clock_offset = true, .mount = true})) ==
         Names{"lon.V", "ang.w", "clock_offset", "sensor_x", "sensor_y", "sensor_yaw"});
   CHECK(MotionModel(basis, {.dynamics = true, .clock_offset = true}).size() == 7);
@@ -57,6 +58,20 @@ TEST_CASE("a chain that is not learned is the identity") {
   CHECK(chain.slow_share_omega == 0.0);
 }
 
+TEST_CASE("delays alone are seconds, none and negative ones too, and nothing lags") {
+  const MotionModel model(named_basis("edd-2"), {.delays = true});
+  const CommandChain chain = model.chain(Eigen::Vector4d(0.1, 0.2, 0.0, -0.02));
+  CHECK(chain.delay_v == 0.0);
+  CHECK(chain.delay_omega == -0.02);
+  CHECK(chain.lag_v == 0.0);
+  CHECK(chain.lag_omega == 0.0);
+}
+
+TEST_CASE("delays alone and lags exclude each other") {
+  CHECK_THROWS_WITH_AS(MotionModel(named_basis("edd-2"), {.dynamics = true, .delays = true}),
+                       doctest::Contains("not both"), std::invalid_argument);
+}
+
 TEST_CASE("a sensor whose place is not learned sits at base_link") {
   const Eigen::Vector2d slip(0.1, 0.2);
   CHECK(MotionModel(named_basis("edd-2"), {}).mount(slip).vector().isZero(0.0));
@@ -68,7 +83,8 @@ TEST_CASE("a sensor whose place is not learned sits at base_link") {
 TEST_CASE("places and scales are the derivative of the chain by the model's parameters") {
   for (const ChainParameters learned :
        {ChainParameters{true, true, true}, ChainParameters{true, true}, ChainParameters{true, false},
-        ChainParameters{false, true}, ChainParameters{}}) {
+        ChainParameters{false, true}, ChainParameters{.delays = true},
+        ChainParameters{.clock_offset = true, .delays = true}, ChainParameters{}}) {
     const MotionModel model(named_basis("edd-2"), learned);
     Eigen::VectorXd p = Eigen::VectorXd::LinSpaced(model.size(), -1.5, -0.4);
     const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {

@@ -143,6 +143,7 @@ def _content(
         input="command" if input_name == "command" else "wheel",
         slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
         dynamics=motion.dynamics,
+        delays=motion.delays,
         clock_offset=motion.clock_offset,
         response=motion.response,
         mount=motion.mount,

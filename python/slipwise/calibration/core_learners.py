@@ -6,15 +6,15 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import TOGETHER, Belief
 
 
 class AverageLearner:
     """An average of bases, or of one."""
 
-    def __init__(self, average: _core.ModelAverage) -> None:
-        """`average` has learned nothing yet."""
-        self._average = average
+    def __init__(self, average: _core.ModelAverage, structure: int = TOGETHER) -> None:
+        """`average` has learned nothing yet; `structure` is what its beliefs are said to be."""
+        self._average, self._structure = average, structure
         self._motion = average.model
         self._belief: Belief | None = None
 
@@ -44,6 +44,7 @@ class AverageLearner:
             prior_std=np.array(state.prior_std),
             variance_ratio=np.array(state.variance_ratio),
             weights=np.array(state.weights),
+            structure=self._structure,
         )
 
 

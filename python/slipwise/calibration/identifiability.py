@@ -70,7 +70,7 @@ def timing_words(motion: _core.MotionModel, unknown: tuple[str, ...], *, wheels_
         sentences.append(
             "The delays are those from commands to wheel speeds, with any offset between their clocks."
         )
-    elif motion.dynamics:
+    elif motion.dynamics or motion.delays:
         sentences.append(
             "The delays are those from commands to poses: that of the drive, and any offset between "
             "the clocks, which commands and poses alone cannot tell apart."
@@ -104,11 +104,11 @@ def _same_channel(pair: LookAlike) -> bool:
 
 _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
     (
-        lambda n: n in ("log_lag_v", "log_delay_v", "gain_v"),
+        lambda n: n in ("log_lag_v", "log_delay_v", "delay_v", "gain_v"),
         "Change the speed in steps, from rest and back, several times",
     ),
     (
-        lambda n: n in ("log_lag_omega", "log_delay_omega", "gain_omega"),
+        lambda n: n in ("log_lag_omega", "log_delay_omega", "delay_omega", "gain_omega"),
         "Change the yaw rate in steps, to both sides, several times",
     ),
     (

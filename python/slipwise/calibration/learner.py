@@ -16,8 +16,8 @@ from slipwise.calibration.settings import Settings
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-STRUCTURES = ("together", "cascade", "limits")  # how chain and slip are learned from commands
-TOGETHER, CASCADE, LIMITS = range(len(STRUCTURES))
+STRUCTURES = ("together", "cascade", "limits", "direct", "baseline")  # how motion is explained
+TOGETHER, CASCADE, LIMITS, DIRECT, BASELINE = range(len(STRUCTURES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +55,16 @@ class Learner:
             list(self.bases),
             self.dynamics,
             self.clock_offset,
+            self.mount,
+            self.settings.filter_settings(),
+            self.settings.average_settings(),
+        )
+
+    def without_actuator(self) -> _core.ModelAverage:
+        """Return the same without an actuator model: a delay per channel, and no lag behind it."""
+        return _core.ModelAverage.with_delays(
+            "auto",
+            list(self.bases),
             self.mount,
             self.settings.filter_settings(),
             self.settings.average_settings(),

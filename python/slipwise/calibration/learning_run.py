@@ -61,8 +61,9 @@ def _averaging(
     learner = make_learner(settings, input_name)
     bases = tuple(basis.name for basis in learner.bases)
     recorder = HistoryRecorder(windows, bases, progress) if record else None
-    passing = learning_pass(learner.fresh(), windows, settings, recorder)
-    belief = StartPass(passing.belief, windows, settings).belief
+    passing = learning_pass(learner, windows, recorder)
+    of_slip = passing.slip_belief if isinstance(passing, StructureChoice) else None
+    belief = StartPass(passing.belief, windows, settings, of_slip=of_slip).belief
 
     def history() -> History | None:
         return None if recorder is None else recorder.history(passing.finish())

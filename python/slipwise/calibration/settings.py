@@ -132,6 +132,8 @@ class AutoTable(_Section):
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.weighing.share
     richest: Annotated[float, Field(gt=0.0, lt=1.0)] = _AVERAGE.richest
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
+    direct: bool = True  # from commands: also try without an actuator model, delays alone
+    baseline: bool = True  # also try the kinematic baseline: no slip, no lag, no delay
     limits: bool = True  # in cascade: also look for dead-band, top speed and rate limits of the drive
 
 

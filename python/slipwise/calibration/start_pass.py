@@ -17,9 +17,19 @@ from slipwise.calibration.settings import Settings
 class StartPass:
     """Foretells each window from the windows and poses just before it, before it is learned."""
 
-    def __init__(self, belief: Callable[[int], Belief], windows: WindowSet, settings: Settings) -> None:
-        """`belief` says what a pass believes after so many windows; it has not been asked yet."""
-        self._believed, self._windows = belief, windows
+    def __init__(
+        self,
+        belief: Callable[[int], Belief],
+        windows: WindowSet,
+        settings: Settings,
+        *,
+        of_slip: Callable[[int], Belief] | None = None,
+    ) -> None:
+        """`belief` says what a pass believes after so many windows; it has not been asked yet.
+
+        `of_slip` says what it believes where it is asked about slip, where these may differ.
+        """
+        self._believed, self._of_slip, self._windows = belief, of_slip or belief, windows
         self._shape = settings.filter_settings().noise.shape
         self._coloured = _core.ColouredSlip(settings.coloured_settings()) if settings.coloured.learn else None
         self._start = _core.StartPose(settings.start_settings()) if settings.start.learn else None
@@ -42,7 +52,7 @@ class StartPass:
 
     def _learn(self, i: int) -> None:
         windows = self._windows
-        before = replace(self._believed(i), coloured=self._coloured)
+        before = replace(self._of_slip(i), coloured=self._coloured)
         known, coloured = motion_belief(before, self._shape), _coloured(before)
         track, segment = windows.track(i, before.limited), windows.segments[i]
         recent = windows.recent(i, int(windows.position[i]), float(windows.start[i]))

@@ -124,6 +124,7 @@ def _library(model: Model) -> str:
         ("HAS_DYNAMICS", motion.dynamics),
         ("HAS_RESPONSE", motion.response),
         ("HAS_CLOCK_OFFSET", motion.clock_offset),
+        ("HAS_DELAYS", motion.delays),
     ]
     lines = [f"#define SLIPWISE_{name} {text}".rstrip() for name, text in lists]
     return "\n".join([*lines, *(f"#define SLIPWISE_{name} {int(count)}" for name, count in counts)])

@@ -13,7 +13,7 @@ from slipwise.models.model import Model
 
 _KNOWN = {"clock_offset"} | {
     f"{name}_{place}"
-    for name in ("log_lag", "log_delay", "gain", "slow_share", "log_slow_lag")
+    for name in ("log_lag", "log_delay", "delay", "gain", "slow_share", "log_slow_lag")
     for place in ("v", "omega")
 }
 
@@ -35,8 +35,12 @@ class ChannelResponse:
 
     @property
     def mean_delay(self) -> LearnedNumber:
-        """How late the channel is in all [s]: a lag loses the distance that a delay of its length does."""
-        return self.delay + self.mean_lag
+        """How late the channel is in all [s]: a lag loses the distance that a delay of its length does.
+
+        Never less than nothing, which only an offset of the clocks can make of a delay.
+        """
+        late = self.delay + self.mean_lag
+        return late if late.value > 0.0 else late * 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +81,7 @@ def chain_of(model: Model) -> Chain:
     def channel(place: str) -> ChannelResponse:
         return ChannelResponse(
             lag=seconds(f"log_lag_{place}"),
-            delay=seconds(f"log_delay_{place}"),
+            delay=plain(f"delay_{place}", 0.0) + seconds(f"log_delay_{place}"),
             gain=plain(f"gain_{place}", 1.0),
             slow_share=plain(f"slow_share_{place}", 0.0),
             slow_lag=seconds(f"log_slow_lag_{place}"),

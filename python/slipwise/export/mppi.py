@@ -30,7 +30,7 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
     Raises:
         ModelError: the model was learned from wheel speeds, which say nothing about commands.
     """
-    if model.content.input != "command" or not model.content.dynamics:
+    if model.content.input != "command":
         raise ModelError(
             "MPPI plans commands, and this model was not learned from commands",
             advice="calibrate with `--input command`",

@@ -35,7 +35,7 @@ def robot_localization(model: Model, options: ExportOptions) -> ParameterFile:
         ModelError: noise cannot be stated.
     """
     drive = reference_drive(model)
-    from_commands = model.content.input == "command" and model.content.dynamics
+    from_commands = model.content.input == "command"
     entries = [
         Entry(("frequency",), FREQUENCY, "[Hz] the filter's default; the gains below stay below it"),
         Entry(("two_d_mode",), True, "the model is planar"),

@@ -47,8 +47,10 @@ class Model:
                     f"the unit of {info.name} is {info.unit}, not {parameter.unit[:40]!r}",
                     advice="calibrate again, or restore the file",
                 )
-        seconds = np.exp([min(p.value, 700.0) for p in self.content.parameters if p.name.startswith("log_")])
-        if (seconds > LONGEST_CHAIN).any():
+        given = self.content.parameters
+        seconds = np.exp([min(p.value, 700.0) for p in given if p.name.startswith("log_")])
+        delays = np.abs([p.value for p in given if p.name.startswith("delay_")])
+        if (np.concatenate((seconds, delays)) > LONGEST_CHAIN).any():
             raise ModelError(
                 f"parameters: a lag or delay is longer than {LONGEST_CHAIN:g} s",
                 advice="calibrate again, or restore the file",
@@ -75,6 +77,8 @@ class Model:
         content = self.content
         if content.response:
             motion = _core.MotionModel.with_response(basis, content.clock_offset)
+        elif content.delays:
+            motion = _core.MotionModel.with_delays(basis)
         else:
             motion = _core.MotionModel(basis, content.dynamics, content.clock_offset)
         return motion.with_mount(content.mount)

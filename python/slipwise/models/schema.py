@@ -209,6 +209,7 @@ class ModelFile(_Section):
     input: InputName
     slip: Slip
     dynamics: bool  # lag and delay are parameters
+    delays: bool = False  # delays without lags, in seconds, are parameters: there is no actuator model
     clock_offset: bool  # the offset between inputs and poses is a parameter
     response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
     mount: bool = False  # the pose of the pose sensor in base_link is three parameters
@@ -228,6 +229,12 @@ class ModelFile(_Section):
         size = len(self.parameters)
         if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
             raise ValueError(f"covariance must have {size} rows of {size} numbers, one per parameter")
+        return self
+
+    @model_validator(mode="after")
+    def _delays_are_alone(self) -> ModelFile:
+        if self.delays and (self.dynamics or self.response or self.clock_offset or self.input != "command"):
+            raise ValueError("delays alone are of commands, without lags, gains or a clock offset")
         return self
 
     @model_validator(mode="after")

@@ -31,7 +31,7 @@ def windows() -> WindowSet:
 
 def start_pass(windows: WindowSet) -> StartPass:
     learner = make_learner(SETTINGS, "wheel")
-    return StartPass(learning_pass(learner.fresh(), windows, SETTINGS).belief, windows, SETTINGS)
+    return StartPass(learning_pass(learner, windows).belief, windows, SETTINGS)
 
 
 def weights(passing: StartPass, count: int) -> np.ndarray:

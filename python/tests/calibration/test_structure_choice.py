@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from slipwise import _core
-from slipwise.calibration import Settings, calibrate
+from slipwise.calibration import Settings, calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learner import CASCADE, STRUCTURES, TOGETHER, make_learner
-from slipwise.calibration.structure_choice import StructureChoice, learning_pass
+from slipwise.calibration.learner import BASELINE, CASCADE, DIRECT, STRUCTURES, TOGETHER, make_learner
+from slipwise.calibration.structure_choice import StructureChoice
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
+from slipwise.simulation.known_robot import KnownRobot, known_run
 
 LAG, DELAY, SLOW_SHARE, SLOW_LAG = (0.3, 0.5), (0.12, 0.2), (0.2, 0.4), (1.6, 2.2)
 GAIN = (0.95, 0.9)
@@ -108,7 +109,7 @@ def test_a_cascade_is_chosen_where_it_predicts_better(log):
 def test_a_belief_states_whose_parameters_it_holds(log):
     settings = Settings()
     windows = learning_windows(prepare_drive(log, "command"), "command", settings)
-    passing = StructureChoice(make_learner(settings, "command").fresh(), windows, settings)
+    passing = StructureChoice(make_learner(settings, "command"), windows)
     for count, structure in ((0, TOGETHER), (len(windows), CASCADE)):
         belief = passing.belief(count)
         assert belief.structure == structure
@@ -135,12 +136,12 @@ def test_wheels_that_tell_nothing_of_the_motion_are_not_followed(log):
     assert not calibration.model.content.response
 
 
-def test_without_wheel_speeds_there_is_one_structure(log):
+def test_without_wheel_speeds_there_is_no_cascade(log):
     alone = replace(log, runs=(replace(log.runs[0], wheels=None),))
     settings = Settings()
     windows = learning_windows(prepare_drive(alone, "command"), "command", settings)
-    average = make_learner(settings, "command").fresh()
-    assert not isinstance(learning_pass(average, windows, settings), StructureChoice)
+    belief = StructureChoice(make_learner(settings, "command"), windows).belief(len(windows))
+    assert belief.structure == TOGETHER
 
 
 def test_a_belief_never_depends_on_what_comes_later(log):
@@ -165,8 +166,66 @@ def test_a_belief_never_depends_on_what_comes_later(log):
     beliefs = []
     for each in (log, short):
         windows = learning_windows(prepare_drive(each, "command"), "command", settings)
-        beliefs.append(
-            StructureChoice(make_learner(settings, "command").fresh(), windows, settings).belief(40)
-        )
+        beliefs.append(StructureChoice(make_learner(settings, "command"), windows).belief(40))
     np.testing.assert_array_equal(beliefs[0].mean, beliefs[1].mean)
     np.testing.assert_array_equal(beliefs[0].covariance, beliefs[1].covariance)
+
+
+def commanded(robot: KnownRobot, *, seconds: float = 120.0, seed: int = 2) -> Log:
+    """A known robot's log under held random commands, without wheel speeds."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, PERIOD)
+    at = np.floor(t / 2.0).astype(int)
+    v, omega = rng.uniform(-0.5, 1.5, at[-1] + 1)[at], rng.uniform(-0.8, 0.8, at[-1] + 1)[at]
+    run = known_run(robot, Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega), (2.0, seconds), random=rng)
+    return Log((replace(run, wheels=None),), (Source("known", "0", "simulated", len(t)),), (), ())
+
+
+IDEAL = KnownRobot(lag=(1e-9, 1e-9), delay=(0.0, 0.0), slip_psd=(0.0, 0.0, 0.0), pose_std=(0.005, 0.003))
+
+
+def test_a_robot_that_obeys_exactly_is_predicted_as_the_baseline_predicts_it():
+    calibration = calibrate(commanded(IDEAL))
+    held_out = calibration.model.content.verdict.held_out
+    assert calibration.history.structure_weight[-1].argmax() == BASELINE
+    assert held_out.position == pytest.approx(held_out.plain_position)
+    assert held_out.heading == pytest.approx(held_out.plain_heading)
+    assert not calibration.verdict.good
+    assert calibration.model.motion.size == 0
+
+
+def test_a_robot_that_slips_and_never_lags_needs_no_actuator_model():
+    slipping = replace(IDEAL, basis=_core.named_basis("edd-2"), slip=SLIP)
+    calibration = calibrate(commanded(slipping))
+    model = calibration.model
+    assert calibration.verdict.good
+    assert (model.content.delays, model.content.dynamics) == (True, False)
+    found = dict(zip((p.name for p in model.content.parameters), model.mean, strict=True))
+    assert found["delay_v"] == pytest.approx(0.0, abs=0.01)
+    assert found["delay_omega"] == pytest.approx(0.0, abs=0.01)
+    assert found["ang.w"] == pytest.approx(SLIP[1], abs=0.05)
+
+
+def test_simpler_candidates_that_are_refuted_are_left_out_for_good():
+    lagging = replace(IDEAL, lag=(0.5, 0.4), basis=_core.named_basis("edd-2"), slip=SLIP)
+    weights = calibrate(commanded(lagging)).history.structure_weight
+    for structure in (DIRECT, BASELINE):
+        gone = np.flatnonzero(weights[:, structure] == 0.0)
+        assert 0 < gone[0] < 45
+        assert not weights[gone[0] :, structure].any()
+    np.testing.assert_allclose(weights.sum(axis=1), 1.0)
+
+
+@pytest.mark.parametrize(("key", "structure"), [("direct", DIRECT), ("baseline", BASELINE)])
+def test_a_simpler_candidate_can_be_left_out_by_the_settings(key, structure):
+    settings = make_settings({"auto": {key: False}})
+    weights = calibrate(commanded(IDEAL, seconds=60.0), settings=settings).history.structure_weight
+    assert not weights[:, structure].any()
+
+
+def test_what_is_learned_about_slip_is_learned_about_a_candidate_that_has_slip():
+    settings = Settings()
+    windows = learning_windows(prepare_drive(commanded(IDEAL), "command"), "command", settings)
+    choice = StructureChoice(make_learner(settings, "command"), windows)
+    assert choice.belief(len(windows)).structure == BASELINE
+    assert choice.slip_belief(len(windows)).structure != BASELINE

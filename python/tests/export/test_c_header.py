@@ -190,6 +190,16 @@ def test_header_has_gain_and_slow_part(compiled: Compile, offset: float | None) 
     assert np.abs(expected(plain, commands, windows[0]) - poses[0]).max() > 0.05
 
 
+@pytest.mark.parametrize("delays", [(0.23, 0.11), (0.0, -0.02)])
+def test_header_has_delays_without_an_actuator_model(compiled: Compile, delays: tuple[float, float]) -> None:
+    model = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.4), delays=delays))
+    commands = commands_of(seed=21)
+    windows = [Window(4.0, 9.0), Window(0.0, 5.0), Window(3.0, 8.0, drive=(0.4, -0.3)), Window(5.0, 5.03)]
+    _, rows = compiled(model, "double").run(commands, windows)
+    poses = np.array([expected(model, commands, window) for window in windows])
+    assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE["double"]
+
+
 @pytest.mark.parametrize("number", ["float", "double"])
 @pytest.mark.parametrize("lanes", ["speed", "yaw_rate", "side", "all"])
 def test_header_puts_commands_behind_limits(compiled: Compile, lanes: str, number: str) -> None:

@@ -143,6 +143,13 @@ def test_comment_says_what_the_robot_reaches_of_a_command() -> None:
     assert "and 0.600 of the yaw rate" in text
 
 
+def test_a_model_without_an_actuator_model_is_late_by_its_delay() -> None:
+    made = replace(LATE, commands=False, values={}, delays=(0.2, -0.01))
+    parameters = written(made)
+    assert parameters["model_delay_vx"] == pytest.approx(0.2)
+    assert parameters["model_delay_wz"] == 0.0
+
+
 def test_a_model_from_wheel_speeds_is_refused() -> None:
     with pytest.raises(ModelError, match="not learned from commands"):
         written(replace(LATE, commands=False, values={}))

@@ -87,6 +87,12 @@ def test_a_gain_stays_below_the_filters_frequency() -> None:
     assert written(quick)["acceleration_gains"][0] == FREQUENCY
 
 
+def test_without_an_actuator_model_the_filter_follows_as_fast_as_it_can() -> None:
+    parameters = written(replace(ROBOT, delays=(0.2, 0.1)))
+    assert parameters["use_control"] is True
+    assert parameters["acceleration_gains"][0] == FREQUENCY
+
+
 def test_a_model_from_wheel_speeds_has_no_control_term() -> None:
     parameters = written(ROBOT)
     assert parameters["use_control"] is False

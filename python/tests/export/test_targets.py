@@ -11,11 +11,13 @@ import pytest
 import yaml
 from sample_models import Made, make_model, named
 
+from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export import TARGETS, ExportOptions, Target, export_model
 from slipwise.export.wheel_multipliers import wheel_multipliers
 from slipwise.logs import open_log
+from slipwise.models import Model
 
 FITTING = {
     "diff-drive": named("edd-2", ang__w=-0.3),
@@ -54,6 +56,24 @@ def test_a_bad_verdict_is_refused_unless_forced(target: Target) -> None:
     assert "--force" in caught.value.advice
     text = export_model(model, target.name, name="m.yaml", force=True).text
     assert "verdict: NOT GOOD ENOUGH. It does not beat doing nothing." in text
+
+
+FROM_COMMANDS = ("mppi", "robot-localization", "c-header")
+
+
+@pytest.mark.parametrize("target", FROM_COMMANDS)
+def test_a_model_without_an_actuator_model_is_exported(target: str) -> None:
+    model = make_model(replace(named("edd-2", ang__w=-0.3), delays=(0.1, 0.0)))
+    assert "learned by slipwise" in export_model(model, target, name="m.yaml").text
+
+
+@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
+def test_the_kinematic_baseline_is_exported(target: Target) -> None:
+    model = make_model(Made(_core.Basis("none", [], [], [])))
+    name = "command" if target.name in FROM_COMMANDS else "wheel"
+    baseline = Model(model.content.model_copy(update={"input": name}))
+    assert baseline.motion.size == 0
+    assert "learned by slipwise" in export_model(baseline, target.name, name="m.yaml").text
 
 
 HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"

@@ -14,6 +14,7 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from sample_logs import Drive, simulated_log
+from sample_models import Made, make_model
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
@@ -72,6 +73,26 @@ def test_model_without_parameters_makes_the_round_trip(tmp_path: Path) -> None:
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
     assert again.covariance.shape == (0, 0)
+
+
+def test_model_without_an_actuator_model_makes_the_round_trip(tmp_path: Path) -> None:
+    model = make_model(Made(_core.named_basis("edd-2"), {"ang.w": -0.3}, delays=(0.2, -0.01)))
+    again = load_model(model.save(tmp_path / "m.yaml"))
+    assert again.content == model.content
+    assert again.motion.delays
+    chain = again.motion.chain(again.mean)
+    assert (chain.delay_v, chain.delay_omega, chain.lag_v) == (0.2, -0.01, 0.0)
+    with pytest.raises(ModelError, match="a lag or delay is longer than 1000 s"):
+        make_model(Made(_core.named_basis("edd-2"), delays=(0.2, -2000.0)))
+
+
+def test_a_model_without_an_actuator_model_reaches_its_speed_at_once_after_the_delay() -> None:
+    model = make_model(Made(_core.Basis("none", [], [], []), delays=(0.5, 0.5)))
+    commands = np.array([[0.0, 0.0, 0.0], [1.0, 1.0, 0.0]])
+    path = predict(model, commands, horizon=3.0)
+    at = np.flatnonzero(np.isclose(path.t, 2.5))
+    assert path.poses[at, 0] == pytest.approx(1.0, abs=1e-9)
+    assert path.poses[-1, 0] == pytest.approx(1.5, abs=1e-9)
 
 
 def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
@@ -147,6 +168,7 @@ WRONG = {
     "parameters missing": (set_key("parameters", []), "covariance must have 0 rows"),
     "chain without parameters": (set_key("dynamics", False), "the parameters are .* have"),
     "offset without a parameter": (set_key("clock_offset", True), "the parameters are .* have"),
+    "delays beside lags": (set_key("delays", True), "delays alone are of commands"),
     "section is a list": (set_key("noise", [1, 2]), "noise: Input should be"),
     "verdict missing": (lambda c: c.pop("verdict"), "verdict: Field required"),
 }

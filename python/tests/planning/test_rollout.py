@@ -44,10 +44,18 @@ def limited() -> Model:
     )
 
 
-@pytest.fixture(scope="module", params=["lag and delay", "response", "limits"])
+def direct() -> Model:
+    """The same without an actuator model: delays alone, one of which is an offset of clocks."""
+    values = {"lat.w": 0.05, "ang.w": -0.3}
+    return make_model(Made(_core.named_basis("full-linear-6"), values, delays=(0.13, -0.004)))
+
+
+@pytest.fixture(scope="module", params=["lag and delay", "response", "limits", "direct"])
 def model(request: pytest.FixtureRequest) -> Model:
     if request.param == "limits":
         return limited()
+    if request.param == "direct":
+        return direct()
     return responding() if request.param == "response" else learned("auto")
 
 

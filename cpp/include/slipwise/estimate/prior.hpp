@@ -20,7 +20,7 @@ struct ReferenceSpeeds {
 
 struct PriorSettings {
   double slip_fraction = 0.3;     ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
-  double clock_offset_std = 0.2;  ///< [s]
+  double clock_offset_std = 0.2;  ///< about 0, also of delays without an actuator model [s]
   double lag = 0.3;               ///< median time constant [s]
   double delay = 0.1;             ///< median transport delay [s]
   double log_std = 0.8;           ///< standard deviation of the logarithms of lags and delays [-]

@@ -19,6 +19,7 @@ struct ChainParameters {
   bool clock_offset = false;  ///< offset between inputs and poses
   bool response = false;      ///< gain, and a slow part with its share and time constant, per channel
   bool mount = false;         ///< where the pose sensor sits on the robot
+  bool delays = false;        ///< delay per channel alone: no actuator model follows it
 };
 
 inline constexpr Eigen::Index kMountParameters = 3;
@@ -29,9 +30,12 @@ double even_slope(double seconds);
 
 /// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
 /// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
-/// [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms keep lags and delays positive.
+/// [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms keep lags and delays positive. Delays alone are
+/// delay_v, delay_omega [s] in place of the four logarithms: a robot that obeys at once has none, which no logarithm
+/// reaches, and stamps may make them negative.
 class MotionModel {
  public:
+  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow part.
   MotionModel(Basis basis, ChainParameters learned);
 
   const Basis& basis() const { return basis_; }
@@ -59,6 +63,7 @@ class MotionModel {
  private:
   Basis basis_;
   ChainParameters learned_;
+  std::vector<Eigen::Index> chain_rows_;  ///< in the table of what may be learned of the chain
   std::vector<Eigen::Index> chain_places_;
 };
 
