@@ -90,7 +90,7 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
     def work() -> None:
         average = learner.fresh()
         for segment in windows.segments:
-            average.learn(track, segment)
+            average.learn(track, segment, True)
 
     return work
 

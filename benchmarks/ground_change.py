@@ -82,7 +82,7 @@ def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTes
     windows = learning_windows(prepare_drive(log, input_name), input_name, Settings())
     average, tests = make_learner(Settings(), input_name).fresh(), []
     for i in range(len(windows)):
-        average.learn(windows.track(i), windows.segments[i])
+        average.learn(windows.track(i), windows.segments[i], True)
         tests.append(average.change)
     return windows, tests
 

@@ -2,10 +2,10 @@
 """Does learning do harm? Robots that obey at once, with slip or a delay at most, against the baseline.
 
 Ten robots of each kind are simulated without the core's actuator model: ideal ones, some with slip alone,
-some with a delay alone. Each is learned by `auto` from its commands with and without wheel speeds beside them, and
-from its wheel speeds. Predictions are judged causally and on the second half: the model as `calibrate` does,
-from the measured pose, and beside it `evaluate`, which also averages the noise of the last poses out of the
-start. A ratio to the kinematic baseline above 1 is harm; a model with more than 1.05 of its error fails.
+some with a delay alone. Each is learned by `auto` from its commands, with and without wheel speeds beside
+them, and from its wheel speeds. Predictions are judged causally and on the second half: the model as
+`calibrate` does, from the measured pose, and beside it `evaluate`, which also averages the noise of the last
+poses out of the start. A ratio to the kinematic baseline above 1 is harm; a model above 1.05 fails.
 """
 
 from __future__ import annotations

@@ -9,6 +9,7 @@
 namespace slipwise {
 namespace {
 
+constexpr double kRounding = 1e-9;   // [m/s or rad/s]; what is slower is what rounding leaves of zero
 constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
 
 /// A twist in a lane: once, or once for each side.
@@ -31,7 +32,7 @@ void add_commands(LaneRange& range, const CommandLimits& limits, Lane lane, cons
     const std::array<double, 2> now = in_lane(limits, lane, twist);
     for (std::size_t side = 0; side < now.size(); ++side) {
       range.step = std::max(range.step, std::abs(now.at(side) - before.at(side)));
-      if (now.at(side) != 0.0) {
+      if (std::abs(now.at(side)) > kRounding) {
         range.commands.push_back({std::abs(now.at(side)), {twist.v, side == 0 ? -twist.omega : twist.omega}});
       }
     }

@@ -110,7 +110,7 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
   }
 }
 
-IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment, bool active) {
   speeds_.see(inputs, segment);
   change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(inputs, segment);
   if (change_.alarm) {
@@ -120,7 +120,7 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment)
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const bool heard = weights_[static_cast<Eigen::Index>(i)] > kHeard;
+    const bool heard = active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
     updates.push_back(filters_[i].learn(inputs, segment, speeds_.reference(), heard));
     innovations.push_back(updates.back().innovation);
     covariances.push_back(updates.back().innovation_covariance);

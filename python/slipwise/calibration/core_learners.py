@@ -18,10 +18,12 @@ class AverageLearner:
         self._motion = average.model
         self._belief: Belief | None = None
 
-    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
-        """Learn one window."""
+    def learn(
+        self, inputs: _core.InputTrack, segment: _core.Segment, *, active: bool = True
+    ) -> _core.IekfUpdate:
+        """Learn one window; where not `active`, the first windows are learned again less often."""
         self._belief = None
-        return self._average.learn(inputs, segment)
+        return self._average.learn(inputs, segment, active)
 
     def belief(self) -> Belief:
         """Return the belief of the average now."""

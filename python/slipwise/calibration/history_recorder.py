@@ -12,6 +12,7 @@ from slipwise import _core
 from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import STRUCTURES, Belief, Progress
 from slipwise.calibration.result import History
+from slipwise.calibration.stamp_spacing import StampSpacing
 
 Floats = NDArray[np.float64]
 
@@ -22,12 +23,13 @@ class HistoryRecorder:
     def __init__(self, windows: WindowSet, bases: tuple[str, ...], progress: Progress | None = None) -> None:
         """`windows` are those learned; `progress` is called with the share of them that is."""
         self._windows, self._bases, self._progress = windows, bases, progress
+        self._stamps = StampSpacing(windows)
         self._histories: dict[int, History] = {}
         self._structure_weight: Floats | None = None
 
     def record(self, i: int, nis: float, weight: float, belief: Belief) -> None:
         """Write the row of window i: its NIS before it was learned, its weight, the belief after it."""
-        rows = self._rows(belief)
+        rows, belief = self._rows(belief), self._stamps.supported(belief, i + 1)
         rows.mean[i], rows.std[i] = belief.mean, np.sqrt(np.diag(belief.covariance))
         rows.nis[i], rows.weight[i], rows.basis_weight[i] = nis, weight, belief.weights
         if self._progress is not None and i % 50 == 0:

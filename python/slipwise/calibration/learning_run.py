@@ -14,6 +14,7 @@ from slipwise.calibration.history_recorder import HistoryRecorder
 from slipwise.calibration.learner import Belief, Progress, make_learner
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.stamp_spacing import StampSpacing
 from slipwise.calibration.start_pass import StartPass
 from slipwise.calibration.structure_choice import StructureChoice, learning_pass
 
@@ -24,6 +25,7 @@ class LearningRun:
 
     belief: Callable[[int], Belief]  # known causally after so many windows; their number never decreases
     kept: Callable[[], Belief]  # learns what is left and returns what goes into a model
+    parameters: Callable[[], Belief]  # the same; of the next best where the baseline is kept, which has none
     history: Callable[[], History | None]  # of what is kept, where it was recorded
     limits: Callable[[], _core.LimitSearch | None]  # what the last search for limits of the drive found
     bases: tuple[str, ...]
@@ -71,9 +73,15 @@ def _averaging(
     def limits() -> _core.LimitSearch | None:
         return passing.limits if isinstance(passing, StructureChoice) else None
 
-    return LearningRun(
-        belief, lambda: belief(len(windows)), history, limits, bases, learner.dynamics, causal=True
-    )
+    stamps = StampSpacing(windows)
+
+    def kept() -> Belief:
+        return stamps.supported(belief(len(windows)), len(windows))
+
+    def parameters() -> Belief:
+        return stamps.supported((of_slip or passing.belief)(len(windows)), len(windows))
+
+    return LearningRun(belief, kept, parameters, history, limits, bases, learner.dynamics, causal=True)
 
 
 def _estimating(
@@ -93,9 +101,9 @@ def _estimating(
 
     def kept() -> Belief:
         passing.finish()
-        return learner.fitted()
+        return StampSpacing(windows).supported(learner.fitted(), len(windows))
 
     def history() -> History | None:
         return recorder.history(passing.finish()) if recorder is not None and causal else None
 
-    return LearningRun(passing.belief, kept, history, lambda: None, bases, motion.dynamics, causal)
+    return LearningRun(passing.belief, kept, kept, history, lambda: None, bases, motion.dynamics, causal)

@@ -6,24 +6,31 @@ from __future__ import annotations
 from slipwise import _core
 from slipwise.number_text import number_text
 
+LEAST_DEAD_BAND = 1e-3  # m/s or rad/s; no drive's is less, so slower commands need not be tried
+
 
 def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
-    """Return one sentence for each kind of limit that no lane shows; beyond what was commanded none can."""
+    """Return one sentence for each kind of limit that no lane shows; beyond what was commanded none can.
+
+    A dead-band that even the slowest commands do not show is none.
+    """
     found = {limit.kind for limit in search.found}
     speed, turn = search.reach[0], search.reach[1]
     if speed.fastest == 0.0 and turn.fastest == 0.0:
         return ("No limit of the drive shows: it was commanded to stand still.",)
+    slowest = tuple(reach if reach > LEAST_DEAD_BAND else 0.0 for reach in (speed.slowest, turn.slowest))
     kinds = _core.LimitKind
     sentences = {
-        kinds.DeadBand: "No dead-band shows: command less than"
-        f" {_pair(speed.slowest, turn.slowest)} to see one.",
+        kinds.DeadBand: f"No dead-band shows: command less than {_pair(*slowest)} to see one."
+        if any(slowest)
+        else "",
         kinds.Top: f"No top speed shows: command more than {_pair(speed.fastest, turn.fastest)} to see one.",
         kinds.Acceleration: "No limit of acceleration shows: step from rest by more than"
         f" {_pair(speed.step, turn.step)} to see one.",
         kinds.Braking: "No limit of braking shows: step to rest from more than"
         f" {_pair(speed.step, turn.step)} to see one.",
     }
-    return tuple(sentence for kind, sentence in sentences.items() if kind not in found)
+    return tuple(sentence for kind, sentence in sentences.items() if sentence and kind not in found)
 
 
 def _pair(speed: float, turn: float) -> str:

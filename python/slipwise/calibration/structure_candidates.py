@@ -39,8 +39,8 @@ class Predicted(Protocol):
 class Candidate(Protocol):
     """One way to predict, which learns as the windows pass."""
 
-    def predict(self, i: int) -> Predicted:
-        """Predict window i, all before it being learned."""
+    def predict(self, i: int, *, active: bool) -> Predicted:
+        """Predict window i, all before it being learned; `active`: predictions may be those of this one."""
         ...
 
     def learn(self, count: int) -> None:
@@ -70,9 +70,9 @@ class AverageCandidate:
         self._learner, self._windows = AverageLearner(average, structure), windows
         self.weight = 1.0
 
-    def predict(self, i: int) -> Predicted:
+    def predict(self, i: int, *, active: bool) -> Predicted:
         """Predict window i, and learn it at once: what was predicted is part of the update."""
-        update = self._learner.learn(self._windows.track(i), self._windows.segments[i])
+        update = self._learner.learn(self._windows.track(i), self._windows.segments[i], active=active)
         self.weight = update.weight
         return update
 
@@ -100,7 +100,7 @@ class BaselineCandidate:
         self.weight = 1.0
         self.change = _core.ChangeTest()
 
-    def predict(self, i: int) -> Predicted:
+    def predict(self, i: int, *, active: bool) -> Predicted:  # noqa: ARG002
         """Predict window i."""
         nothing = _core.Estimate(np.zeros(0), np.zeros((0, 0)))
         return self._score.score(self._motion, nothing, self._windows.track(i), self._windows.segments[i])
@@ -127,7 +127,7 @@ class CascadeCandidate:
         self.weight = 1.0
         self.learn(learned)
 
-    def predict(self, i: int) -> Predicted:
+    def predict(self, i: int, *, active: bool) -> Predicted:  # noqa: ARG002
         """Predict window i."""
         belief = self._believed
         estimate = _core.Estimate(belief.mean, belief.covariance)

@@ -38,6 +38,7 @@ PATIENCE = 0.3  # of the bases' learning rate: what sets structures apart repeat
 JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
 PRIOR = {DIRECT: 0.5}  # weight at first, of others 1: where it predicts like the baseline, that is taken
 SIMPLE = (DIRECT, BASELINE)  # what these miss must not pass for noise
+ACTIVE = 0.5  # of the heavier average's weight, from which on the other's windows are learned again as often
 REFUTED = np.log(1e3)  # tempered log odds against a candidate from which on it is no longer learned
 
 
@@ -133,7 +134,7 @@ class StructureChoice:
 
     def _weigh(self, i: int) -> None:
         """Let all predict window i before they learn it."""
-        predicted = {s: candidate.predict(i) for s, candidate in self._candidates.items()}
+        predicted = {s: each.predict(i, active=self._active(s)) for s, each in self._candidates.items()}
         weights = np.array([self._weights[s] for s in predicted])
         # By their errors, as bases are, under what those miss that could explain most.
         full = np.array([s not in SIMPLE for s in predicted]) * weights
@@ -148,6 +149,11 @@ class StructureChoice:
         for candidate in self._candidates.values():
             candidate.learn(i + 1)
         self._record(i, {s: each.nis for s, each in predicted.items()})
+
+    def _active(self, structure: int) -> bool:
+        """Whether a candidate may predict soon: of two averages, both that have half the other's weight."""
+        averages = max(self._weights[TOGETHER], self._weights.get(DIRECT, 0.0))
+        return self._weights[structure] >= ACTIVE * averages
 
     def _leave_out_refuted(self) -> None:
         """Leave out simpler candidates that predict far worse than another."""

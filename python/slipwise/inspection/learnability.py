@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which parameters a log determines, found by learning from it once, causally."""
+"""Which parameters a log determines, found by learning from it as `calibrate` does."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.identifiability import drives_for
-from slipwise.calibration.learner import Belief, make_learner
-from slipwise.calibration.structure_choice import average_pass
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.learning_run import start_learning
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
 from slipwise.models.schema import UNDETERMINED_RATIO
@@ -52,14 +52,14 @@ class Learnability:
 
 
 def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnability:
-    """Learn from one kind of input and say what is determined; nothing to learn is no error."""
+    """Learn as `calibrate` does and say what is determined; nothing to learn is no error."""
     try:
         windows = learning_windows(prepare_drive(log, input_name), input_name, settings)
         refuse_empty(windows, log)
     except LogError as nothing:
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
-    belief = average_pass(make_learner(settings, input_name).fresh(), windows).finish()
+    belief = start_learning(settings, input_name, windows).parameters()
     parameters = tuple(
         _parameter((info.name, info.unit), belief, i) for i, info in enumerate(belief.motion.parameters)
     )

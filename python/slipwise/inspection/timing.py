@@ -23,17 +23,32 @@ class Timing:
 
 _MEANINGS = {
     "clock_offset": "poses are stamped this much later than wheel speeds",
-    "log_delay_v": "from a speed command to the first effect, clock offset included",
-    "log_delay_omega": "from a yaw rate command to the first effect, clock offset included",
+    "delay_v": "from a speed command to that speed, which then is there at once",
+    "delay_omega": "from a yaw rate command to that yaw rate, which then is there at once",
+    "log_delay_v": "from a speed command to the first effect",
+    "log_delay_omega": "from a yaw rate command to the first effect",
     "log_lag_v": "then the speed follows with this time constant",
     "log_lag_omega": "then the yaw rate follows with this time constant",
+    "log_slow_lag_v": "a part of the speed follows with this time constant",
+    "log_slow_lag_omega": "a part of the yaw rate follows with this time constant",
 }
 
 
 def timing_of(learned: Learnability) -> tuple[Timing, ...]:
-    """Return the times that were learned, in s; none where nothing could be learned."""
-    found = ((learned.parameter(name), meaning) for name, meaning in _MEANINGS.items())
-    return tuple(_timing(learned.input, p, meaning) for p, meaning in found if p is not None)
+    """Return the times that were learned, in s; none where nothing could be learned.
+
+    Where commands were learned by way of the wheel speeds, the clock offset is that of the wheel speeds, and
+    said there.
+    """
+    apart = learned.input == "command" and learned.parameter("clock_offset") is not None
+    found = [(learned.parameter(name), meaning) for name, meaning in _MEANINGS.items()]
+    known = [
+        (p, meaning) for p, meaning in found if p is not None and not (apart and p.name == "clock_offset")
+    ]
+    included = "" if apart else ", clock offset included"
+    return tuple(
+        _timing(learned.input, p, meaning + (included if "delay" in p.name else "")) for p, meaning in known
+    )
 
 
 def _timing(input_name: str, parameter: LearnableParameter, meaning: str) -> Timing:

@@ -58,7 +58,8 @@ def test_no_fixed_basis_is_as_good_as_auto_over_all_truths() -> None:
 
 
 def test_weights_sum_to_one_after_every_window() -> None:
-    history = calibrate(simulated_log(Drive(seconds=60.0)), input_name="wheel").history
+    drive = Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=(-0.02, -0.03))
+    history = calibrate(simulated_log(drive), input_name="wheel").history
     assert history is not None
     assert history.bases == AUTO_BASES
     assert history.basis_weight.sum(axis=1) == pytest.approx(np.ones(len(history.t)))

@@ -50,7 +50,7 @@ def test_a_prediction_is_made_before_its_window_is_learned(windows: WindowSet, s
             belief.motion, belief.mean, windows.track(i), windows.segments[i], _core.Integrator.Exact
         )
         moved = np.asarray(path.sensor_poses[-1])
-        predicted = candidate.predict(i)
+        predicted = candidate.predict(i, active=True)
         missed = windows.measured[i] - moved
         np.testing.assert_allclose(predicted.innovation[:2], missed[:2], atol=1e-9)
         assert np.exp(1j * predicted.innovation[2]) == pytest.approx(np.exp(1j * missed[2]))
@@ -65,14 +65,14 @@ def test_the_baseline_is_the_method_none_with_noise_that_is_learned(windows: Win
     assert before.motion.size == none.motion.size == 0
     assert before.weights.tolist() == [1.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     for i in range(6):
-        baseline.predict(i)
+        baseline.predict(i, active=True)
     assert not np.allclose(baseline.belief().noise_scale, before.noise_scale)
 
 
 def test_delays_alone_have_no_lag(windows: WindowSet) -> None:
     direct = candidate_of(DIRECT, windows)
     for i in range(6):
-        direct.predict(i)
+        direct.predict(i, active=True)
     belief = direct.belief()
     chain = belief.motion.chain(belief.mean)
     assert (chain.lag_v, chain.lag_omega) == (0.0, 0.0)

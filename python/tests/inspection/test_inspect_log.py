@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log, steady_run
 
-from slipwise import open_log
+from slipwise import _core, open_log
+from slipwise.calibration import calibrate
 from slipwise.inspection import inspect_log
 from slipwise.logs import Log, empty_poses
 
@@ -30,6 +32,33 @@ def test_a_known_delay_and_lag_of_commands_are_found_within_their_uncertainty() 
     for name, true in (("delay_v", 0.2), ("delay_omega", 0.2), ("lag_v", 0.5), ("lag_omega", 0.5)):
         assert found[name].determined
         assert abs(found[name].seconds - true) < max(4.0 * found[name].std, 0.03)
+
+
+def test_times_are_those_that_calibrate_finds() -> None:
+    log = simulated_log(Drive(seconds=180.0, lag=0.4, delay=0.15, late=0.1))
+    told = {(timing.input, timing.name): timing for timing in inspect_log(log).timing}
+    assert len(told) == len(inspect_log(log).timing)
+    for name in ("command", "wheel"):
+        content = calibrate(log, input_name=name).model.content
+        for parameter in content.parameters:
+            timing = told.get((name, parameter.name.removeprefix("log_")))
+            if timing is None or parameter.name == "clock_offset" != name:
+                continue
+            logarithm = parameter.name.startswith("log_")
+            assert timing.seconds == (math.exp(parameter.value) if logarithm else parameter.value)
+            assert timing.std == pytest.approx(parameter.std * (timing.seconds if logarithm else 1.0))
+            assert timing.determined == parameter.determined
+    assert {"delay_v", "lag_v"} <= {name for given, name in told if given == "command"}
+
+
+def test_a_robot_that_obeys_at_once_has_delays_and_no_lag() -> None:
+    slipping = Drive(seconds=120.0, basis=_core.named_basis("edd-2"), alpha=(-0.1, -0.3))
+    run = simulated_log(slipping).runs[0]
+    log = Log(runs=(replace(run, wheels=None),))
+    told = {timing.name: timing for timing in inspect_log(log).timing}
+    assert set(told) == {"delay_v", "delay_omega"}
+    assert abs(told["delay_v"].seconds) < 0.06
+    assert "clock offset included" in told["delay_v"].meaning
 
 
 def test_straight_driving_does_not_determine_turning_and_the_advice_says_so() -> None:

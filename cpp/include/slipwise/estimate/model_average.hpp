@@ -40,8 +40,9 @@ class ModelAverage {
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
   /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
-  /// weighed most before.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  /// weighed most before. Where the average is not `active`, since others predict better, the first segments are
+  /// learned again less often, as those of a filter without weight are.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;

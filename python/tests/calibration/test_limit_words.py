@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Advice about limits names speeds that a driver can command."""
+
+from __future__ import annotations
+
+import numpy as np
+from limited_drives import FREE, TRACK, track_of, wheels_behind
+
+from slipwise import _core
+from slipwise.calibration.limit_words import limits_advice
+from slipwise.logs.log import Inputs
+from slipwise.simulation import steps_drive
+
+NO_LIMITS = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
+
+
+def searched(commands: Inputs) -> _core.LimitSearch:
+    """Search for limits of a drive that has none."""
+    wheels = wheels_behind(NO_LIMITS, commands, 1)
+    rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
+    record = _core.DriveRecord(track_of(commands), np.ascontiguousarray(rows))
+    return _core.find_limits([record], _core.PriorSettings(), TRACK, _core.LEAST_LIMIT_GAIN, None)
+
+
+def with_slowest(speed: float, turn: float) -> Inputs:
+    """A drive in steps, none slower than 0.1, but for one of each."""
+    drive = steps_drive(4, 40.0)
+    v, omega = (np.where(np.abs(u) < 0.1, 0.1, u) for u in (drive.v, drive.omega))
+    v[:20], omega[20:40] = speed, turn
+    return Inputs(t=drive.t, v=v, vy=drive.vy, omega=omega)
+
+
+def test_what_rounding_leaves_of_zero_is_no_command() -> None:
+    search = searched(with_slowest(0.2, 0.1 + 0.2 - 0.3))
+    assert search.reach[1].slowest >= 0.1 - 1e-12
+    assert f"command less than 0.10 m/s or {search.reach[1].slowest:.2f} rad/s" in " ".join(
+        limits_advice(search)
+    )
+
+
+def test_nobody_is_sent_to_command_less_than_a_dead_band_can_be() -> None:
+    text = " ".join(limits_advice(searched(with_slowest(0.05, 1e-4))))
+    assert "command less than 0.050 m/s to see one" in text
+    assert "dead-band" not in " ".join(limits_advice(searched(with_slowest(1e-4, 1e-4))))
