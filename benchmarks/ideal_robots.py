@@ -3,9 +3,9 @@
 
 Ten robots of each kind are simulated without the core's actuator model: ideal ones, some with slip alone,
 some with a delay alone. Each is learned by `auto` from its commands, with and without wheel speeds beside
-them, and from its wheel speeds. Predictions are judged causally and on the second half: the model as
-`calibrate` does, from the measured pose, and beside it `evaluate`, which also averages the noise of the last
-poses out of the start. A ratio to the kinematic baseline above 1 is harm; a model above 1.05 fails.
+them, and from its wheel speeds. Predictions are judged causally and on the second half: the model from the
+measured pose, as the verdict does, and beside it as `evaluate` shows it, where the noise of the last poses is
+averaged out of the start. A ratio to the kinematic baseline above 1 is harm; a model above 1.05 fails.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ import numpy as np
 
 import slipwise
 from slipwise import _core
-from slipwise.calibration import calibrate
+from slipwise.calibration.learner import STRUCTURES
+from slipwise.calibration.verdict import judge
 from slipwise.logs.log import Inputs, Log, Source
 from slipwise.simulation.known_robot import KnownRobot, known_run
 
@@ -56,9 +57,9 @@ class Harm:
     """How much worse than the kinematic baseline: ratios of mean errors."""
 
     case: Case
-    position: float  # of the model, from the measured pose
+    position: float  # the worst of all horizons, of the model from the measured pose
     heading: float
-    evaluated_position: float  # the worst of all horizons, from where the last poses say together
+    evaluated_position: float  # the same from where the last poses say together
     evaluated_heading: float
     structure: str  # that predicted in the end
 
@@ -94,23 +95,18 @@ def log_of(case: Case) -> Log:
 
 def harm(case: Case) -> Harm:
     """Learn one robot and compare with the baseline."""
-    log = log_of(case)
-    calibration = calibrate(log, input_name=case.input)
-    judged = calibration.model.content.verdict.held_out
-    history = calibration.history
-    assert judged is not None
-    assert history is not None
-    weights, names = history.structure_weight, history.structures
     options = slipwise.EvaluationOptions(horizons=HORIZONS, methods=("none", "auto"))
-    evaluation = slipwise.evaluate(log, input_name=case.input, options=options)
+    evaluation = slipwise.evaluate(log_of(case), input_name=case.input, options=options)
     scores = [score for score in evaluation.scores if score.method == "auto"]
+    none, auto = ([p for p in evaluation.predictions if p.method == name] for name in options.methods or ())
+    judged = [judge(learned, plain) for learned, plain in zip(auto, none, strict=True)]
     return Harm(
         case,
-        judged.position / judged.plain_position,
-        judged.heading / judged.plain_heading,
+        max(each.position_ratio[0] for each in judged),
+        max(each.heading_ratio[0] for each in judged),
         max(score.position_ratio[0] for score in scores),
         max(score.heading_ratio[0] for score in scores),
-        names[int(np.argmax(weights[-1]))] if weights is not None else "together",
+        STRUCTURES[auto[-1].structure[-1]],
     )
 
 

@@ -12,9 +12,20 @@ from slipwise.calibration.learner import TOGETHER, Belief
 class AverageLearner:
     """An average of bases, or of one."""
 
-    def __init__(self, average: _core.ModelAverage, structure: int = TOGETHER) -> None:
-        """`average` has learned nothing yet; `structure` is what its beliefs are said to be."""
+    def __init__(
+        self,
+        average: _core.ModelAverage,
+        structure: int = TOGETHER,
+        *,
+        places: tuple[int, ...] | None = None,
+        bases: int = 0,
+    ) -> None:
+        """`average` has learned nothing yet; `structure` is what its beliefs are said to be.
+
+        `places` are those of its bases among as many as `bases`, where it has but some of them.
+        """
         self._average, self._structure = average, structure
+        self._places, self._bases = places, bases
         self._motion = average.model
         self._belief: Belief | None = None
 
@@ -45,9 +56,16 @@ class AverageLearner:
             noise_scale=np.array(state.noise_scale),
             prior_std=np.array(state.prior_std),
             variance_ratio=np.array(state.variance_ratio),
-            weights=np.array(state.weights),
+            weights=self._weights(np.array(state.weights)),
             structure=self._structure,
         )
+
+    def _weights(self, of_its_own: np.ndarray) -> np.ndarray:
+        if self._places is None:
+            return of_its_own
+        weights = np.zeros(self._bases)
+        weights[list(self._places)] = of_its_own
+        return weights
 
 
 class EstimatorLearner:

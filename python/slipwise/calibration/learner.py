@@ -60,11 +60,17 @@ class Learner:
             self.settings.average_settings(),
         )
 
+    @property
+    def few_bases(self) -> tuple[int, ...]:
+        """Places of the two bases with the fewest terms and of the one with the most."""
+        by_size = sorted(range(len(self.bases)), key=lambda i: self.bases[i].size)
+        return tuple(sorted({*by_size[:2], by_size[-1]}))
+
     def without_actuator(self) -> _core.ModelAverage:
-        """Return the same without an actuator model: a delay per channel, and no lag behind it."""
+        """Return few bases without an actuator model: a delay per channel, and no lag behind it."""
         return _core.ModelAverage.with_delays(
             "auto",
-            list(self.bases),
+            [self.bases[i] for i in self.few_bases],
             self.mount,
             self.settings.filter_settings(),
             self.settings.average_settings(),

@@ -12,7 +12,7 @@ from slipwise import _core
 from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.learner import BASELINE, Belief
+from slipwise.calibration.learner import BASELINE, DIRECT, Belief, Learner
 from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 
@@ -65,9 +65,9 @@ class Candidate(Protocol):
 class AverageCandidate:
     """An average of bases that learns the windows themselves."""
 
-    def __init__(self, average: _core.ModelAverage, windows: WindowSet, structure: int) -> None:
-        """`average` has learned nothing yet; `structure` is what its beliefs are said to be."""
-        self._learner, self._windows = AverageLearner(average, structure), windows
+    def __init__(self, learner: AverageLearner, windows: WindowSet) -> None:
+        """`learner` has learned nothing yet."""
+        self._learner, self._windows = learner, windows
         self.weight = 1.0
 
     def predict(self, i: int, *, active: bool) -> Predicted:
@@ -157,6 +157,17 @@ class CascadeCandidate:
         passing = copy(self._passing)  # the slip is learned once, for both
         passing.restart_behind(limited)
         return CascadeCandidate(self._windows, passing, _core.PredictiveScore(self._score), count)
+
+
+def together_candidate(learner: Learner, windows: WindowSet) -> AverageCandidate:
+    """Return what learns all at once, from nothing."""
+    return AverageCandidate(AverageLearner(learner.fresh()), windows)
+
+
+def direct_candidate(learner: Learner, windows: WindowSet) -> AverageCandidate:
+    """Return what learns slip and delays alone, from nothing."""
+    average, places = learner.without_actuator(), learner.few_bases
+    return AverageCandidate(AverageLearner(average, DIRECT, places=places, bases=len(learner.bases)), windows)
 
 
 def cascade_candidate(windows: WindowSet, settings: Settings) -> CascadeCandidate:

@@ -26,17 +26,18 @@ from slipwise.calibration.learner import (
 from slipwise.calibration.limit_watch import LimitWatch
 from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.structure_candidates import (
-    AverageCandidate,
     BaselineCandidate,
     Candidate,
     CascadeCandidate,
     cascade_candidate,
+    direct_candidate,
+    together_candidate,
 )
 from slipwise.calibration.wheel_drive import has_wheels
 
 PATIENCE = 0.3  # of the bases' learning rate: what sets structures apart repeats from window to window
 JOINING = 0.1  # part of the cascade's weight that it gives to itself behind limits, when these are found
-PRIOR = {DIRECT: 0.5}  # weight at first, of others 1: where it predicts like the baseline, that is taken
+PRIOR = {DIRECT: 1.4, BASELINE: 2.0}  # weight at first, of others 1: of what predicts alike, the simplest
 SIMPLE = (DIRECT, BASELINE)  # what these miss must not pass for noise
 ACTIVE = 0.5  # of the heavier average's weight, from which on the other's windows are learned again as often
 REFUTED = np.log(1e3)  # tempered log odds against a candidate from which on it is no longer learned
@@ -212,11 +213,11 @@ def _prior(structures: Iterable[int]) -> dict[int, float]:
 def _candidates(learner: Learner, windows: WindowSet) -> dict[int, Candidate]:
     """Return what is tried from the first window on, by structure."""
     settings = learner.settings
-    found: dict[int, Candidate] = {TOGETHER: AverageCandidate(learner.fresh(), windows, TOGETHER)}
+    found: dict[int, Candidate] = {TOGETHER: together_candidate(learner, windows)}
     if learner.dynamics and settings.auto.cascade and has_wheels(windows.drive):
         found[CASCADE] = cascade_candidate(windows, settings)
     if learner.dynamics and settings.auto.direct:
-        found[DIRECT] = AverageCandidate(learner.without_actuator(), windows, DIRECT)
+        found[DIRECT] = direct_candidate(learner, windows)
     if settings.auto.baseline:
         found[BASELINE] = BaselineCandidate(windows, settings, tuple(b.name for b in learner.bases))
     return found

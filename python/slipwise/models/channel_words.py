@@ -21,7 +21,7 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     """Say delays and time constants, of speed and yaw rate together where these are alike."""
     if model.content.input != "command":
         return []
-    if not model.content.dynamics:
+    if not (model.content.dynamics or model.content.delays):
         return ["Follows commands at once."]
     found = {p.name: p for p in parameters}
     channels = {"speed commands": _channel(found, "v"), "yaw-rate commands": _channel(found, "omega")}
@@ -33,9 +33,11 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
 
 def _channel(found: Found, place: str) -> str:
     parts = []
-    delay = found[f"delay_{place}"]
-    if delay.identified:
+    delay, lagging = found[f"delay_{place}"], f"lag_{place}" in found
+    if delay.identified and (lagging or delay.value > SAME * delay.std):
         parts.append(f"after {_seconds(delay)}")
+    elif delay.identified:
+        parts.append("at once")
     constants = _time_constants(found, place)
     if constants:
         parts.append(f"with {constants}")
@@ -44,8 +46,8 @@ def _channel(found: Found, place: str) -> str:
 
 def _time_constants(found: Found, place: str) -> str:
     """One time constant, or those of a fast and a slow mode; nothing where they are not identified."""
-    lag = found[f"lag_{place}"]
-    if not lag.identified:
+    lag = found.get(f"lag_{place}")
+    if lag is None or not lag.identified:
         return ""
     slow, slow_lag = found.get(f"slow_share_{place}"), found.get(f"slow_lag_{place}")
     one = f"a time constant of {_seconds(lag)}"

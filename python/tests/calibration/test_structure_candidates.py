@@ -14,10 +14,10 @@ from slipwise.calibration.drive import WindowSet, prepare_drive
 from slipwise.calibration.learner import BASELINE, CASCADE, DIRECT, make_learner
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.structure_candidates import (
-    AverageCandidate,
     BaselineCandidate,
     Candidate,
     cascade_candidate,
+    direct_candidate,
 )
 
 SETTINGS = Settings()
@@ -35,7 +35,7 @@ def candidate_of(structure: int, windows: WindowSet) -> Candidate:
         learner = make_learner(
             Settings(basis="edd-2"), "command"
         )  # of several, the update is of the heaviest
-        return AverageCandidate(learner.without_actuator(), windows, DIRECT)
+        return direct_candidate(learner, windows)
     if structure == CASCADE:
         return cascade_candidate(windows, SETTINGS)
     return BaselineCandidate(windows, SETTINGS, tuple(basis.name for basis in learner.bases))
@@ -77,3 +77,14 @@ def test_delays_alone_have_no_lag(windows: WindowSet) -> None:
     chain = belief.motion.chain(belief.mean)
     assert (chain.lag_v, chain.lag_omega) == (0.0, 0.0)
     assert chain.delay_v > 0.05
+
+
+def test_delays_alone_are_learned_with_few_bases_whose_weights_stand_among_those_of_all(
+    windows: WindowSet,
+) -> None:
+    learner = make_learner(SETTINGS, "command")
+    weights = direct_candidate(learner, windows).belief().weights
+    names = [basis.name for basis in learner.bases]
+    used = {name for name, weight in zip(names, weights.tolist(), strict=True) if weight > 0.0}
+    assert used == {"none", "edd-2", "odd-even-10"}
+    assert weights.sum() == pytest.approx(1.0)

@@ -48,6 +48,18 @@ def test_a_delay_that_is_not_identified_is_not_said() -> None:
     assert table["delay_v"].unit == "s"
 
 
+def test_delays_without_an_actuator_model_are_said_without_a_time_constant() -> None:
+    late = make_model(replace(named("edd-2", ang__w=-0.4), delays=(0.2, 0.2)))
+    assert "Follows commands after 0.200 ± 0.010 s." in str(summarise(late))
+    apart = make_model(replace(named("edd-2", ang__w=-0.4), delays=(0.2, 0.001)))
+    text = "Follows speed commands after 0.200 ± 0.010 s, and yaw-rate commands at once."
+    assert text in str(summarise(apart))
+    quick = make_model(replace(named("edd-2", ang__w=-0.4), delays=(0.001, -0.002)))
+    assert "Follows commands at once." in str(summarise(quick))
+    unknown = make_model(replace(named("edd-2", ang__w=-0.4), delays=(0.1, 0.1), std=0.2))
+    assert "Follows" not in str(summarise(unknown))
+
+
 def test_a_slip_that_is_not_identified_is_not_said() -> None:
     text = str(summarise(make_model(replace(named("edd-2", ang__w=-0.4), std=0.5))))
     assert text.startswith("The log does not identify how much the robot slips.")

@@ -140,7 +140,7 @@ def _weights(contents: Contents, history: History) -> str:
     shown = (strokes, history.structure_weight)
     heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
     note = f"Predictions are those of the heavier way, at the end {heavier}, which this section shows."
-    figure = _weights_figure(contents, history, ("structures", "ways to learn from commands"), shown)
+    figure = _weights_figure(contents, history, ("structures", "ways to explain the motion"), shown)
     return _basis_weights(contents, history) + figure + paragraph(note)
 
 
