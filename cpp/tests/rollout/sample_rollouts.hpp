@@ -106,7 +106,6 @@ inline std::vector<SampleChain> sample_chains() {
           {"lag", {.dynamics = true}, {ln(0.2), ln(0.15), ln(1e-20), ln(1e-20)}},
           {"delay of whole periods", {.dynamics = true}, {ln(1e-20), ln(1e-20), ln(0.15), ln(0.1)}},
           {"lag and delay", {.dynamics = true}, {ln(0.2), ln(0.15), ln(0.13), ln(0.07)}},
-          {"delays alone, one of them negative", {.delays = true}, {0.13, -0.02}},
           {"clock offset", {.dynamics = true, .clock_offset = true}, {ln(0.3), ln(0.1), ln(0.131), ln(0.131), 0.02}},
           {"early poses", {.clock_offset = true}, {-0.07}},
           {"response",
@@ -114,7 +113,8 @@ inline std::vector<SampleChain> sample_chains() {
            {ln(0.2), ln(0.15), ln(0.13), ln(0.07), 0.9, 1.1, 0.3, 0.2, ln(1.7), ln(1.3)}},
           {"response without delay, early poses",
            {.dynamics = true, .clock_offset = true, .response = true},
-           {ln(0.2), ln(0.15), ln(1e-20), ln(1e-20), 1.1, 0.8, 0.4, 0.2, ln(1.7), ln(0.9), -0.03}}};
+           {ln(0.2), ln(0.15), ln(1e-20), ln(1e-20), 1.1, 0.8, 0.4, 0.2, ln(1.7), ln(0.9), -0.03}},
+          {"delays alone, one of them negative", {.delays = true}, {0.13, -0.02}}};
 }
 
 inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& chain) {

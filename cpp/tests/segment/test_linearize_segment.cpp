@@ -35,11 +35,11 @@ std::vector<Case> sample_chains() {
   return {{"no chain", {}, Eigen::VectorXd(0)},
           {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
           {"dynamics", {.dynamics = true}, dynamics},
-          {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)},
           {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
           {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
           {"mount", {.mount = true}, mount},
-          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, seen}};
+          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, seen},
+          {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)}};
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain) {
