@@ -20,6 +20,8 @@ _KNOWN_PART = 0.9  # of a window's time, inputs must be known
 class MotionWindows:
     """Poses against inputs in N windows."""
 
+    run: Floats  # [N] number of the pair of inputs and poses
+    start: Floats  # [N] s, stamp of the first pose
     duration: Floats  # [N] s
     distance: Floats  # [N] m, between the first and the last pose
     course: Floats  # [N] rad, direction of that line
@@ -36,7 +38,7 @@ class MotionWindows:
 
 def motion_windows(pairs: Sequence[tuple[Inputs, Poses]]) -> MotionWindows:
     """Cut all runs into windows of about 1.5 s inside one frame and with known inputs."""
-    parts = [_windows(inputs, poses) for inputs, poses in pairs if len(poses) > 1]
+    parts = [_windows(k, inputs, poses) for k, (inputs, poses) in enumerate(pairs) if len(poses) > 1]
     names = [column.name for column in fields(MotionWindows)]
     columns = {
         name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)]) for name in names
@@ -49,7 +51,7 @@ def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:
     return np.asarray((angle + 0.5 * turn) % turn - 0.5 * turn)
 
 
-def _windows(inputs: Inputs, poses: Poses) -> MotionWindows:
+def _windows(number: int, inputs: Inputs, poses: Poses) -> MotionWindows:
     new_frame = np.flatnonzero(np.diff(poses.frame, prepend=-1))
     start_time = poses.t[new_frame][np.searchsorted(new_frame, np.arange(len(poses)), side="right") - 1]
     slot = np.floor((poses.t - start_time) / _LENGTH)
@@ -64,6 +66,8 @@ def _windows(inputs: Inputs, poses: Poses) -> MotionWindows:
     followed, followed_degrees = np.cumsum(wrapped(step)), np.cumsum(wrapped(step, 360.0))
     dx, dy = poses.x[j] - poses.x[i], poses.y[j] - poses.y[i]
     return MotionWindows(
+        run=np.full(len(i), float(number)),
+        start=poses.t[i],
         duration=duration[good],
         distance=np.hypot(dx, dy),
         course=np.arctan2(dy, dx),
