@@ -86,7 +86,19 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
     "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+    "command_scale": (
+        str,
+        "V,OMEGA",
+        "Factors of the commanded speed and yaw rate: 0.15,1 for rad/s of 0.15 m wheels; -1,1 for a sign.",
+    ),
+    "wheel_scale": (str, "V,OMEGA", "The same factors for the speed and yaw rate of the wheels."),
+    "pose_yaw_offset": (
+        float,
+        "RADIANS",
+        "Added to the heading of every pose: 3.1416 if the pose sensor looks backwards.",
+    ),
 }
+_FACTORS = ("command_scale", "wheel_scale")
 
 
 def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
@@ -134,4 +146,19 @@ def _log_options(given: dict[str, Any]) -> LogOptions:
 
     joints = ("left_joints", "right_joints")
     split = {name: tuple(part for part in (given[name] or "").split(",") if part) for name in joints}
-    return LogOptions(**(given | split))
+    factors = {name: _factors(name, given[name]) for name in _FACTORS if given[name] is not None}
+    others = {name: value for name, value in given.items() if value is not None and name not in factors}
+    return LogOptions(**(others | split | factors))
+
+
+def _factors(name: str, text: str) -> tuple[float, ...]:
+    from slipwise.errors import SettingsError
+
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise SettingsError(
+            f"'{text}' is no two factors, of speed and yaw rate",
+            where=f"--{name.replace('_', '-')}",
+            advice="such as 0.15,1 or -1,1",
+        ) from None

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from slipwise.errors import LogError
+from slipwise.logs.corrections import corrected
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
@@ -38,7 +39,7 @@ def _open_one(path: Path, options: LogOptions) -> Log:
     if not path.exists():
         raise LogError("no such file", where=str(path), advice="check the path")
     try:
-        return checked(_reader(path)(path, options))
+        return checked(corrected(_reader(path)(path, options), options))
     except PermissionError as error:
         raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
 
