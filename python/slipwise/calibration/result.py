@@ -29,6 +29,8 @@ class Verdict:
     advice: tuple[str, ...] = ()  # what would determine them, and tell look-alikes apart
     look_alikes: tuple[LookAlike, ...] = ()  # pairs of parameters that the log can hardly tell apart
     timing: str = ""  # which delay and which clock offset is which
+    reservations: tuple[str, ...] = ()  # sentences of a good verdict that qualify it: it is not plainly good
+    contradictions: tuple[str, ...] = ()  # between poses and inputs: what was learned is no slip
 
     def __str__(self) -> str:
         return " ".join((self.sentence, *self.advice))

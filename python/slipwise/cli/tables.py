@@ -72,7 +72,9 @@ def show_verdict(output: Output, verdict: Verdict | VerdictSection, next_step: S
 
 
 def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
-    """Return what a verdict says in two words, and its colour."""
+    """Return what a verdict says in a few words, and its colour."""
+    if verdict.good and verdict.reservations:
+        return "GOOD, WITH RESERVATIONS.", "yellow"
     return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
 
 

@@ -4,5 +4,6 @@
 from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
 from slipwise.evaluation.prediction_file import write_predictions
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.evaluation.simpler import simpler_method
 
-__all__ = ["Evaluation", "EvaluationOptions", "Score", "evaluate", "write_predictions"]
+__all__ = ["Evaluation", "EvaluationOptions", "Score", "evaluate", "simpler_method", "write_predictions"]

@@ -24,10 +24,12 @@ from slipwise.calibration.statistics import (
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.methods import Contest, method_info, method_names
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models.model import Model
 
 DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
+SHORTEST_HORIZON = 0.5  # s; what is driven in less is hardly more than the noise of the poses
 Report = Callable[[str, float], None]
 
 
@@ -78,6 +80,7 @@ def evaluate(
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
+        contradictions=contradictions(log, input_name, sensor_yaw=settings.mount.yaw),
     )
 
 
@@ -110,11 +113,21 @@ def _contest(
         raise LogError(
             "the log has no two windows of any horizon asked for",
             where=", ".join(source.path for source in log.sources[:3]),
-            advice="ask for shorter --horizons, or record a longer drive",
+            advice=_more_windows(sets),
         )
     return Contest(
         input_name, settings, windows, targets, options.vendor_track_multiplier, options.model
     ), notes
+
+
+def _more_windows(sets: Sequence[WindowSet]) -> str:
+    """What would give windows: shorter horizons where these are long, else what was rejected."""
+    rejected = "; ".join(f"{item.count} x {item.reason}" for item in sets[0].left_out)
+    if sets[0].length > SHORTEST_HORIZON:
+        return (
+            f"ask for shorter --horizons, such as {SHORTEST_HORIZON:g}{f' ({rejected})' if rejected else ''}"
+        )
+    return rejected or f"it needs poses and inputs together for {4.0 * sets[0].length:g} s at least"
 
 
 def _learned_from(log: Log, model: Model | None) -> bool:

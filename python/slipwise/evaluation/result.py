@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.statistics import ErrorSummary
+from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.log import LeftOut
 
 
@@ -46,6 +47,7 @@ class Evaluation:
     runs: tuple[str, ...]  # run names
     left_out: tuple[LeftOut, ...]
     notes: tuple[str, ...]
+    contradictions: tuple[Contradiction, ...] = ()  # between the poses and the inputs of the log
 
     def score(self, method: str, horizon: float) -> Score:
         """Return the score of `method` at `horizon`; KeyError where there is none."""

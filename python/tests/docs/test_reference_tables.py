@@ -9,7 +9,7 @@ import numpy as np
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
-from slipwise.calibration import identifiability, statistics, tails, verdict
+from slipwise.calibration import consistency, identifiability, judgement, statistics, tails
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
@@ -155,7 +155,11 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     assert f"undetermined above a ratio of {identifiability.UNDETERMINED_RATIO:g}" in " ".join(
         derivations.split()
     )
-    assert f"fewer than {verdict.FEWEST_WINDOWS} held-out windows" in read("getting-started.md")
+    pages = " ".join(read("statistics.md").split())
+    assert f"with a ratio up to {judgement.SAME:g} counting as the same" in pages
+    assert consistency.FAR == 3.0
+    assert "beyond three times the end of its band" in pages
+    assert f"fewer than {judgement.FEWEST_WINDOWS} held-out segments" in read("getting-started.md")
     assert statistics.BLOCK_WINDOWS == 3, "the pages say blocks of three windows"
     points = ", ".join(f"{point:.3f}" for point in statistics.ELLIPSOIDS.values())
     assert points.replace(", 7", " and 7") in derivations
