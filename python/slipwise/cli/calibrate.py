@@ -97,7 +97,7 @@ def calibrate(
             if not no_report:
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
-                _write_report(files["report"], log, calibration, chosen)
+                calibration = _write_report(files["report"], log, calibration, chosen)
             if output is not None:
                 files["model"] = calibration.model.save(output)
             document = _document(log, calibration, files)
@@ -156,10 +156,10 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     show_parameters(out, summary.parameters)
 
 
-def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
-    """Judge what was learned beside doing nothing and edd-2, and write the page."""
+def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> Calibration:
+    """Judge what was learned beside doing nothing and edd-2, and write the page; propose what is better."""
     from slipwise.cli.command_line import command_line
-    from slipwise.evaluation import EvaluationOptions, evaluate
+    from slipwise.evaluation import EvaluationOptions, evaluate, proposing
     from slipwise.reporting import write_report
 
     learned = [calibration.method]
@@ -172,7 +172,9 @@ def _write_report(path: Path, log: Log, calibration: Calibration, settings: Sett
         settings=settings,
         options=EvaluationOptions(methods=methods),
     )
+    calibration = proposing(calibration, evaluation)
     title = ", ".join(run.name for run in log.runs[:3])
     write_report(
         path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()
     )
+    return calibration

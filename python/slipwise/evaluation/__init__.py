@@ -4,6 +4,14 @@
 from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
 from slipwise.evaluation.prediction_file import write_predictions
 from slipwise.evaluation.result import Evaluation, Score
-from slipwise.evaluation.simpler import simpler_method
+from slipwise.evaluation.simpler import proposing, simpler_method
 
-__all__ = ["Evaluation", "EvaluationOptions", "Score", "evaluate", "simpler_method", "write_predictions"]
+__all__ = [
+    "Evaluation",
+    "EvaluationOptions",
+    "Score",
+    "evaluate",
+    "proposing",
+    "simpler_method",
+    "write_predictions",
+]

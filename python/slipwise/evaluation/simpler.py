@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.result import Calibration
 from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.evaluation.result import Evaluation
 
@@ -50,6 +51,15 @@ def simpler_method(evaluation: Evaluation, judged: str) -> Simpler | None:
     others = [_beside(p, own) for p in longest if p.causal and _terms(p.method) < _terms(judged)]
     better = [other for other in others if _clearly_better(other)]
     return min(better, key=lambda other: other.position_ratio[0] * other.heading_ratio[0], default=None)
+
+
+def proposing(calibration: Calibration, evaluation: Evaluation) -> Calibration:
+    """Add to the advice of a good or bad verdict a simpler basis of an evaluation on the same log."""
+    verdict = calibration.verdict
+    found = None if verdict.contradictions else simpler_method(evaluation, calibration.method)
+    if found is None:
+        return calibration
+    return replace(calibration, verdict=replace(verdict, advice=(*verdict.advice, found.advice())))
 
 
 def _terms(method: str) -> float:

@@ -8,8 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from calibration.test_statistics import predictions
+from contradictory_logs import sound_log
 
-from slipwise.evaluation import Evaluation, simpler_method
+from slipwise.calibration import calibrate, make_settings
+from slipwise.evaluation import Evaluation, proposing, simpler_method
 
 WINDOWS = 80
 
@@ -61,3 +63,11 @@ def test_a_method_that_has_seen_the_windows_is_not_proposed() -> None:
     evaluation = table(edd_2=0.5, auto=1.0)
     seen = replace(evaluation.predictions[0], learned_until=np.full(WINDOWS, 1e9))
     assert simpler_method(replace(evaluation, predictions=(seen, evaluation.predictions[1])), "auto") is None
+
+
+def test_a_calibration_proposes_it_where_its_report_shows_one() -> None:
+    calibration = calibrate(sound_log(), input_name="wheel", settings=make_settings({"basis": "odd-even-10"}))
+    advised = proposing(calibration, table(edd_2=0.5, odd_even_10=1.0))
+    assert advised.verdict.advice[-1].startswith("edd-2, of 2 slip terms, predicts clearly better: ")
+    assert advised.verdict.advice[:-1] == calibration.verdict.advice
+    assert proposing(calibration, table(edd_2=1.0, odd_even_10=0.5)) is calibration
