@@ -14,6 +14,7 @@ from slipwise.reporting.markup import bullets, escape, number, paragraph
 _STATES = {
     "good": "✓ Good",
     "partly": "▲ Good, but not everything is determined",
+    "reserved": "▲ Good, with reservations",
     "bad": "✕ Not good enough",
 }
 
@@ -38,6 +39,8 @@ class VerdictSection:
 def _state(verdict: Verdict) -> str:
     if not verdict.good:
         return "bad"
+    if verdict.reservations:
+        return "reserved"
     return "partly" if verdict.undetermined else "good"
 
 

@@ -18,6 +18,7 @@ from slipwise.reporting.sections.verdict import VerdictSection
     [
         (Verdict(True, "Fine."), "good"),
         (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "partly"),
+        (Verdict(True, "Fine.", reservations=("Its stated uncertainty is too small.",)), "reserved"),
         (Verdict(False, "No.", ("lat.w",)), "bad"),
     ],
 )
