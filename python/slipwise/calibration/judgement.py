@@ -14,6 +14,8 @@ from slipwise.models.schema import HeldOut
 from slipwise.number_text import number_text
 
 FEWEST_WINDOWS = 4  # held-out segments; fewer cannot be judged
+MUCH = 1.2  # ratio to the baseline beyond which an error is worse by a fault of the log, not by chance
+BY_START = 0.9  # of the product of both ratios; what the start of predictions gains beyond that is named
 SAME = 1.01  # ratio to the baseline up to which an error counts as the same; both print alike then
 
 Ratio = tuple[float, float, float]  # of two mean errors, with its 95 % interval
@@ -42,30 +44,39 @@ class Judgement:
     def worse(self) -> tuple[str, ...]:
         """Which of position and heading are worse than the baseline's on the segments seen."""
         shown = self._shown_ratios()
-        return tuple(name for name, ratio in self._ratios().items() if max(ratio[0], shown[name]) > SAME)
+        return tuple(name for name in shown if self._worst(name) > SAME)
+
+    @property
+    def much_worse(self) -> bool:
+        """Whether an error is so much worse that chance is no explanation."""
+        return any(self._worst(name) > MUCH or self._ratios()[name][1] > SAME for name in self.worse)
 
     @property
     def gains_by_start(self) -> bool:
-        """Whether the errors shown are smaller than the baseline's by where they start alone."""
-        by_model, shown = self._ratios(), self._shown_ratios()
-        better = shown["position"] * shown["heading"] < 1.0
-        return better and not self.beats_baseline and by_model["position"][0] * by_model["heading"][0] >= 1.0
+        """Whether the errors shown are smaller than the model's own by where its predictions start."""
+        shown, own = self._shown_ratios(), self._ratios()
+        return shown["position"] * shown["heading"] < BY_START * own["position"][0] * own["heading"][0]
 
     def fault(self) -> str:
         """Say why the method does not beat the kinematic baseline; empty where it does."""
-        ratios, shown = self._ratios(), self._shown_ratios()
+        ratios, start = self._ratios(), " from the same measured pose" if self.gains_by_start else ""
         if self.worse:
-            times = {name: number_text(max(ratios[name][0], shown[name])) for name in self.worse}
-            return " and ".join(f"its {name} error is {times[name]} times as large" for name in self.worse)
+            times = {name: number_text(self._worst(name)) for name in self.worse}
+            each = (f"its {name} error is {times[name]} times as large" for name in self.worse)
+            return f"{' and '.join(each)}{start}"
         if any(ratio[2] < 1.0 for ratio in ratios.values()):
             return ""
         if all(ratio[0] == 1.0 for ratio in ratios.values()):
-            return "its errors are the same"
+            return f"its errors are the same{start}"
         intervals = "; ".join(f"{name} {_interval(ratio)}" for name, ratio in ratios.items())
         return (
-            "its gain may be chance, since the 95 % intervals of its errors relative to the baseline's hold "
-            f"1 ({intervals})"
+            f"its gain{start} may be chance, since the 95 % intervals of its errors relative to the "
+            f"baseline's hold 1 ({intervals})"
         )
+
+    def _worst(self, name: str) -> float:
+        """The error over the baseline's, from the measured pose or as shown."""
+        return max(self._ratios()[name][0], self._shown_ratios()[name])
 
     def _ratios(self) -> dict[str, Ratio]:
         return {"position": _or_one(self.position_ratio), "heading": _or_one(self.heading_ratio)}
@@ -112,5 +123,5 @@ def _or_one(ratio: Ratio) -> Ratio:
 
 
 def _interval(ratio: Ratio) -> str:
-    value, low, high = (number_text(each, 2) for each in ratio)
+    value, low, high = (number_text(each) for each in ratio)
     return f"{value}, {low} to {high}"

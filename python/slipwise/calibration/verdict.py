@@ -63,7 +63,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     reservations = _reservations(judgement, facts)
     sentences = [fault]
     if not contradicted and not judgement.too_short:
-        start = _BY_START if judgement.gains_by_start else ""
+        start = _BY_START if fault and judgement.gains_by_start else ""
         sentences += [_figures(judgement.held_out), start, *reservations, "" if fault else _unknown(known)]
     advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
     return Verdict(
@@ -133,7 +133,7 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         return tuple(advice)
     if judgement.too_short:
         return (*facts.shortage, *advice)
-    if judgement.worse:
+    if judgement.much_worse:
         advice.append(
             "Look at the report for late poses, pose jumps or a wrong topic; until then use the kinematic "
             "baseline."

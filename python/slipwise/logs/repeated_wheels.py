@@ -63,7 +63,7 @@ def repeated_wheels(pairs: Sequence[tuple[Inputs, Poses]]) -> Contradiction | No
     return Contradiction(
         "repeated-wheels",
         "the poses carry no information of their own: over a second they follow the wheels' own path to "
-        f"{1e3 * found.place:.2g} mm and less than {_SAME_HEADING} rad, which no sensor could",
+        f"{max(1e3 * found.place, 0.01):.2g} mm and less than {_SAME_HEADING} rad, which no sensor could",
         (
             "They integrate the wheels, as /odom does, and show no slip.",
             "Record poses of another source: lidar, RTK, motion capture; in a simulator, its ground truth.",

@@ -44,9 +44,17 @@ def test_what_the_start_gains_is_told_from_what_the_model_gains() -> None:
     judgement = judged((1.0, 0.9, 1.1), (1.0, 0.9, 1.1))
     shown = judgement.held_out.model_copy(update={"position": 0.7})
     assert replace(judgement, held_out=shown).gains_by_start
+    assert "from the same measured pose" in replace(judgement, held_out=shown).fault()
     assert not judged(BETTER, BETTER).gains_by_start
 
 
 def test_fewer_than_four_segments_are_too_few() -> None:
     assert judged(BETTER, BETTER, windows=3).too_short
     assert not judged(BETTER, BETTER, windows=4).too_short
+
+
+def test_an_error_that_is_much_worse_is_told_from_one_by_chance() -> None:
+    assert judged((1.3, 0.8, 2.0), BETTER).much_worse
+    assert judged((1.1, 1.05, 1.2), BETTER).much_worse
+    assert not judged((1.1, 0.9, 1.3), BETTER).much_worse
+    assert not judged(BETTER, BETTER).much_worse

@@ -162,7 +162,7 @@ def test_a_verdict_against_its_own_figures_says_why() -> None:
     judgement = judged((0.91, 0.72, 1.2), (0.72, 0.5, 1.1), windows=10)
     verdict = give_verdict(judgement, Identified(2, ()), facts())
     assert not verdict.good
-    assert "hold 1 (position 0.91, 0.72 to 1.2; heading 0.72, 0.50 to 1.1)" in verdict.sentence
+    assert "hold 1 (position 0.910, 0.720 to 1.20; heading 0.720, 0.500 to 1.10)" in verdict.sentence
     assert "(10 held-out segments)" in verdict.sentence
     assert verdict.advice[0].startswith(
         "Record a longer drive: 10 held-out segments of 5 s tell little; 20 take"
