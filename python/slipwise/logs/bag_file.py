@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
-from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
+from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION, TF, TF_DEFINITION
 from slipwise.logs.topics import Topic
 
 if TYPE_CHECKING:
@@ -185,8 +185,9 @@ class BagFile:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
         store = get_typestore(Stores.ROS1_NOETIC if self.format == "rosbag1" else Stores.ROS2_HUMBLE)
-        if ACKERMANN not in store.fielddefs:
-            store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
+        for kind, definition in ((ACKERMANN, ACKERMANN_DEFINITION), (TF, TF_DEFINITION)):
+            if kind not in store.fielddefs:
+                store.register(get_types_from_msg(definition, kind))
         return store
 
 
