@@ -13,7 +13,9 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.segments import WindowRules
+from slipwise.validation_text import first_problem
 
+_SEE = "docs/settings.md lists the keys and what they take"
 FARTHEST_SENSOR = 50.0  # m from base_link; more is a wrong unit
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
@@ -342,11 +344,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
     try:
         return Settings.model_validate(content)
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(
-            f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
-        ) from problem
+        raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
 
 
 def _weighing(table: AutoTable | ColouredTable | StartTable) -> _core.WeighingSettings:

@@ -43,5 +43,7 @@ def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
         streams=streams_of(log, settings.rules()),
         learned=learned,
         timing=tuple(timing for item in learned for timing in timing_of(item)),
-        maps={name: coverage_map(inputs[name]) for name in present},
+        maps={
+            name: coverage_map(inputs[name], unknown_after=settings.window.unknown_after) for name in present
+        },
     )

@@ -18,6 +18,7 @@ from slipwise.files import write_text_whole
 from slipwise.models.limits import core_limits
 from slipwise.models.schema import READ_VERSIONS, SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
+from slipwise.validation_text import first_problem
 
 MOUNT_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
@@ -217,10 +218,8 @@ def load_model(path: str | Path) -> Model:
     try:
         return Model(ModelFile.model_validate(content | {"slipwise_model": SCHEMA_VERSION}))
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
         raise ModelError(
-            f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file"
+            first_problem(problem), where=str(source), advice="calibrate again, or restore the file"
         ) from problem
     except ModelError as problem:
         raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem
