@@ -4,9 +4,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from slipwise.errors import SettingsError
+from slipwise.logs.held import UNKNOWN_AFTER
+
+AUTO = "auto"
 
 
 @dataclass(frozen=True)
@@ -14,7 +19,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length is not a positive number.
+        SettingsError: a length is not a positive number, or a time is none.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -28,6 +33,12 @@ class LogOptions:
     wheel_radius: float | None = None  # [m]
     track: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
+    poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
+    pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
+    start: float | None = None  # [s] from the log's start; what is before is not used
+    end: float | None = None  # [s] from the log's start; what is after is not used
+    columns: Mapping[str, str] = field(default_factory=dict)  # tidy name -> name in the table
+    unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
 
     def __post_init__(self) -> None:
         for name in ("wheel_radius", "track", "wheelbase"):
@@ -37,3 +48,17 @@ class LogOptions:
                     f"{name} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
+        for name in ("start", "end", "pose_clock_offset"):
+            given = getattr(self, name)
+            if (
+                given is not None
+                and given != AUTO
+                and not (isinstance(given, (int, float)) and math.isfinite(given))
+            ):
+                raise SettingsError(f"{name} must be a number of seconds, not {given}", advice="such as 12.5")
+        if self.start is not None and self.end is not None and self.end <= self.start:
+            raise SettingsError(
+                f"end ({self.end:g} s) is not after start ({self.start:g} s)", advice="exchange them"
+            )
+        if not self.unknown_after > 0.0:
+            raise SettingsError("unknown_after must be more than 0 s", advice="such as 0.5")

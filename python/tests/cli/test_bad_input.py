@@ -78,7 +78,7 @@ def test_a_topic_that_is_not_there_is_refused_with_those_that_are(
 ) -> None:
     assert slipwise("convert", drive_csv, "-o", "drive.mcap").code == 0
     line = refusal(slipwise, drive_csv.parent, "calibrate", "drive.mcap", "--pose-topic", "/rtk")
-    assert line.startswith("pose_topic /rtk is not in the bag")
+    assert line.startswith("--pose-topic /rtk is not in the bag")
     assert "the bag has /" in line
 
 

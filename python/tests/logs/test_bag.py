@@ -215,7 +215,7 @@ def test_two_equal_candidates_are_listed(tmp_path: Path) -> None:
     for k in range(10):
         bag.add(EPOCH + k, "/robot2/cmd_vel", TWIST, bag.twist(1.0, 0.0))
     folder = bag.write(tmp_path / "a.mcap")
-    with pytest.raises(LogError, match=r"set command_topic to one of .*/cmd_vel.*/robot2/cmd_vel"):
+    with pytest.raises(LogError, match=r"give --command-topic one of .*/cmd_vel.*/robot2/cmd_vel"):
         open_log(folder)
     commands = open_log(folder, options=LogOptions(command_topic="/cmd_vel")).runs[0].commands
     assert commands is not None
@@ -224,7 +224,7 @@ def test_two_equal_candidates_are_listed(tmp_path: Path) -> None:
 
 def test_a_given_topic_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
     folder = drive_along_x(Bag()).write(tmp_path / "a.mcap")
-    with pytest.raises(LogError, match=r"pose_topic /gps is not in the bag.*/mocap/robot"):
+    with pytest.raises(LogError, match=r"--pose-topic /gps is not in the bag.*/mocap/robot"):
         open_log(folder, options=LogOptions(pose_topic="/gps"))
 
 
