@@ -11,7 +11,9 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
+from slipwise.calibration.log_table import LogTable
 from slipwise.errors import SettingsError
+from slipwise.logs.options import LogOptions
 from slipwise.segments import WindowRules
 from slipwise.validation_text import first_problem
 
@@ -217,6 +219,7 @@ class Settings(_Section):
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
     mount: MountTable = MountTable()
+    log: LogTable = LogTable()
 
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""
@@ -232,6 +235,10 @@ class Settings(_Section):
             table.still_speed,
             sensor=self.mount.pose,
         )
+
+    def log_options(self, **given: Any) -> LogOptions:
+        """Return the options for `open_log`: those of [log], and `given` ones before them."""
+        return self.log.options(self.window.unknown_after, given)
 
     def filter_settings(self) -> _core.CausalFilterSettings:
         """Return the core's settings of one causal filter."""

@@ -9,12 +9,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from slipwise.errors import LogError
+from slipwise.errors import LogError, SettingsError
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.piped import regular_file
 from slipwise.logs.quality import checked
 from slipwise.logs.run_name import run_name
+from slipwise.logs.time_span import cut_to_span
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -33,6 +34,9 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     """
     if not paths:
         raise LogError("no log was given", advice=_KNOWN)
+    if len(paths) > 1 and options.poses is not None:
+        advice = "read the logs one by one, each with its own poses"
+        raise SettingsError("one file of poses goes with one log", where="--poses", advice=advice)
     return _joined([_open_one(Path(path), options) for path in paths])
 
 
@@ -67,7 +71,7 @@ def readable(path: Path) -> tuple[Path, bool]:
 def _open_one(path: Path, options: LogOptions) -> Log:
     file, bag = readable(path)
     with named_in_errors(path, file):
-        log = _read(file, options, bag=bag)
+        log = _completed(_read(file, options, bag=bag), options)
         return _named(checked(log, options.unknown_after), file, path)
 
 
@@ -94,6 +98,15 @@ def _read(file: Path, options: LogOptions, *, bag: bool) -> Log:
     from slipwise.logs.tidy import read_tidy
 
     return read_tidy(file, options)
+
+
+def _completed(log: Log, options: LogOptions) -> Log:
+    """Take the poses of a file beside the log, and cut the log, where that is asked for."""
+    if options.poses is not None:
+        from slipwise.logs.poses_beside import with_poses
+
+        log = with_poses(log, options.poses, options)
+    return cut_to_span(log, options.start, options.end)
 
 
 def _named(log: Log, file: Path, path: Path) -> Log:

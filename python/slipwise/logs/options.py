@@ -50,12 +50,12 @@ class LogOptions:
                 )
         for name in ("start", "end", "pose_clock_offset"):
             given = getattr(self, name)
-            if (
-                given is not None
-                and given != AUTO
-                and not (isinstance(given, (int, float)) and math.isfinite(given))
-            ):
-                raise SettingsError(f"{name} must be a number of seconds, not {given}", advice="such as 12.5")
+            automatic = name == "pose_clock_offset"
+            if given is None or (automatic and given == AUTO):
+                continue
+            if not (isinstance(given, (int, float)) and math.isfinite(given)):
+                advice = f"such as 12.5{', or auto' if automatic else ''}"
+                raise SettingsError(f"{name} must be a number of seconds, not {given}", advice=advice)
         if self.start is not None and self.end is not None and self.end <= self.start:
             raise SettingsError(
                 f"end ({self.end:g} s) is not after start ({self.start:g} s)", advice="exchange them"

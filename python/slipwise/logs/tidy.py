@@ -32,6 +32,7 @@ from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
     KNOWN,
     NUMERIC,
+    POSE_COLUMNS,
     TEXT,
     USED,
     InputColumns,
@@ -76,11 +77,14 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
         SettingsError: `options.columns` names something that is no column of a tidy log.
     """
     check_columns(options.columns, KNOWN)
+    columns = options.columns
+    if options.poses is not None:  # names of pose columns are those of the other file
+        columns = {tidy: own for tidy, own in columns.items() if tidy not in POSE_COLUMNS}
     with path.open("rb") as file:
         parquet = file.read(4) == b"PAR1"
     if parquet:
-        return read_parquet(path, columns=options.columns)
-    return read_csv(path, numeric=NUMERIC, text=TEXT, columns=options.columns, tally=tally)
+        return read_parquet(path, columns=columns)
+    return read_csv(path, numeric=NUMERIC, text=TEXT, columns=columns, tally=tally)
 
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:

@@ -25,7 +25,7 @@ USED = frozenset(
     ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
-_POSE = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
+POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
 _SIZES = "--wheel-radius and --track"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
@@ -140,7 +140,7 @@ def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tup
     """Return what a column is used as, nothing where it is not, and why."""
     if name in ("t", "run"):
         return {"t": "time", "run": "run"}[name], ""
-    if name in _POSE:
+    if name in POSE_COLUMNS:
         return ("pose", "") if options.poses is None else ("", "--poses gives the poses")
     if name not in NUMERIC:
         return "", "carried along; if slipwise knows it by another name, give --columns"
