@@ -230,8 +230,12 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
 def _advice(log: Log, input_name: str) -> str:
     if all(len(run.poses) < 2 for run in log.runs):
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
+    if input_name in log.advice:
+        return log.advice[input_name]
+    name = "name the topic or the columns (see `slipwise inspect`)"
     other = "command" if input_name == "wheel" else "wheel"
-    return f"use --input {other}, or name the topic or the columns (see `slipwise inspect`)"
+    there = any((run.commands if other == "command" else run.wheels) is not None for run in log.runs)
+    return f"use --input {other}, or {name}" if there else name
 
 
 def _where(log: Log) -> str:

@@ -166,8 +166,11 @@ def fix_stream(
         if upright.any():
             yaw, known = heading_from_imu(t, context.seconds(imu, "imu")[upright], angles_of(q[upright])[2])
         _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
-    if not known.any():
+    if known.any():
+        context.notes.append("headings are those of the IMU")
+    else:
         yaw[good], known[good] = heading_from_track(t[good], x[good], y[good], inputs)
+        context.notes.append(f"{samples.topic} has no headings: they are the direction of the track")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
     columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": _deviation(values[:, 4:6])}
     return context.stream("poses", samples, columns, good & known)

@@ -92,7 +92,7 @@ def sides_text(names: tuple[str, ...], options: LogOptions) -> str:
     except LogError as unclear:
         return f"{unclear.what}: {unclear.advice}"
     left, right = (", ".join(names[i] for i in side[:4]) for side in sides)
-    return f"left {left or 'none'}; right {right or 'none'}"
+    return f"left: {left or 'none'}; right: {right or 'none'}"
 
 
 def speeds_from_angles(t: Floats, angles: Floats) -> Floats:

@@ -67,7 +67,7 @@ def test_joint_states_that_are_not_read_are_named_with_their_wheels(tmp_path: Pa
     assert log.runs[0].wheels is None
     (note,) = (note for note in log.notes if "joint" in note)
     assert "--wheel-radius and --track" in note
-    assert "left left_wheel; right right_wheel" in note
+    assert "left: left_wheel; right: right_wheel" in note
     assert log.advice == {"wheel": note}
 
 
