@@ -50,8 +50,8 @@ def inspect(
     out = Output(json)
     chosen = chosen_settings(settings, basis)
     refuse_unwritable(out.written_file, inputs=(*logs, settings))
-    with progress_bar("reading and learning"):
-        inspection = inspect_files(logs, log_options, chosen)
+    with progress_bar("reading") as update:
+        inspection = inspect_files(logs, log_options, chosen, progress=update)
     out.document(_document(inspection))
     _show(out, inspection)
     return 0
@@ -103,20 +103,32 @@ def _show(out: Output, inspection: Inspection) -> None:
 
 
 def _show_survey(out: Output, survey: Survey) -> None:
+    """Show every topic or column; the reasons stand below, where they are not cut into pieces."""
     from slipwise.cli.output import Column
 
     rows: list[tuple[str, ...]]
     if all(part.type == "column" for part in survey.parts):
-        columns = [Column("column", whole=True), Column("cells", True), Column("used as"), Column("why")]
-        rows = [(p.name, str(p.count), p.used_as or "-", p.why) for p in survey.parts]
+        columns = [Column("column", whole=True), Column("cells", True), Column("used as")]
+        rows = [(p.name, str(p.count), p.used_as or "-") for p in survey.parts]
     else:
-        columns = [Column("topic"), Column("type"), Column("messages", True), Column("rate [Hz]", True)]
-        columns += [Column("used as"), Column("why")]
+        heads = (("messages", True), ("rate [Hz]", True), ("used as", False))
+        columns = [Column("topic", whole=True), Column("type"), *(Column(*head) for head in heads)]
         rows = [
-            (p.name, p.type.split("/")[-1], str(p.count), number_text(p.rate), p.used_as or "-", p.why)
+            (p.name, p.type.split("/")[-1], str(p.count), number_text(p.rate), p.used_as or "-")
             for p in survey.parts
         ]
-    out.table(f"{survey.path}: {survey.format}", columns, rows)
+    out.line(f"{survey.path}: {survey.format}")
+    out.table("Topics" if "topic" in columns[0].head else "Columns", columns, rows)
+    for part in survey.parts:
+        if part.used_as and part.why:
+            out.line(f"  {part.name} is the {part.used_as}: {part.why}")
+    reasons: dict[str, list[str]] = {}
+    for part in survey.parts:
+        if not part.used_as:
+            reasons.setdefault(part.why, []).append(part.name)
+    for why, names in reasons.items():
+        out.line(f"  Not used: {', '.join(names)} ({why})")
+    out.line()
 
 
 def _show_streams(out: Output, streams: Sequence[Stream]) -> None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -30,7 +30,11 @@ class Inspection:
 
 
 def inspect_files(
-    paths: Sequence[str | Path], options: LogOptions, settings: Settings | None = None
+    paths: Sequence[str | Path],
+    options: LogOptions,
+    settings: Settings | None = None,
+    *,
+    progress: Callable[[str, float], None] | None = None,
 ) -> Inspection:
     """Look at files that should make a log; what is merely unclear or missing in them is no error.
 
@@ -38,6 +42,7 @@ def inspect_files(
         paths: as for `open_log`.
         options: as for `open_log`.
         settings: as for `inspect_log`.
+        progress: called with what is done now, and how much of all is done.
 
     Raises:
         LogError: a file is missing, damaged or of an unknown kind.
@@ -47,6 +52,8 @@ def inspect_files(
         log = open_log(*paths, options=options)
     except LogError as unusable:
         return Inspection(Log(runs=()), (), (), (), {}, surveys, str(unusable))
+    if progress is not None:
+        progress("learning", 0.5)
     return replace(inspect_log(log, settings), surveys=surveys)
 
 

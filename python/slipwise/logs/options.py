@@ -45,7 +45,7 @@ class LogOptions:
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise SettingsError(
-                    f"{name} must be a positive number of metres, not {value}",
+                    f"{_option(name)} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
         for name in ("start", "end", "pose_clock_offset"):
@@ -55,10 +55,17 @@ class LogOptions:
                 continue
             if not (isinstance(given, (int, float)) and math.isfinite(given)):
                 advice = f"such as 12.5{', or auto' if automatic else ''}"
-                raise SettingsError(f"{name} must be a number of seconds, not {given}", advice=advice)
+                raise SettingsError(
+                    f"{_option(name)} must be a number of seconds, not {given}", advice=advice
+                )
         if self.start is not None and self.end is not None and self.end <= self.start:
             raise SettingsError(
-                f"end ({self.end:g} s) is not after start ({self.start:g} s)", advice="exchange them"
+                f"--end ({self.end:g} s) is not after --start ({self.start:g} s)", advice="exchange them"
             )
         if not self.unknown_after > 0.0:
             raise SettingsError("unknown_after must be more than 0 s", advice="such as 0.5")
+
+
+def _option(name: str) -> str:
+    """Return the option of the command line that sets a field."""
+    return f"--{name.replace('_', '-')}"

@@ -104,6 +104,12 @@ class _Driven:
         return cls(float(inputs.t[0]), float(inputs.t[-1]), speed, rate)
 
 
+def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, unknown_after: float) -> float:
+    """Return the agreement of speeds and yaw rates at an offset [s]; -1 where there is nothing to compare."""
+    drive = [_Driven.of(part, 0.0, unknown_after) for part in inputs]
+    return float(_scores_at(drive, motion, np.array([offset]))[0])
+
+
 def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
     """Search all offsets by the normalised correlation of what both know (Padfield 2012, masked)."""
     begin, stop = min(part.first for part in drive), max(part.last for part in drive)

@@ -14,10 +14,11 @@ from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Inputs, Log, Run, Source, empty_poses
 from slipwise.logs.navsat import heading_from_track
 from slipwise.logs.options import AUTO, LogOptions
-from slipwise.logs.pose_clock import find_clock_offset, pose_motion
+from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motion
 from slipwise.logs.pose_file import read_pose_file
 from slipwise.logs.streams import RawStream, clean_stream, to_poses
 
+_DOUBTFUL = 0.3  # agreement of motions below which clocks may be apart
 _BESIDE = 1.0  # [s] before the first and after the last input, poses are still taken
 
 
@@ -57,16 +58,17 @@ _CLOCKS = "give --pose-clock-offset auto to find the offset of their clocks, or 
 
 
 def _offset(log: Log, poses: RawStream, path: Path, options: LogOptions) -> tuple[float, tuple[str, ...]]:
-    """Return the seconds to add to the stamps, and how they were found."""
-    given = options.pose_clock_offset
-    if given != AUTO:
-        return float(given or 0.0), (
-            (f"{given:+g} s are added to the stamps of {path.name}",) if given else ()
-        )
+    """Return the seconds to add to the stamps, and how they were found or how well they fit."""
     wheels = any(run.wheels is not None for run in log.runs)
     inputs = [series for run in log.runs if (series := run.wheels if wheels else run.commands) is not None]
     heading = poses.columns.get("yaw", np.full(len(poses.t), np.nan))
     motion = pose_motion(poses.t, poses.columns["x"], poses.columns["y"], heading)
+    given = options.pose_clock_offset
+    if given != AUTO:
+        offset = float(given or 0.0)
+        return offset, _words_of_given(
+            offset, path, agreement_at(inputs, motion, offset, options.unknown_after)
+        )
     if not len(motion.start):
         raise LogError("too few poses to find an offset of clocks", where=str(path), advice=_CLOCKS)
     try:
@@ -79,6 +81,16 @@ def _offset(log: Log, poses: RawStream, path: Path, options: LogOptions) -> tupl
     )
     delay = "the delay of the drive is a part of that offset, since commands alone show both together"
     return match.offset, (note,) if wheels else (note, delay)
+
+
+def _words_of_given(offset: float, path: Path, agreement: float) -> tuple[str, ...]:
+    notes = [f"{offset:+g} s are added to the stamps of {path.name}"] if offset else []
+    if -1.0 < agreement < _DOUBTFUL:
+        notes.append(
+            f"the motion of {path.name} hardly agrees with the inputs ({agreement:.2f} of 1): if its "
+            "clock is another, give --pose-clock-offset auto"
+        )
+    return tuple(notes)
 
 
 def _spans(log: Log, path: Path) -> list[tuple[float, float]]:

@@ -74,7 +74,7 @@ def choose(live: Mapping[str, Topic], role: Role, given: str | None) -> RoleChoi
     rejected |= {
         topic.name: f"the name {winners[0].name} fits better" for score, topic in scored if score < best
     }
-    why = "the only one" if len(scored) == 1 else "its name fits best"
+    why = "the only one that can be" if len(scored) == 1 else "its name fits best"
     return RoleChoice(winners[0], why, rejected)
 
 

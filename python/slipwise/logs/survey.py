@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from slipwise.logs.topics import TopicRoles
 
 DAMAGED = "damaged-bag"
+_CALLED = {"pose": "the pose", "command": "the command", "wheel": "the wheels", "imu": "the IMU"}
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def _survey_bag(path: Path, file: Path, options: LogOptions) -> Survey:
 def _part(topic: Topic, found: TopicRoles) -> Part:
     uses = {role: choice.why for role, choice in found.named() if choice.topic == topic}
     against = [
-        f"no {role}: {choice.rejected[topic.name]}"
+        f"not {_CALLED[role]}: {choice.rejected[topic.name]}"
         for role, choice in found.named()
         if topic.name in choice.rejected
     ]

@@ -69,6 +69,14 @@ def test_clocks_that_do_not_meet_are_refused_with_the_option(tmp_path: Path, run
         open_log(log, options=options(poses))
 
 
+def test_clocks_that_seem_to_meet_and_do_not_are_pointed_out(tmp_path: Path, run: Run) -> None:
+    log, poses = table(tmp_path / "a.csv", run), tum(tmp_path / "p.txt", run, away=60.0)
+    apart = open_log(log, options=options(poses))
+    assert any("hardly agrees with the inputs" in note for note in apart.notes)
+    together = open_log(log, options=options(poses, 60.0))
+    assert not any("hardly agrees" in note for note in together.notes)
+
+
 def test_a_bag_without_any_pose_takes_those_of_the_file(tmp_path: Path, run: Run) -> None:
     bag = Bag()
     assert run.commands is not None

@@ -37,8 +37,8 @@ def test_every_topic_has_its_count_rate_use_and_reason(tmp_path: Path) -> None:
     }
     assert parts["/cmd_vel"].count == 100
     assert parts["/cmd_vel"].rate == pytest.approx(10.0, rel=0.05)
-    assert parts["/goal_pose"].why == "no pose: its name says that it is a goal or a plan"
-    assert parts["/joy/cmd_vel_raw"].why == "no command: the name /cmd_vel fits better"
+    assert parts["/goal_pose"].why == "not the pose: its name says that it is a goal or a plan"
+    assert parts["/joy/cmd_vel_raw"].why == "not the command: the name /cmd_vel fits better"
     assert all(part.why for part in parts.values())
 
 
