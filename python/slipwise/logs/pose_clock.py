@@ -20,7 +20,7 @@ _KNOWN = 0.9  # of a time, inputs must be known
 _REACH = 1.2  # [s] of the fine search to either side; a drive's lag moves the coarse peak by less
 _LEAST_STEP = 0.3  # [s] between the poses that speeds are taken from; less is mostly their noise
 _LONGEST_STEP = 1.5  # [s] beyond this the speed between two poses says little
-_LEAST_OVERLAP = 10.0  # [s] of driving that both must have seen,
+_LEAST_OVERLAP = 20.0  # [s] of driving that both must have seen,
 _LEAST_PART = 0.5  # and of the shorter recording
 _GOOD = 0.5  # least agreement; below it these are different drives
 _APART = 0.1  # by which the best offset must beat the next peak
@@ -74,9 +74,9 @@ def find_clock_offset(
     Raises:
         LogError: the two saw too little of the same drive, or several offsets fit.
     """
-    coarse = _coarse([_Driven.of(part, 0.0, unknown_after) for part in inputs], motion)
     lags = _LAGS if lagging else _LAGS[:1]
     drives = [[_Driven.of(part, lag, unknown_after) for part in inputs] for lag in lags]
+    coarse = _coarse(drives[len(drives) // 2], motion)
     offsets = coarse.offset + np.arange(-_REACH, _REACH + _MIDDLE, _MIDDLE)
     scores = np.array([_scores_at(drive, motion, offsets) for drive in drives])
     drive, best = (int(place) for place in np.unravel_index(int(np.argmax(scores)), scores.shape))
@@ -84,7 +84,12 @@ def find_clock_offset(
     fine = _scores_at(drives[drive], motion, offsets)
     best = int(np.argmax(fine))
     offset = float(offsets[best]) + _FINE * _vertex(fine, best)
-    return ClockMatch(offset, float(fine[best]), coarse.next_best)
+    found = ClockMatch(offset, float(fine[best]), coarse.next_best)
+    if found.agreement < _GOOD:
+        raise _no_fit(found.agreement)
+    if found.agreement - found.next_best < _APART:
+        raise _ambiguous(f"{found.offset:.1f} s and others")
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,15 +98,16 @@ class _Driven:
 
     first: float  # [s]
     last: float
+    given: HeldSum  # says when the inputs are known
     speed: HeldSum
     rate: HeldSum
 
     @classmethod
     def of(cls, inputs: Inputs, lag: float, unknown_after: float) -> _Driven:
-        part = _lagged(inputs, lag)
+        part, given = _lagged(inputs, lag), HeldSum.of(inputs, inputs.v, unknown_after)
         speed = HeldSum.of(part, np.hypot(part.v, part.vy), unknown_after)
         rate = HeldSum.of(part, part.omega, unknown_after)
-        return cls(float(inputs.t[0]), float(inputs.t[-1]), speed, rate)
+        return cls(float(inputs.t[0]), float(inputs.t[-1]), given, speed, rate)
 
 
 def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, unknown_after: float) -> float:
@@ -126,22 +132,38 @@ def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
     others = peaks[np.abs(offsets[peaks] - offsets[best]) > _LOBE]
     rival = int(others[np.argmax(score[others])]) if len(others) else best
     next_best = float(score[rival]) if rival != best else 0.0
-    if not score[best] >= _GOOD:
+    if score[best] <= -1.0:
         raise LogError(
-            "the motion of the poses does not fit the log's at any offset of clocks"
-            f" (best agreement {max(float(score[best]), 0.0):.2f})",
-            advice="check that both are of one drive; else give the seconds to add with --pose-clock-offset",
+            f"poses and log have less than {_LEAST_OVERLAP:g} s of changing motion to compare",
+            advice="give the seconds to add with --pose-clock-offset",
         )
+    if score[best] < _GOOD:
+        raise _no_fit(float(score[best]))
     if score[best] - next_best < _APART:
-        raise LogError(
-            f"several offsets of clocks fit equally: {offsets[best]:.1f} s and {offsets[rival]:.1f} s",
-            advice="give the seconds to add with --pose-clock-offset, or record turns that do not repeat",
-        )
+        raise _ambiguous(f"{offsets[best]:.1f} s and {offsets[rival]:.1f} s")
     return ClockMatch(float(offsets[best]), float(score[best]), next_best)
 
 
+def _no_fit(agreement: float) -> LogError:
+    return LogError(
+        "the motion of the poses does not fit the log's at any offset of clocks"
+        f" (best agreement {max(agreement, 0.0):.2f})",
+        advice="check that both are of one drive; else give the seconds to add with --pose-clock-offset",
+    )
+
+
+def _ambiguous(offsets: str) -> LogError:
+    return LogError(
+        f"several offsets of clocks fit equally: {offsets}",
+        advice="give the seconds to add with --pose-clock-offset, or record turns that do not repeat",
+    )
+
+
 def _correlate(seen: Sequence[Floats], driven: Sequence[Floats]) -> tuple[Floats, Floats]:
-    """Return the mean correlation over channels at each lag [L], and the lags [L] in steps of the grid."""
+    """Return the mean correlation over channels at each lag [L], and the lags [L] in steps of the grid.
+
+    Where only a part of the shorter recording overlaps, chance fits better; its correlation counts for less.
+    """
     m, n = len(seen[0]), len(driven[0])
     size = 1 << (m + n).bit_length()
     lags = np.arange(-(m - 1), n, dtype=np.float64)
@@ -166,7 +188,8 @@ def _correlate(seen: Sequence[Floats], driven: Sequence[Floats]) -> tuple[Floats
         moved = enough & (var_f > _LITTLE * f.var()) & (var_g > _LITTLE * g.var())
         moved &= (var_f > 0.0) & (var_g > 0.0)
         product = np.where(moved, var_f * var_g, 1.0)
-        total += np.where(moved, (sums(f, g) / each - mean_f * mean_g) / np.sqrt(product), 0.0)
+        correlation = (sums(f, g) / each - mean_f * mean_g) / np.sqrt(product)
+        total += np.where(moved, correlation * np.sqrt(both / max(float(both.max()), 1.0)), 0.0)
         count += moved
     return np.where(count > 0, total / np.maximum(count, 1.0), -1.0), lags
 
@@ -185,7 +208,7 @@ def _input_means(drive: Sequence[_Driven], start: Floats, stop: Floats) -> tuple
     """Return the mean speed and yaw rate of the drive [N] between stamps [N], NaN where it is unknown."""
     speed, rate = np.full(len(start), np.nan), np.full(len(start), np.nan)
     for part in drive:
-        known = part.speed.known(start, stop) > _KNOWN * (stop - start)
+        known = part.given.known(start, stop) > _KNOWN * (stop - start)
         for sums, out in ((part.speed, speed), (part.rate, rate)):
             out[known] = sums.between(start[known], stop[known]) / (stop - start)[known]
     return speed, rate

@@ -76,7 +76,7 @@ def test_another_drive_or_steady_motion_does_not_fit() -> None:
     with pytest.raises(LogError, match=r"does not fit|fit equally"):
         found(other, run.wheels, 0.0)
     steady = steady_run(60.0)
-    with pytest.raises(LogError, match=r"does not fit the log's at any offset"):
+    with pytest.raises(LogError, match=r"less than 20 s of changing motion to compare"):
         found(steady, held(np.arange(0.0, 60.0, 0.05)), 0.0)
 
 
