@@ -26,6 +26,8 @@ _GOOD = 0.5  # least agreement; below it these are different drives
 _APART = 0.1  # by which the best offset must beat the next peak
 _LOBE = 1.0  # [s] around the best that belong to its peak
 _LITTLE = 0.05  # of the usual variance; an overlap with less motion than that is not compared
+_DAY = 86_400.0  # [s]
+_LONGEST = 4.0 * _DAY  # that is searched for an offset
 _LAGS = (0.0, 0.1, 0.2, 0.4, 0.8)  # [s] of drives that follow commands
 
 
@@ -74,6 +76,9 @@ def find_clock_offset(
     Raises:
         LogError: the two saw too little of the same drive, or several offsets fit.
     """
+    inputs = [_near(part) for part in inputs]
+    usual = np.abs(motion.start - np.median(motion.start)) < _DAY
+    motion = PoseMotion(*(column[usual] for column in (motion.start, motion.stop, motion.speed, motion.rate)))
     lags = _LAGS if lagging else _LAGS[:1]
     drives = [[_Driven.of(part, lag, unknown_after) for part in inputs] for lag in lags]
     coarse = _coarse(drives[len(drives) // 2], motion)
@@ -119,6 +124,9 @@ def agreement_at(inputs: Sequence[Inputs], motion: PoseMotion, offset: float, un
 def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
     """Search all offsets by the normalised correlation of what both know (Padfield 2012, masked)."""
     begin, stop = min(part.first for part in drive), max(part.last for part in drive)
+    if stop - begin > _LONGEST:
+        what = f"the log spans {(stop - begin) / _DAY:.0f} days, too long to look for an offset of clocks"
+        raise LogError(what, advice="give the seconds to add with --pose-clock-offset")
     grid: Floats = begin + _COARSE * np.arange(int((stop - begin) / _COARSE) + 1, dtype=np.float64)
     driven = _input_means(drive, grid, grid + _COARSE)
     own = motion.start[0] + _COARSE * np.arange(int((motion.stop[-1] - motion.start[0]) / _COARSE) + 1)
@@ -212,6 +220,12 @@ def _input_means(drive: Sequence[_Driven], start: Floats, stop: Floats) -> tuple
         for sums, out in ((part.speed, speed), (part.rate, rate)):
             out[known] = sums.between(start[known], stop[known]) / (stop - start)[known]
     return speed, rate
+
+
+def _near(inputs: Inputs) -> Inputs:
+    """Leave out inputs with a stray stamp, more than a day from the others."""
+    near = np.abs(inputs.t - np.median(inputs.t)) < _DAY
+    return Inputs(inputs.t[near], inputs.v[near], inputs.vy[near], inputs.omega[near])
 
 
 def _lagged(inputs: Inputs, lag: float) -> Inputs:

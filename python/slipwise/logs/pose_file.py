@@ -184,6 +184,7 @@ def _turned(stream: RawStream, quaternions: Floats, tally: Tally) -> RawStream:
 
 
 def _in_seconds(stream: RawStream) -> tuple[RawStream, tuple[str, ...]]:
-    if not np.nanmedian(np.abs(stream.t)) > _NANOSECONDS:
+    finite = stream.t[np.isfinite(stream.t)]
+    if not len(finite) or float(np.median(np.abs(finite))) < _NANOSECONDS:
         return stream, ()
     return replace(stream, t=stream.t / 1e9), ("stamps of the poses are in nanoseconds",)

@@ -70,7 +70,8 @@ def _offset(log: Log, poses: RawStream, path: Path, options: LogOptions) -> tupl
             offset, path, agreement_at(inputs, motion, offset, options.unknown_after)
         )
     if not len(motion.start):
-        raise LogError("too few poses to find an offset of clocks", where=str(path), advice=_CLOCKS)
+        advice = "give the seconds to add with --pose-clock-offset"
+        raise LogError("too few poses to find an offset of clocks", where=str(path), advice=advice)
     try:
         match = find_clock_offset(inputs, motion, options.unknown_after, lagging=not wheels)
     except LogError as unclear:
@@ -97,9 +98,12 @@ def _spans(log: Log, path: Path) -> list[tuple[float, float]]:
     """Return the first and the last input of each run.
 
     Raises:
-        LogError: runs overlap, so that a pose may belong to several.
+        LogError: there are no inputs, or runs overlap, so that a pose may belong to several.
     """
     spans = [_span(run) for run in log.runs]
+    if all(first > last for first, last in spans):
+        where = log.sources[0].path if log.sources else ""
+        raise LogError("the log has no usable inputs", where=where, advice="see `slipwise inspect`")
     known = sorted(span for span in spans if span[0] <= span[1])
     for (_, earlier), (later, _) in itertools.pairwise(known):
         if later < earlier:

@@ -224,6 +224,9 @@ def _notes(found: TopicRoles, options: LogOptions, transforms: TransformSource |
     pose = found.pose.topic
     if pose is not None and options.pose_topic is None and looks_like(pose.name, FUSED):
         notes.append(f"{pose.name} is fused: it shows slip only if more than wheels and an IMU went into it")
+    excluded = pose is not None and score_of(pose.name, pose.type, POSE_NAMES)[1]
+    if pose is not None and excluded:
+        notes.append(f"{pose.name} is the pose as given, although {excluded}")
     if pose is not None and pose.type == TF and transforms is not None and transforms.warning:
         notes.append(transforms.warning)
     return tuple(notes)

@@ -50,6 +50,21 @@ def test_poses_of_a_part_of_the_drive_and_outliers_do_not_matter() -> None:
     assert match.offset - HALF_STEP == pytest.approx(-55.5, abs=0.03)
 
 
+def test_stray_stamps_years_away_do_not_matter() -> None:
+    run = simulated_run(SKID)
+    assert run.wheels is not None
+    w, p = run.wheels, run.poses
+    columns = (
+        np.concatenate([[first], column])
+        for first, column in ((-1e9, w.t), (0, w.v), (0, w.vy), (0, w.omega))
+    )
+    t, x, y, yaw = (
+        np.concatenate([column, [last]]) for column, last in ((p.t, 1e9), (p.x, 0), (p.y, 0), (p.yaw, 0))
+    )
+    match = find_clock_offset([Inputs(*columns)], pose_motion(t, x, y, yaw), 0.5, lagging=False)
+    assert match.offset - HALF_STEP == pytest.approx(0.0, abs=0.015)
+
+
 def test_positions_without_a_heading_are_enough() -> None:
     run = simulated_run(SKID)
     assert run.wheels is not None

@@ -85,6 +85,11 @@ def test_other_files_are_refused_with_what_would_do(tmp_path: Path, content: str
         read(tmp_path / "a.txt", content)
 
 
+def test_stamps_that_are_no_numbers_are_no_reason_to_stumble(tmp_path: Path) -> None:
+    found = read(tmp_path / "a.txt", "nan 1 2 3 0 0 0 1\ninf 1 2 3 0 0 0 1\n")
+    assert not np.isfinite(found.stream.t).any()
+
+
 def test_bags_folders_and_missing_files_are_refused(tmp_path: Path) -> None:
     (tmp_path / "a.mcap").write_bytes(b"\x89MCAP0\r\n1234")
     with pytest.raises(LogError, match=r"a bag is no file of poses .*--pose-topic"):

@@ -105,6 +105,13 @@ def test_positions_of_ppk_get_their_heading_from_the_track(tmp_path: Path, run: 
     assert "no-heading" in {entry.kind for entry in log.left_out}
 
 
+def test_inputs_that_are_all_faulty_are_named(tmp_path: Path, run: Run) -> None:
+    (tmp_path / "a.csv").write_text("stamp,odo_v,turn\n0,nan,1\n1,nan,1\n")
+    poses = tum(tmp_path / "p.txt", run)
+    with pytest.raises(LogError, match=r"the log has no usable inputs .*a\.csv"):
+        open_log(tmp_path / "a.csv", options=options(poses, "auto"))
+
+
 def test_one_file_of_poses_goes_with_one_log(tmp_path: Path, run: Run) -> None:
     log, poses = table(tmp_path / "a.csv", run), tum(tmp_path / "p.txt", run)
     with pytest.raises(SettingsError, match=r"one file of poses goes with one log .*--poses"):

@@ -147,6 +147,14 @@ def test_pose_and_wheels_from_one_topic_are_refused_with_what_to_record() -> Non
     )
 
 
+def test_a_pose_topic_that_is_named_like_odometry_is_taken_and_pointed_out() -> None:
+    options = LogOptions(pose_topic="/odom", wheel_topic="none")
+    notes = choose_topics(live(("/cmd_vel", TWIST), ("/odom", ODOMETRY)), options).guessed
+    assert any(
+        "/odom is the pose as given, although its name says that it is wheel odometry" in n for n in notes
+    )
+
+
 def test_a_pose_topic_that_only_might_be_wheel_odometry_is_not_read_as_wheels() -> None:
     assert chosen(("/cmd_vel", TWIST), ("/state", ODOMETRY)) == ("/state", "/cmd_vel", None)
     with pytest.raises(LogError, match="both come from /state"):
