@@ -100,6 +100,24 @@ jacobian = "thesis"
 process_std = 0.01
 jacobian = "exact"
 
+[log]
+command_topic = "/c"
+pose_topic = "/p"
+wheel_topic = "none"
+imu_topic = "/i"
+pose_frame = "map"
+child_frame = "robot"
+left_joints = ["l"]
+right_joints = ["r"]
+wheel_radius = 0.1
+track = 0.5
+wheelbase = 1.2
+poses = "p.txt"
+pose_clock_offset = 1.5
+start = 1.0
+end = 2.0
+columns = {}
+
 [vehicle]
 track = 1.08
 
@@ -141,6 +159,16 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
     assert settings.vehicle.track == 1.08
+    log = settings.log_options()
+    assert (log.command_topic, log.pose_topic, log.wheel_topic, log.imu_topic) == ("/c", "/p", "none", "/i")
+    assert (log.pose_frame, log.child_frame, log.left_joints, log.right_joints) == (
+        "map",
+        "robot",
+        ("l",),
+        ("r",),
+    )
+    assert (log.wheel_radius, log.track, log.wheelbase, log.poses) == (0.1, 0.5, 1.2, Path("p.txt"))
+    assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
     drift = settings.smoothing.drift_settings()
     assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     estimators = settings.estimator_settings()

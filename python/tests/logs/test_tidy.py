@@ -247,5 +247,5 @@ def test_a_gap_of_a_minute_is_no_fault_of_the_file(tmp_path: Path) -> None:
 
 
 def test_a_negative_radius_is_refused() -> None:
-    with pytest.raises(SettingsError, match="wheel_radius must be a positive number"):
+    with pytest.raises(SettingsError, match="--wheel-radius must be a positive number"):
         LogOptions(wheel_radius=-0.1)

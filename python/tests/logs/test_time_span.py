@@ -55,5 +55,5 @@ def test_nothing_left_is_refused_with_how_long_the_log_is(tmp_path: Path, log: L
     "given", [{"start": 5.0, "end": 5.0}, {"end": float("nan")}, {"start": float("inf")}]
 )
 def test_impossible_spans_are_refused(given: dict[str, float]) -> None:
-    with pytest.raises(SettingsError, match=r"is not after start|must be a number of seconds"):
+    with pytest.raises(SettingsError, match=r"is not after --start|must be a number of seconds"):
         LogOptions(**given)  # type: ignore[arg-type]
