@@ -22,7 +22,7 @@ def convert(
         Path,
         typer.Option("-o", "--output", metavar="FILE", help="The new log: .csv, .csv.gz, .parquet or .mcap."),
     ],
-    settings: SettingsFile = None,  # noqa: ARG001 - its [log] is read with the options of the log
+    settings: SettingsFile = None,
     json: Json = None,
 ) -> int:
     """Write one or several logs as one tidy table, or as MCAP; says what was guessed and what was left out.
@@ -43,7 +43,7 @@ def convert(
 
     out = Output(json)
     refuse_unknown_log_format(output)
-    refuse_unwritable(output, out.written_file, inputs=logs)
+    refuse_unwritable(output, out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("writing", 0.5)

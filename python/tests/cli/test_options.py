@@ -73,6 +73,15 @@ def test_poses_beside_a_log_find_its_clock_on_the_command_line(
     np.testing.assert_allclose(kept["x"][np.isfinite(kept["x"])], columns["x"], atol=1e-6)
 
 
+def test_the_file_of_poses_is_never_replaced(slipwise: Slipwise, folder: Path, drive_csv: Path) -> None:
+    poses = folder / "poses.csv"
+    poses.write_text("t,x,y,yaw\n0,0,0,0\n1,1,0,0\n")
+    before = poses.read_text()
+    assert slipwise("convert", drive_csv, "--poses", "poses.csv", "-o", "poses.csv").code == 2
+    assert slipwise("inspect", drive_csv, "--poses", "poses.csv", "--json", "poses.csv").code == 2
+    assert poses.read_text() == before
+
+
 def test_a_wrong_option_is_one_line_that_names_it(slipwise: Slipwise, drive_csv: Path) -> None:
     def refused(*given: str) -> str:
         return slipwise("convert", drive_csv, "-o", "a.csv", *given).line
