@@ -138,8 +138,8 @@ def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
     best = int(np.argmax(score))
     peaks = np.flatnonzero((score[1:-1] >= score[:-2]) & (score[1:-1] >= score[2:])) + 1
     others = peaks[np.abs(offsets[peaks] - offsets[best]) > _LOBE]
-    rival = int(others[np.argmax(score[others])]) if len(others) else best
-    next_best = float(score[rival]) if rival != best else 0.0
+    second = int(others[np.argmax(score[others])]) if len(others) else best
+    next_best = float(score[second]) if second != best else 0.0
     if score[best] <= -1.0:
         raise LogError(
             f"poses and log have less than {_LEAST_OVERLAP:g} s of changing motion to compare",
@@ -148,7 +148,7 @@ def _coarse(drive: Sequence[_Driven], motion: PoseMotion) -> ClockMatch:
     if score[best] < _GOOD:
         raise _no_fit(float(score[best]))
     if score[best] - next_best < _APART:
-        raise _ambiguous(f"{offsets[best]:.1f} s and {offsets[rival]:.1f} s")
+        raise _ambiguous(f"{offsets[best]:.1f} s and {offsets[second]:.1f} s")
     return ClockMatch(float(offsets[best]), float(score[best]), next_best)
 
 

@@ -18,7 +18,7 @@ from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motio
 from slipwise.logs.pose_file import read_pose_file
 from slipwise.logs.streams import RawStream, clean_stream, to_poses
 
-_DOUBTFUL = 0.3  # agreement of motions below which clocks may be apart
+_LOW_AGREEMENT = 0.3  # agreement of motions below which clocks may be apart
 _BESIDE = 1.0  # [s] before the first and after the last input, poses are still taken
 
 
@@ -86,7 +86,7 @@ def _offset(log: Log, poses: RawStream, path: Path, options: LogOptions) -> tupl
 
 def _words_of_given(offset: float, path: Path, agreement: float) -> tuple[str, ...]:
     notes = [f"{offset:+g} s are added to the stamps of {path.name}"] if offset else []
-    if -1.0 < agreement < _DOUBTFUL:
+    if -1.0 < agreement < _LOW_AGREEMENT:
         notes.append(
             f"the motion of {path.name} hardly agrees with the inputs ({agreement:.2f} of 1): if its "
             "clock is another, give --pose-clock-offset auto"
