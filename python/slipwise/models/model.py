@@ -105,6 +105,15 @@ class Model:
             return inputs
         return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
 
+    def driven_from(
+        self, inputs: _core.InputTrack, time: float, measured: _core.BodyTwist
+    ) -> _core.InputTrack:
+        """Return the same where the drive did `measured` at `time` [s], in the stamps of the inputs."""
+        if self.limits is None:
+            return inputs
+        chain = self.motion.chain(self.mean)
+        return _core.limited_track_from(inputs, self.limits, chain, time, measured)
+
     @property
     def mean(self) -> NDArray[np.float64]:
         """Parameter values, [parameters], in SI units."""
