@@ -97,7 +97,9 @@ void bind_actuator(nb::module_& m) {
   m.def(
       "limited_track_from",
       [](const InputTrack& commands, const CommandLimits& limits, const CommandChain& chain, double time,
-         const BodyTwist& measured) { return limited_track(commands, limits, measured_start(chain, time, measured), kRampPiece); },
+         const BodyTwist& measured) {
+        return limited_track(commands, limits, measured_start(chain, time, measured), kRampPiece);
+      },
       "commands"_a, "limits"_a, "chain"_a, "time"_a, "measured"_a,
       "The same where the drive did `measured` at `time` [s], in the stamps of the commands.");
   m.attr("RAMP_PIECE") = kRampPiece;
