@@ -67,8 +67,8 @@ assert errors["learned"] < 0.5 * errors["plain"]
 
 # %% [markdown]
 # Round an obstacle. A map is an array of what is occupied, or a file of ROS's map_server (`load_map`). The
-# covariance says how far off the robot may be if it does not look where it is; a route is refused if it may be
-# where nothing is free. `slipwise plan` does the same from the command line and draws it.
+# covariance says how far off the robot may be if it does not look where it is; a route is refused where
+# that may be in what is not free. `slipwise plan` does the same from the command line and draws it.
 
 # %%
 occupied = np.zeros((200, 200), dtype=bool)
