@@ -77,7 +77,7 @@ def calibrate(
     drive = prepare_drive(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    found = contradictions(log, input_name, sensor_yaw=settings.mount.yaw)
+    found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
     run = start_learning(settings, input_name, windows, record=True, progress=progress)
     learned = _judged(run, windows, (log, input_name, settings), found)
     model = model_of(_content(learned, (log, input_name, settings), windows, run.bases), log, found)
@@ -152,7 +152,8 @@ def _judged(
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
     shortage = shortage_advice(log, input_name, sets[0], settings) if judgement.too_short else ()
-    known = identified(belief, wheels_logged=has_wheels(windows.drive))
+    wheels_advice = log.advice.get("wheel", "")
+    known = identified(belief, wheels_logged=has_wheels(windows.drive), wheels_advice=wheels_advice)
     verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
     search = run.limits()
     if search is None:

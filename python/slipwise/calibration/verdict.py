@@ -46,11 +46,11 @@ class LogFacts:
     input_name: str = "command"
 
 
-def identified(belief: Belief, *, wheels_logged: bool) -> Identified:
+def identified(belief: Belief, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
     """Say what a belief knows of its parameters, and which driving would tell the rest."""
     unknown, pairs = undetermined(belief), look_alikes(belief)
     advice = (*drives_for(unknown), *advice_for_pairs(pairs))
-    timing = timing_words(belief.motion, unknown, wheels_logged=wheels_logged)
+    timing = timing_words(belief.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     return Identified(len(belief.mean), unknown, advice, pairs, timing)
 
 

@@ -80,7 +80,9 @@ def evaluate(
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
-        contradictions=contradictions(log, input_name, sensor_yaw=settings.mount.yaw),
+        contradictions=contradictions(
+            log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw
+        ),
     )
 
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
-from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
-from slipwise.logs.topics import Topic
+from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION, TF, TF_DEFINITION
+from slipwise.logs.role_choice import Topic
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -49,6 +49,7 @@ class BagFile:
         self.format = ""
         self._stack = contextlib.ExitStack()
         self._sources: list[tuple[Any, Sequence[Connection]]] = []  # readers with their connections
+        self._seconds = 0.0
         try:
             if not (path.is_dir() and self._open_folder(path, files)):
                 for file in files:
@@ -112,7 +113,7 @@ class BagFile:
             _log.debug("the metadata of %s cannot be used", path, exc_info=True)
             return False
         self.format = "mcap" if any(file.suffix == ".mcap" for file in files) else "rosbag2-sqlite3"
-        self._sources.append((reader, reader.connections))
+        self._add(reader, reader.duration)
         return True
 
     def _open(self, file: Path) -> None:
@@ -127,14 +128,14 @@ class BagFile:
                 from rosbags.rosbag1 import Reader as Reader1
 
                 reader1 = self._stack.enter_context(Reader1(named))
-                self._sources.append((reader1, reader1.connections))
+                self._add(reader1, reader1.duration)
             elif magic == MCAP_MAGIC and not _ends_with(file, MCAP_MAGIC):
                 self._open_cut_off(file)
             else:
                 from rosbags.rosbag2 import Reader as Reader2
 
                 reader2 = self._stack.enter_context(Reader2(named))
-                self._sources.append((reader2, reader2.connections))
+                self._add(reader2, reader2.duration)
         except LogError:
             raise
         except Exception as error:  # what a reader raises on damaged bytes has no bounds
@@ -144,6 +145,10 @@ class BagFile:
                 advice="it may be cut off; copy it again, or repair it with `rosbag reindex`, `mcap recover`"
                 " or `ros2 bag reindex`",
             ) from error
+
+    def _add(self, reader: Any, duration_ns: int) -> None:
+        self._sources.append((reader, reader.connections))
+        self._seconds += max(duration_ns, 0) / 1e9
 
     def _open_cut_off(self, file: Path) -> None:
         """Open an MCAP file without an end by giving its whole records one, in a temporary copy."""
@@ -156,7 +161,7 @@ class BagFile:
         reader = McapReader(copy)
         reader.open()
         self._stack.callback(reader.close)
-        self._sources.append((reader, reader.connections))
+        self._add(reader, reader.metadata.duration)
         self._tally.add(
             "damaged-bag",
             "bytes after the last whole record of a cut-off MCAP file",
@@ -178,15 +183,19 @@ class BagFile:
             for connection in connections:
                 key = (connection.topic, connection.msgtype)
                 counts[key] = counts.get(key, 0) + connection.msgcount
-        return tuple(Topic(name, kind, count) for (name, kind), count in counts.items())
+        return tuple(
+            Topic(name, kind, count, count / self._seconds if self._seconds > 0.0 else float("nan"))
+            for (name, kind), count in counts.items()
+        )
 
     def _typestore(self) -> Typestore:
         """Return the standard types; definitions in the bag are not needed for them."""
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
         store = get_typestore(Stores.ROS1_NOETIC if self.format == "rosbag1" else Stores.ROS2_HUMBLE)
-        if ACKERMANN not in store.fielddefs:
-            store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
+        for kind, definition in ((ACKERMANN, ACKERMANN_DEFINITION), (TF, TF_DEFINITION)):
+            if kind not in store.fielddefs:
+                store.register(get_types_from_msg(definition, kind))
         return store
 
 

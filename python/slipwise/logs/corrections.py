@@ -14,14 +14,14 @@ from slipwise.logs.options import LogOptions
 _AS_IT_IS = (1.0, 1.0)
 
 
-def corrected(log: Log, options: LogOptions) -> Log:
-    """Return the log with the scales and the heading of the options applied; each is noted."""
-    notes = []
-    for name, factors in (("commands", options.command_scale), ("wheels", options.wheel_scale)):
-        if factors != _AS_IT_IS:
-            notes.append(f"{name}: speed times {factors[0]:g}, yaw rate times {factors[1]:g}, as given")
-    if options.pose_yaw_offset != 0.0:
-        notes.append(f"poses: {options.pose_yaw_offset:.6g} rad added to every heading, as given")
+def scaled_inputs(log: Log, options: LogOptions) -> Log:
+    """Return the log with the scales of the options applied to its inputs; each is noted."""
+    given = (("commands", options.command_scale), ("wheels", options.wheel_scale))
+    notes = [
+        f"{name}: speed times {factors[0]:g}, yaw rate times {factors[1]:g}, as given"
+        for name, factors in given
+        if factors != _AS_IT_IS
+    ]
     if not notes:
         return log
     runs = tuple(
@@ -29,11 +29,21 @@ def corrected(log: Log, options: LogOptions) -> Log:
             run,
             commands=_scaled(run.commands, options.command_scale),
             wheels=_scaled(run.wheels, options.wheel_scale),
-            poses=_turned(run.poses, options.pose_yaw_offset),
         )
         for run in log.runs
     )
     return replace(log, runs=runs, notes=(*log.notes, *notes))
+
+
+def turned_poses(log: Log, options: LogOptions) -> Log:
+    """Return the log with its poses turned as the options say, which is noted."""
+    offset = options.pose_yaw_offset
+    if offset == 0.0:
+        return log
+    runs = tuple(replace(run, poses=_turned(run.poses, offset)) for run in log.runs)
+    return replace(
+        log, runs=runs, notes=(*log.notes, f"poses: {offset:.6g} rad added to every heading, as given")
+    )
 
 
 def _scaled(inputs: Inputs | None, factors: tuple[float, float]) -> Inputs | None:
@@ -45,8 +55,6 @@ def _scaled(inputs: Inputs | None, factors: tuple[float, float]) -> Inputs | Non
 
 def _turned(poses: Poses, offset: float) -> Poses:
     """Poses of the robot from those of a sensor that is turned on it; roll and pitch are turned with it."""
-    if offset == 0.0:
-        return poses
     yaw = wrapped(poses.yaw + offset)
     if poses.roll is None or poses.pitch is None:
         return replace(poses, yaw=yaw)

@@ -64,7 +64,8 @@ def standstill(
         f"the robot does not move although {cause}, for {seconds:.1f} s of {driven_seconds:.1f} s of driving",
         (
             f"It stands still from {places}{more}.",
-            "Look for an emergency stop, a blocked robot or a localiser that had stopped; cut that time out.",
+            "Look for an emergency stop, a blocked robot or a localiser that had stopped.",
+            "--start and --end leave such a time out.",
         ),
         spoils,
     )

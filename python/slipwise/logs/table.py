@@ -6,7 +6,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import renamed
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
 
@@ -88,13 +89,16 @@ class Table:
         return np.asarray(column.to_numpy(zero_copy_only=False))
 
 
-def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tally: Tally) -> Table:
+def read_csv(
+    path: Path, *, numeric: Collection[str], text: Collection[str], columns: Mapping[str, str], tally: Tally
+) -> Table:
     """Read a CSV file, compressed with gzip or not, by what its first bytes say.
 
     Args:
         path: the file.
         numeric: names of columns that must hold numbers, where they exist.
         text: names of columns to be read as text, where they exist.
+        columns: names that the table has, by the names to read them as.
         tally: counts the rows that cannot be read.
 
     Raises:
@@ -108,6 +112,7 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     packed = raw[:2].to_pybytes() == b"\x1f\x8b"
     content = _unpack(raw, path) if packed else raw
     header, skip = _header(content, path)
+    header = renamed(header, columns, path)
     types: dict[str, Any] = {name: pa.float64() for name in header if name in numeric}
     types |= {name: pa.dictionary(pa.int32(), pa.string()) for name in header if name in text}
     broken: list[int] = []
@@ -135,8 +140,8 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     return Table(path, "csv.gz" if packed else "csv", sha256, arrow.unify_dictionaries(), first_line=skip + 1)
 
 
-def read_parquet(path: Path) -> Table:
-    """Read a Parquet file.
+def read_parquet(path: Path, *, columns: Mapping[str, str]) -> Table:
+    """Read a Parquet file; `columns` are names that the table has, by the names to read them as.
 
     Raises:
         LogError: the file is cut off or is not Parquet.
@@ -151,6 +156,7 @@ def read_parquet(path: Path) -> Table:
         raise LogError(
             f"not a readable Parquet file: {error}", where=str(path), advice="copy it again"
         ) from error
+    arrow = arrow.rename_columns(renamed(arrow.column_names, columns, path))
     return Table(path, "parquet", hashlib.sha256(raw).hexdigest(), arrow.unify_dictionaries(), first_line=1)
 
 

@@ -9,10 +9,15 @@ import numpy as np
 import pytest
 from contradictory_logs import scaled, sound_log, turned, with_poses
 
+from slipwise.calibration import make_settings
 from slipwise.errors import SettingsError
-from slipwise.logs import LogOptions
+from slipwise.logs import Log, LogOptions
 from slipwise.logs.contradictions import contradictions
-from slipwise.logs.corrections import corrected
+from slipwise.logs.corrections import scaled_inputs, turned_poses
+
+
+def corrected(log: Log, options: LogOptions) -> Log:
+    return turned_poses(scaled_inputs(log, options), options)
 
 
 def test_without_options_the_log_is_as_it_was() -> None:
@@ -63,5 +68,11 @@ def test_roll_and_pitch_are_turned_with_the_sensor() -> None:
     "options", [{"command_scale": (0.0, 1.0)}, {"wheel_scale": (1.0,)}, {"pose_yaw_offset": float("nan")}]
 )
 def test_impossible_corrections_are_refused(options: dict[str, tuple[float, ...]]) -> None:
-    with pytest.raises(SettingsError, match=next(iter(options))):
+    with pytest.raises(SettingsError, match=next(iter(options)).replace("_", "-")):
         LogOptions(**options)  # type: ignore[arg-type]
+
+
+def test_settings_hold_them_too_and_the_command_line_goes_before() -> None:
+    settings = make_settings({"log": {"wheel_scale": [-1.0, 1.0], "pose_yaw_offset": 1.5}})
+    assert settings.log_options() == LogOptions(wheel_scale=(-1.0, 1.0), pose_yaw_offset=1.5)
+    assert settings.log_options(wheel_scale=(2.0, 1.0)).wheel_scale == (2.0, 1.0)
