@@ -46,6 +46,7 @@ class Evaluation:
     runs: tuple[str, ...]  # run names
     left_out: tuple[LeftOut, ...]
     notes: tuple[str, ...]
+    models: tuple[str, ...] = ()  # those of the methods that are model files as they are
 
     def score(self, method: str, horizon: float) -> Score:
         """Return the score of `method` at `horizon`; KeyError where there is none."""
