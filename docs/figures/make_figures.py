@@ -122,7 +122,7 @@ def main(folder: Path) -> Path:
     mpl.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "font.size": 9})
     log = simulate(Scenario(duration=END), seed=SEED).log
     earlier = until(log, LEARNED_UNTIL)
-    learned = sw.calibrate(earlier, input_name="command").model
+    learned = sw.calibrate(earlier, input="command").model
     plain = sw.Model(
         learned.content.model_copy(
             update={
@@ -134,7 +134,7 @@ def main(folder: Path) -> Path:
         )
     )
     options = sw.EvaluationOptions(methods=(PLAIN, SIMPLE, LEARNED))
-    evaluation = sw.evaluate(earlier, input_name="command", options=options)
+    evaluation = sw.evaluate(earlier, input="command", options=options)
     figure = Figure(figsize=(9.0, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
     draw_paths(left, log, {PLAIN: plain, LEARNED: learned})

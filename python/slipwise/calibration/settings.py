@@ -221,6 +221,10 @@ class Settings(_Section):
     mount: MountTable = MountTable()
     log: LogTable = LogTable()
 
+    def __repr__(self) -> str:
+        changed = self.model_dump(exclude_defaults=True)
+        return f"Settings({', '.join(f'{name}={value!r}' for name, value in changed.items())})"
+
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""
         return self.window.length or WINDOW_SECONDS[input_name]

@@ -23,7 +23,7 @@ from slipwise.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from slipwise.calibration import Calibration, Settings
+    from slipwise.calibration import Calibration
     from slipwise.cli.output import Output
     from slipwise.logs import Log, LogOptions
 
@@ -67,6 +67,7 @@ def calibrate(
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.calibration import calibrate as learn
+    from slipwise.cli.command_line import command_line
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -74,6 +75,7 @@ def calibrate(
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.files import write_text_whole
     from slipwise.logs import open_log
+    from slipwise.reporting.session import report_calibration
 
     out = Output(json)
     chosen = chosen_settings(settings, basis, estimator)
@@ -97,7 +99,7 @@ def calibrate(
             if not no_report:
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
-                _write_report(files["report"], log, calibration, chosen)
+                report_calibration(files["report"], log, calibration, chosen, command=command_line())
             if output is not None:
                 files["model"] = calibration.model.save(output)
             document = _document(log, calibration, files)
@@ -154,25 +156,3 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
         show_alarms(out, calibration.history)
     show_look_alikes(out, calibration.verdict.look_alikes)
     show_parameters(out, summary.parameters)
-
-
-def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
-    """Judge what was learned beside doing nothing and edd-2, and write the page."""
-    from slipwise.cli.command_line import command_line
-    from slipwise.evaluation import EvaluationOptions, evaluate
-    from slipwise.reporting import write_report
-
-    learned = [calibration.method]
-    if calibration.history is None:
-        learned.append(settings.estimator)
-    methods = tuple(dict.fromkeys(("none", "edd-2", *learned)))
-    evaluation = evaluate(
-        log,
-        input_name=calibration.model.content.input,
-        settings=settings,
-        options=EvaluationOptions(methods=methods),
-    )
-    title = ", ".join(run.name for run in log.runs[:3])
-    write_report(
-        path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()
-    )

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.ellipse import ellipse
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 from slipwise.reporting.markup import legend, missing, number, paragraph
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
