@@ -62,7 +62,7 @@ def calibrate(  # noqa: PLR0913 - options, most of them short for a setting
         SettingsError: the basis or the estimator is unknown.
     """
     chosen, opened = (settings or Settings()).choosing(basis, estimator), _opened(log)
-    learned = calibration.calibrate(opened, input_name=input, settings=chosen, smooth=smooth)
+    learned = calibration.calibrate(opened, input=input, settings=chosen, smooth=smooth)
     parts = {field.name: getattr(learned, field.name) for field in fields(learned)}
     return Calibration(**parts, log=opened, settings=chosen)
 
@@ -95,7 +95,7 @@ def evaluate(  # noqa: PLR0913 - all but the log are options
     if model is not None:
         options = replace(options, model=_loaded(model))
     return evaluation.evaluate(
-        _opened(log), input_name=input, settings=settings, options=options, progress=progress
+        _opened(log), input=input, settings=settings, options=options, progress=progress
     )
 
 

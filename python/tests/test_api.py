@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import copy
+import inspect
 import pickle
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,8 +17,10 @@ from sample_logs import Drive, simulated_log
 from sample_models import LIMITS, make_model, named
 
 import slipwise as sw
-from slipwise import _core
+from slipwise import _core, calibration
+from slipwise import evaluation as evaluation_of
 from slipwise.errors import ModelError
+from slipwise.models import ModelFile
 
 COMMANDS = [(0.0, 1.0, 0.3), (2.0, 1.0, -0.3)]
 OPTIONS = sw.EvaluationOptions((2.0,), ("none", "edd-2"))
@@ -46,6 +50,18 @@ def test_dir_shows_the_api_and_nothing_else() -> None:
     shown = dir(sw)
     assert set(shown) == {*sw.__all__, "__version__"}
     assert all(getattr(sw, name) is not None for name in shown)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [sw.calibrate, sw.evaluate, calibration.calibrate, evaluation_of.evaluate],
+    ids=["sw.calibrate", "sw.evaluate", "calibrate", "evaluate"],
+)
+def test_the_input_has_one_name_everywhere(call: Callable[..., object]) -> None:
+    names = [name for name in inspect.signature(call).parameters if name.startswith("input")]
+    assert names == ["input"]
+    assert "input" in ModelFile.model_fields
+    assert "input" in sw.Evaluation.__dataclass_fields__
 
 
 def test_paths_stand_for_logs_and_models(tmp_path: Path, log: sw.Log, result: sw.Calibration) -> None:

@@ -85,7 +85,7 @@ def calibrate(
         with run_folder(runs, "calibrate") as folder:
             calibration = learn(
                 log,
-                input_name=input_name and input_name.value,
+                input=input_name and input_name.value,
                 settings=chosen,
                 smooth=smooth,
                 progress=lambda share: update("learning", share),

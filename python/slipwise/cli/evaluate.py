@@ -103,7 +103,7 @@ def evaluate(
         with run_folder(runs, "evaluate") as folder:
             evaluation = judge_methods(
                 log,
-                input_name=input_name and input_name.value,
+                input=input_name and input_name.value,
                 settings=chosen,
                 options=options,
                 progress=lambda name, share: update(f"method {name}", share),
@@ -214,7 +214,7 @@ def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibratio
         settings = settings.model_copy(update={"estimator": method})
     elif method not in evaluation.models:
         settings = settings.model_copy(update={"basis": method, "estimator": AVERAGE})
-    return calibrate(log, input_name=evaluation.input, settings=settings)
+    return calibrate(log, input=evaluation.input, settings=settings)
 
 
 def _write_report(path: Path, log: Log, evaluation: Evaluation, calibration: Calibration | None) -> None:

@@ -51,7 +51,7 @@ class EvaluationOptions:
 def evaluate(
     log: Log,
     *,
-    input_name: str | None = None,
+    input: str | None = None,
     settings: Settings | None = None,
     options: EvaluationOptions | None = None,
     progress: Report | None = None,
@@ -63,7 +63,7 @@ def evaluate(
         SettingsError: a method, a basis or a horizon is wrong.
     """
     settings, options = settings or Settings(), options or EvaluationOptions()
-    input_name, models = _input_name(log, input_name, options.models), options.models
+    input_name, models = _input_name(log, input, options.models), options.models
     refuse_names_of_methods(models)
     contest, notes = _contest(log, input_name, settings, options)
     methods = options.methods or method_names(contest)

@@ -34,7 +34,7 @@ def report_calibration(
         learned.append(settings.estimator)
     evaluation = evaluate(
         log,
-        input_name=calibration.model.content.input,
+        input=calibration.model.content.input,
         settings=settings,
         options=EvaluationOptions(methods=tuple(dict.fromkeys((*BASELINES, *learned)))),
     )

@@ -27,7 +27,7 @@ LEARN = {"basis": "edd-2", "mount": {"learn": True}}
 
 
 def learned(log: Log, source: str, given: dict[str, object]) -> Calibration:
-    return calibrate(log, input_name=source, settings=make_settings(given))
+    return calibrate(log, input=source, settings=make_settings(given))
 
 
 def straight(**given: object) -> Log:

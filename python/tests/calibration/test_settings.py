@@ -192,7 +192,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
 
 def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
     settings = load_settings(written(tmp_path, EVERY_KEY))
-    model = calibrate(simulated_log(Drive(seconds=40.0)), input_name="wheel", settings=settings).model
+    model = calibrate(simulated_log(Drive(seconds=40.0)), input="wheel", settings=settings).model
     names = [parameter.name for parameter in model.content.parameters]
     assert names == [
         "lon.V",
@@ -292,10 +292,10 @@ def test_third_partys_basis_is_learned_by_its_terms_alone() -> None:
     alpha = (-0.1, 0.08, -0.3, 0.05)
     log = simulated_log(Drive(seconds=120.0, basis=truth, alpha=alpha))
     settings = make_settings({"basis": "custom", "terms": terms, "learn_clock_offset": False})
-    model = calibrate(log, input_name="wheel", settings=settings).model
+    model = calibrate(log, input="wheel", settings=settings).model
     sigma = np.sqrt(np.diag(model.covariance))
     assert (np.abs(model.mean - alpha) < 3.0 * sigma).all()
     assert (sigma < 0.1 * np.array([p.prior_std for p in model.content.parameters])).all()
     averaged = make_settings({"terms": terms, "auto": {"bases": ["none", "edd-2", "custom"]}})
-    weights = calibrate(log, input_name="wheel", settings=averaged).model.content.weights
+    weights = calibrate(log, input="wheel", settings=averaged).model.content.weights
     assert weights["custom"] > 0.9

@@ -20,7 +20,7 @@ SLIP = _core.named_basis("edd-2")
 
 
 def verdict_of(drive: Drive, basis: str = "auto", input_name: str = "wheel") -> Calibration:
-    return calibrate(simulated_log(drive), input_name=input_name, settings=make_settings({"basis": basis}))
+    return calibrate(simulated_log(drive), input=input_name, settings=make_settings({"basis": basis}))
 
 
 def judgement(position: tuple[float, float, float], heading: tuple[float, float, float]) -> Judgement:
