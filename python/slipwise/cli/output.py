@@ -30,7 +30,7 @@ class Column:
     """A column of a table."""
 
     head: str
-    right: bool = False  # numbers are aligned to the right
+    right: bool = False  # numbers are aligned to the right, and never wrapped
     whole: bool = False  # never wrapped
     spare: int = 0  # a table that is too wide goes without its columns of the highest number first; 0: never
 
@@ -138,9 +138,16 @@ def _table(
     from rich.table import Table
 
     table = Table(box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left", collapse_padding=narrow)
-    for column in (columns[k] for k in shown):
+    for k in shown:
+        column, cells = columns[k], [printable(row[k]) for row in rows]
         justify: Literal["left", "right"] = "right" if column.right else "left"
-        table.add_column(printable(column.head), justify=justify, no_wrap=column.whole, overflow="fold")
+        table.add_column(
+            printable(column.head),
+            justify=justify,
+            no_wrap=column.whole,
+            overflow="fold",
+            min_width=max(map(len, cells), default=0) if column.right else None,
+        )
     for row in rows:
         table.add_row(*(printable(row[k]) for k in shown))
     return table

@@ -130,17 +130,17 @@ def show_scores(output: Output, evaluation: Evaluation) -> None:
 
 
 _SCORE_COLUMNS = (
-    Column("method", whole=True),
-    Column("position [m]", True, whole=True),
-    Column("/none", True, whole=True),
-    Column("/rival", True, whole=True, spare=3),
-    Column("in-sample*", True, whole=True, spare=4),
-    Column("heading [deg]", True, whole=True),
-    Column("/none", True, whole=True),
-    Column("/rival", True, whole=True, spare=3),
-    Column("in-sample*", True, whole=True, spare=4),
-    Column("NIS", True, whole=True, spare=1),
-    Column("50/90/95 %", True, whole=True, spare=2),
+    Column("method"),
+    Column("position [m]", True),
+    Column("/none", True),
+    Column("/rival", True, spare=3),
+    Column("in-sample*", True, spare=4),
+    Column("heading [deg]", True),
+    Column("/none", True),
+    Column("/rival", True, spare=3),
+    Column("in-sample*", True, spare=4),
+    Column("NIS", True, spare=1),
+    Column("50/90/95 %", True, spare=2),
 )
 _LEGEND = (
     "Mean errors with 95 % intervals; /none and /rival: relative to doing nothing and to the best other one. "

@@ -43,6 +43,18 @@ def test_a_table_goes_without_its_spare_columns_where_it_is_too_wide_and_says_so
     assert "Too narrow" not in capsys.readouterr().out
 
 
+def test_numbers_stay_whole_where_names_are_broken(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("slipwise.cli.output.WIDTH_OF_A_PIPE", 40)
+    columns = [Column("name"), Column("a_long_head_of_a_file.yaml", True), Column("b", True)]
+    Output(None).table("Title", columns, [["n" * 40, "0.0176 ± 0.0010", "-8.2"]])
+    out = capsys.readouterr().out
+    assert "0.0176 ± 0.0010" in out
+    assert "-8.2" in out
+    assert max(map(len, out.splitlines())) <= 40
+
+
 def test_nothing_but_json_is_printed_where_json_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
     output = Output(Path("-"))
     output.line("text")
