@@ -145,7 +145,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     learned, summary = content.provenance, summarise(calibration.model)
     out.line(
         f"Learned {content.slip.basis} from {content.input}s: "
-        f"{learned.learned_windows} windows, {learned.learned_seconds:.0f} s of driving."
+        f"{learned.learned_windows} segments, {learned.learned_seconds:.0f} s of driving."
     )
     show_summary(out, summary)
     show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))

@@ -36,7 +36,7 @@ def compare(
     """Say what differs between two models beyond their uncertainty, and which predicts a log better.
 
     Numbers differ where they lie three standard deviations of both together apart. Which model predicts
-    better is decided on the second half of the log's windows; give a log that neither has learned from.
+    better is decided on the second half of the log's segments; give a log that neither has learned from.
 
     \b
     Examples:
@@ -143,7 +143,7 @@ def _sentence(match: HeadToHead) -> str:
     return (
         f"{winner}: after {match.horizon:g} s {match.second} misses by {_ratio(match.position)} times what "
         f"{match.first} does in position, and {_ratio(match.heading)} times in heading "
-        f"({match.windows} held-out windows, 95 % intervals)."
+        f"({match.windows} held-out segments, 95 % intervals)."
     )
 
 
