@@ -13,8 +13,8 @@ _SPIKE_FACTOR = 10.0  # a stamp this many usual steps ahead, taken back by the n
 def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     """Sort the samples of a stream by what their stamps do.
 
-    A lone stamp far in the future would turn everything after it into the past, so such a spike is taken out
-    first; of the rest a sample is kept if it is later than all samples before it.
+    A lone stamp far in the future would turn everything after it into the past, so such a spike, at the start
+    too, is taken out first; of the rest a sample is kept if it is later than all samples before it.
 
     Args:
         t: stamps [N] in s, all finite, as they came.
@@ -40,4 +40,5 @@ def _spikes(t: Floats, step: Floats) -> Bools:
     if len(t) > 2:
         ahead = (step[:-1] > _SPIKE_FACTOR * usual) & (step[1:] < 0.0) & (t[2:] > t[:-2])
         spike[1:-1] = ahead
+        spike[0] = t[0] > max(t[1], t[2]) and t[2] > t[1] and -step[0] > _SPIKE_FACTOR * usual
     return spike

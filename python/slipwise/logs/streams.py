@@ -9,9 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.errors import LogError
+from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
 from slipwise.logs.stamps import forward_stamps
+
+_TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
+_STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,8 +55,12 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
 
 
 def to_inputs(stream: RawStream, tally: Tally) -> Inputs | None:
-    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left."""
-    clean = clean_stream(stream, tally)
+    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left.
+
+    Raises:
+        LogError: most speeds are absurd, so that their unit is wrong.
+    """
+    clean = _without_absurd_speeds(clean_stream(stream, tally), tally)
     if len(clean.t) == 0:
         return None
     vy = clean.columns.get("vy", np.zeros(len(clean.t)))
@@ -64,13 +73,29 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
     others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
-    others = {name: v if v is None else np.where(np.abs(v) < ABSURD, v, np.nan) for name, v in others.items()}
+    largest = {"roll": _STEEPEST, "pitch": _STEEPEST}
+    others = {
+        name: v if v is None else np.where(np.abs(v) < largest.get(name, ABSURD), v, np.nan)
+        for name, v in others.items()
+    }
     for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
         deviation = others[name]
         if deviation is not None:
             others[name] = np.where(deviation > 0.0, deviation, np.nan)
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
     return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
+
+
+def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:
+    absurd = np.zeros(len(stream.t), bool)
+    for values in stream.columns.values():
+        absurd |= absurd_speeds(values)
+    count = int(absurd.sum())
+    if count > 3 and count > _TOO_MANY_ABSURD * len(absurd):
+        what = f"{count} of {len(absurd)} {stream.name} are faster than {FASTEST:g} m/s or rad/s"
+        where = stream.place(int(stream.rows[np.argmax(absurd)]))
+        raise LogError(what, where=where, advice="convert speeds to m/s and yaw rates to rad/s")
+    return _keep(stream, ~absurd, tally, "absurd-speed", "faster than any robot, all at once")
 
 
 def order_codes(values: NDArray[np.float64] | Ints) -> Ints:

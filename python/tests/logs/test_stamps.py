@@ -35,3 +35,9 @@ def test_what_is_kept_increases_and_every_sample_is_accounted_for(t: np.ndarray)
     keep, duplicate, backward = forward_stamps(t)
     assert (np.diff(t[keep]) > 0).all()
     assert (keep.astype(int) + duplicate + backward == 1).all()
+
+
+def test_a_first_stamp_in_the_far_future_does_not_silence_the_rest() -> None:
+    keep, _, backward = forward_stamps(np.array([1e9, 0.1, 0.2, 0.3, 0.4, 0.5]))
+    assert keep.tolist() == [False, True, True, True, True, True]
+    assert backward.sum() == 1
