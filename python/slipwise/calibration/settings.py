@@ -12,8 +12,10 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.files import read_whole
 from slipwise.segments import WindowRules
 
+MAX_BYTES = 1024 * 1024  # of a settings file
 FARTHEST_SENSOR = 50.0  # m from base_link; more is a wrong unit
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
@@ -321,11 +323,7 @@ def load_settings(path: Path) -> Settings:
         SettingsError: the file is missing, not TOML, or has an unknown key or a wrong value.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise SettingsError(
-            f"cannot read: {problem.strerror}", where=str(path), advice="check the path"
-        ) from problem
+        content = tomllib.loads(read_whole(path, most=MAX_BYTES, error=SettingsError).decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
         raise SettingsError(
             f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"'

@@ -86,6 +86,7 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
     "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+    "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
 }
 
 
@@ -134,4 +135,4 @@ def _log_options(given: dict[str, Any]) -> LogOptions:
 
     joints = ("left_joints", "right_joints")
     split = {name: tuple(part for part in (given[name] or "").split(",") if part) for name in joints}
-    return LogOptions(**(given | split))
+    return LogOptions(**{name: value for name, value in (given | split).items() if value is not None})

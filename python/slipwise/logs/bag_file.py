@@ -6,6 +6,8 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import logging
+import mmap
+import shutil
 import struct
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -14,9 +16,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import LogError
+from slipwise.files import refuse_irregular
 from slipwise.logs.left_out import Tally
 from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
+from slipwise.logs.stamps import LATEST
 from slipwise.logs.topics import Topic
+from slipwise.logs.unpacking import bound_bag_readers, unpack_zstd
+from slipwise.models.yaml_file import read_yaml
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -26,6 +32,7 @@ MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
 ROSBAG1_MAGIC = b"#ROSBAG V2.0\n"
 _ENDINGS = {MCAP_MAGIC: ".mcap", SQLITE_MAGIC: ".db3", ROSBAG1_MAGIC: ".bag"}
+_LATEST_NS = int(LATEST * 1e9)
 _MCAP_END = struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQQQI", 0x02, 20, 0, 0, 0) + MCAP_MAGIC
 
 _log = logging.getLogger(__name__)
@@ -49,6 +56,8 @@ class BagFile:
         self.format = ""
         self._stack = contextlib.ExitStack()
         self._sources: list[tuple[Any, Sequence[Connection]]] = []  # readers with their connections
+        self._packed = False  # each message is compressed by itself
+        bound_bag_readers()
         try:
             if not (path.is_dir() and self._open_folder(path, files)):
                 for file in files:
@@ -75,7 +84,9 @@ class BagFile:
             try:
                 for connection, received_ns, data in _all_messages(reader, wanted):
                     seen += 1
-                    yield RawMessage(connection.topic, connection.msgtype, received_ns, data)
+                    if self._is_time(received_ns, connection.topic):
+                        content = unpack_zstd(data) if self._packed else data
+                        yield RawMessage(connection.topic, connection.msgtype, received_ns, content)
             except (LogError, GeneratorExit):
                 raise
             except Exception as error:  # what a reader raises on damaged bytes has no bounds
@@ -86,6 +97,15 @@ class BagFile:
                     count=max(expected - seen, 1),
                     where=f"{self._path.name}, message {seen + 1} of the topics that are used",
                 )
+
+    def _is_time(self, received_ns: int, topic: str) -> bool:
+        """Say whether a message was received at a possible time; count it where it was not."""
+        if 0 <= received_ns <= _LATEST_NS:
+            return True
+        reason = f"messages of {topic} received at an impossible time"
+        where = f"{self._path.name}, received at {received_ns} ns"
+        self._tally.add("bad-stamp", reason, count=1, where=where)
+        return False
 
     def decode(self, message: RawMessage) -> Any:
         """Return the message as an object; None, and counted, if it does not fit its type."""
@@ -107,12 +127,17 @@ class BagFile:
         from rosbags.rosbag2 import Reader
 
         try:
-            reader = self._stack.enter_context(Reader(path))
+            mode = _compression_mode(path / "metadata.yaml")
+            if mode == "file":  # the reader would unpack whole files, of any size, into a temporary folder
+                return False
+            reader: Any = self._stack.enter_context(Reader(path))
+            self._packed = mode == "message"  # the reader would unpack these to any size, its storages do not
+            opened = reader.storage.storages if self._packed else [reader]
+            self._sources.extend((one, one.connections) for one in opened)
         except Exception:  # what a reader raises on damaged bytes has no bounds
             _log.debug("the metadata of %s cannot be used", path, exc_info=True)
             return False
         self.format = "mcap" if any(file.suffix == ".mcap" for file in files) else "rosbag2-sqlite3"
-        self._sources.append((reader, reader.connections))
         return True
 
     def _open(self, file: Path) -> None:
@@ -135,8 +160,8 @@ class BagFile:
 
                 reader2 = self._stack.enter_context(Reader2(named))
                 self._sources.append((reader2, reader2.connections))
-        except LogError:
-            raise
+        except LogError as error:
+            raise LogError(error.what, where=error.where or str(file), advice=error.advice) from error
         except Exception as error:  # what a reader raises on damaged bytes has no bounds
             raise LogError(
                 f"the bag cannot be read: {_first_line(error)}",
@@ -150,9 +175,14 @@ class BagFile:
         from rosbags.rosbag2.storage_mcap import McapReader
 
         copy = Path(self._stack.enter_context(tempfile.TemporaryDirectory())) / "whole.mcap"
-        content = file.read_bytes()
-        whole = _whole_records(content)
-        copy.write_bytes(content[:whole] + _MCAP_END)
+        size = file.stat().st_size
+        with file.open("rb") as stream, copy.open("wb") as target:
+            with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as content:
+                whole = _whole_records(content)
+            shutil.copyfileobj(stream, target)
+            target.truncate(whole)
+            target.seek(whole)
+            target.write(_MCAP_END)
         reader = McapReader(copy)
         reader.open()
         self._stack.callback(reader.close)
@@ -160,7 +190,7 @@ class BagFile:
         self._tally.add(
             "damaged-bag",
             "bytes after the last whole record of a cut-off MCAP file",
-            count=max(len(content) - whole, 1),
+            count=max(size - whole, 1),
             where=f"{file.name}, byte {whole}",
         )
 
@@ -205,6 +235,8 @@ def bag_files(path: Path) -> list[Path]:
             "decompress its .zstd files first" if packed else "name a folder with .mcap, .db3 or .bag files"
         )
         raise LogError("the folder holds no bag", where=str(path), advice=advice)
+    for file in files:
+        refuse_irregular(file, error=LogError)
     return sorted(files, key=_split_number)
 
 
@@ -227,12 +259,18 @@ def _all_messages(reader: Any, wanted: Sequence[Connection]) -> Iterator[tuple[C
     from rosbags.rosbag2.storage_mcap import McapReader
 
     if isinstance(reader, McapReader):
-        return reader.messages_scan(wanted)
+        return reader.messages_scan(wanted, 0, 1 << 64)  # its own end leaves out late stamps in silence
     found: Iterator[tuple[Connection, int, bytes]] = reader.messages(connections=wanted)
     return found
 
 
-def _whole_records(content: bytes) -> int:
+def _compression_mode(metadata: Path) -> str:
+    """Return how a rosbag2 folder is compressed: "file", "message", or neither."""
+    information = read_yaml(metadata, error=LogError)["rosbag2_bagfile_information"]
+    return str(information.get("compression_mode", "")).lower()
+
+
+def _whole_records(content: bytes | mmap.mmap) -> int:
     """Return the length of the part of an MCAP file that consists of whole records of the data section."""
     position = len(MCAP_MAGIC)
     while position + 9 <= len(content):

@@ -9,10 +9,12 @@ from dataclasses import replace
 from pathlib import Path
 
 from slipwise.errors import LogError
+from slipwise.files import refuse_irregular
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.quality import checked
 from slipwise.logs.run_name import run_name
+from slipwise.logs.unpacking import unpacking_at_most
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -35,10 +37,12 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
 
 
 def _open_one(path: Path, options: LogOptions) -> Log:
-    if not path.exists():
+    if "\0" in str(path) or not path.exists():
         raise LogError("no such file", where=str(path), advice="check the path")
     try:
-        return checked(_reader(path)(path, options))
+        refuse_irregular(path, error=LogError)
+        with unpacking_at_most(options.most_unpacked):
+            return checked(_reader(path)(path, options))
     except PermissionError as error:
         raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
 

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from slipwise.errors import SettingsError
+from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length is not a positive number.
+        SettingsError: a length or a size is not a positive number.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -28,6 +29,7 @@ class LogOptions:
     wheel_radius: float | None = None  # [m]
     track: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
+    most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
 
     def __post_init__(self) -> None:
         for name in ("wheel_radius", "track", "wheelbase"):
@@ -37,3 +39,8 @@ class LogOptions:
                     f"{name} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
+        if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
+            raise SettingsError(
+                f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
+                advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
+            )

@@ -7,6 +7,8 @@ import numpy as np
 
 from slipwise.logs.log import Bools, Floats
 
+LATEST = float(2**32)  # s; what is later, in the year 2106, is no time in seconds
+_UNITS = ((1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds"))
 _SPIKE_FACTOR = 10.0  # a stamp this many usual steps ahead, taken back by the next one, is a fault of its own
 
 
@@ -32,6 +34,14 @@ def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     keep = ~spike & (t > latest)
     duplicate = ~spike & (t == latest)
     return keep, duplicate, ~keep & ~duplicate
+
+
+def unit_advice(stamp: float) -> str:
+    """Say what to do about a stamp that is no time in seconds; names the unit in which it is one."""
+    for factor, unit in _UNITS:
+        if stamp * factor < LATEST:
+            return f"stamps must be in seconds; these look like {unit}, so divide them by {1.0 / factor:.0e}"
+    return "stamps must be in seconds; these are no time in any unit, so record or convert the log again"
 
 
 def _spikes(t: Floats, step: Floats) -> Bools:

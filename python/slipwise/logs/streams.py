@@ -13,7 +13,7 @@ from slipwise.errors import LogError
 from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
-from slipwise.logs.stamps import forward_stamps
+from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
 
 _TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
 _STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
@@ -40,8 +40,13 @@ class RawStream:
 
 
 def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
-    """Leave out, and count, samples that are not finite and stamps that do not go forward."""
-    finite = np.abs(stream.t) < ABSURD  # false for NaN
+    """Leave out, and count, samples that are not finite and stamps that are no times or do not go forward.
+
+    Raises:
+        LogError: most stamps are in another unit than seconds.
+    """
+    stream = _without_impossible_stamps(stream, tally)
+    finite = np.isfinite(stream.t)
     for name, values in stream.columns.items():
         if name not in stream.optional:
             finite &= np.abs(values) < ABSURD
@@ -96,6 +101,17 @@ def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:
         where = stream.place(int(stream.rows[np.argmax(absurd)]))
         raise LogError(what, where=where, advice="convert speeds to m/s and yaw rates to rad/s")
     return _keep(stream, ~absurd, tally, "absurd-speed", "faster than any robot, all at once")
+
+
+def _without_impossible_stamps(stream: RawStream, tally: Tally) -> RawStream:
+    beyond = np.abs(stream.t) > LATEST  # false for NaN
+    if beyond.sum() > 0.5 * len(beyond):
+        usual = float(np.median(np.abs(stream.t[beyond])))
+        where = stream.place(int(stream.rows[np.argmax(beyond)]))
+        raise LogError(
+            f"stamps of {stream.name} are about {usual:.2g}", where=where, advice=unit_advice(usual)
+        )
+    return _keep(stream, ~beyond, tally, "bad-stamp", "whose stamp is no time in seconds")
 
 
 def order_codes(values: NDArray[np.float64] | Ints) -> Ints:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slipwise.errors import LogError
-from slipwise.logs import Inputs, Log, Poses, Run
+from slipwise.logs import Inputs, LeftOut, Log, Poses, Run
 from slipwise.logs.quality import checked
 
 
@@ -153,3 +153,16 @@ def test_a_heading_that_is_whole_turns_off_for_a_moment_is_dropped(run: Run, tur
 def test_a_heading_that_is_not_wrapped_is_no_jump(run: Run) -> None:
     unwrapped = replace(run.poses, yaw=np.unwrap(run.poses.yaw) + 500.0)
     assert checked(Log(runs=(replace(run, poses=unwrapped),))).left_out == ()
+
+
+def test_a_log_whose_stamps_are_all_the_same_is_refused(run: Run) -> None:
+    few = replace(
+        run.poses,
+        **{
+            name: getattr(run.poses, name)[:1]
+            for name in ("t", "x", "y", "yaw", "frame", "std_xy", "std_yaw")
+        },
+    )
+    same = LeftOut("poses with the stamp of the one before", 300, "line 3", "duplicate-stamp")
+    with pytest.raises(LogError, match="stamps do not go forward in 300 of 301 poses"):
+        checked(Log(runs=(replace(run, poses=few),), left_out=(same,)))
