@@ -127,8 +127,8 @@ def refuse_irregular(path: Path, *, error: type[SlipwiseError]) -> None:
         raise error("not a regular file", where=str(path), advice="copy what it gives into a file first")
 
 
-def read_whole(path: Path, *, most: int, error: type[SlipwiseError]) -> bytes:
-    """Return the bytes of a regular file of at most `most` bytes.
+def read_whole(path: Path, *, most: int, error: type[SlipwiseError], what: str = "") -> bytes:
+    """Return the bytes of a regular file of at most `most` bytes; `what` names it in an error.
 
     Raises:
         SlipwiseError: of type `error`: the file is missing, a folder, a pipe or a device, or too large.
@@ -138,7 +138,9 @@ def read_whole(path: Path, *, most: int, error: type[SlipwiseError]) -> bytes:
         with path.open("rb") as file:
             data = file.read(most + 1)
     except OSError as problem:
-        raise error(f"cannot read: {problem.strerror}", where=str(path), advice="check the path") from problem
+        raise error(
+            f"cannot read{what and ' '}{what}: {problem.strerror}", where=str(path), advice="check the path"
+        ) from problem
     except ValueError as problem:  # the name holds a character that no name may hold
         raise error("not the name of a file", where=str(path), advice="check the path") from problem
     if len(data) > most:

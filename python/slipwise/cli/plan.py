@@ -29,6 +29,12 @@ def plan(
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
     picture: Annotated[bool, typer.Option(help="Draw the PNG, which needs Matplotlib.")] = True,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the search round obstacles.")] = 1,
+    most_cells: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=1, max=10**9, help="Larger maps are refused; each cell takes 40 bytes."
+        ),
+    ] = 25_000_000,
     json: Json = None,
 ) -> int:
     """Plan commands from one pose to another through a map, as the learned model says that the robot drives.
@@ -51,7 +57,7 @@ def plan(
     from slipwise.reporting.plan_page import summary
 
     out = Output(json)
-    learned, grid = load_model(model), load_map(map_file)
+    learned, grid = load_model(model), load_map(map_file, most_cells=most_cells)
     kinds = ("png", "html", "csv") if picture else ("html", "csv")
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in kinds}
     refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
