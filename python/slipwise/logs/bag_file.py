@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import logging
 import mmap
@@ -22,7 +23,6 @@ from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
 from slipwise.logs.stamps import LATEST
 from slipwise.logs.topics import Topic
 from slipwise.logs.unpacking import bound_bag_readers, unpack_zstd
-from slipwise.models.yaml_file import read_yaml
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -109,7 +109,7 @@ class BagFile:
 
     def decode(self, message: RawMessage) -> Any:
         """Return the message as an object; None, and counted, if it does not fit its type."""
-        store = self._store = self._store or self._typestore()
+        store = self._store = self._store or _typestore(self.format == "rosbag1")
         read = store.deserialize_ros1 if self.format == "rosbag1" else store.deserialize_cdr
         try:
             return read(message.data, message.type)
@@ -210,15 +210,6 @@ class BagFile:
                 counts[key] = counts.get(key, 0) + connection.msgcount
         return tuple(Topic(name, kind, count) for (name, kind), count in counts.items())
 
-    def _typestore(self) -> Typestore:
-        """Return the standard types; definitions in the bag are not needed for them."""
-        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-        store = get_typestore(Stores.ROS1_NOETIC if self.format == "rosbag1" else Stores.ROS2_HUMBLE)
-        if ACKERMANN not in store.fielddefs:
-            store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
-        return store
-
 
 def bag_files(path: Path) -> list[Path]:
     """Return the storage files of a bag: the file itself, or those in a rosbag2 folder, by name.
@@ -264,8 +255,21 @@ def _all_messages(reader: Any, wanted: Sequence[Connection]) -> Iterator[tuple[C
     return found
 
 
+@functools.cache
+def _typestore(ros1: bool) -> Typestore:
+    """Return the standard types; definitions in the bag are not needed for them."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    if ACKERMANN not in store.fielddefs:
+        store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
+    return store
+
+
 def _compression_mode(metadata: Path) -> str:
     """Return how a rosbag2 folder is compressed: "file", "message", or neither."""
+    from slipwise.models.yaml_file import read_yaml
+
     information = read_yaml(metadata, error=LogError)["rosbag2_bagfile_information"]
     return str(information.get("compression_mode", "")).lower()
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
+_BLOCK = 1 << 20  # bytes
 _LINE_END = re.compile(rb"\r\n|\n|\r")
 
 
@@ -115,6 +116,7 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     packed = raw[:2].to_pybytes() == b"\x1f\x8b"
     content = _unpack(raw, path) if packed else raw
     header, skip = _header(content, path)
+    content = _as_utf8(content, tally, path.name)
     types: dict[str, Any] = {name: pa.float64() for name in header if name in numeric}
     types |= {name: pa.dictionary(pa.int32(), pa.string()) for name in header if name in text}
     broken: list[int] = []
@@ -177,6 +179,25 @@ def _mapped(path: Path) -> pa.Buffer:
     import pyarrow as pa
 
     return pa.memory_map(str(path)).read_buffer()
+
+
+def _as_utf8(content: pa.Buffer, tally: Tally, name: str) -> pa.Buffer:
+    """Return the content with a mark in place of each byte that is no UTF-8; Arrow skips such rows."""
+    import pyarrow as pa
+
+    view = memoryview(content)
+    blocks = (view[at : at + _BLOCK] for at in range(0, len(view), _BLOCK))
+    if all(bytes(block).isascii() for block in blocks):
+        return content
+    data = bytes(view)
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        text = data.decode("utf-8", errors="replace")
+        place = f"{name}, line {data[: error.start].count(10) + 1}"
+        tally.add("bad-text", "bytes that are not UTF-8", count=text.count("\ufffd"), where=place)
+        return pa.py_buffer(text.encode())
+    return content
 
 
 def _unpack(raw: pa.Buffer, path: Path) -> pa.Buffer:
