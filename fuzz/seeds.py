@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import gzip
+import io
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -115,18 +116,24 @@ def _bag1(compression: Any) -> bytes:
         return (Path(folder) / "a.bag").read_bytes()
 
 
-def _model() -> bytes:
-    from slipwise.calibration import calibrate, make_settings
-    from slipwise.logs import open_log
-
+def _drive() -> bytes:
     t = np.round(np.arange(0.0, 40.0, 0.1), 3)
     v, omega = 0.5 + 0.5 * np.sin(t / 3.0), 0.5 * np.sin(t / 2.0)
     yaw = np.cumsum(0.7 * omega * 0.1)
     x, y = np.cumsum(0.95 * v * np.cos(yaw) * 0.1), np.cumsum(0.95 * v * np.sin(yaw) * 0.1)
+    text = io.StringIO()
+    columns = np.column_stack([t, v, omega, x, y, yaw])
+    np.savetxt(text, columns, "%.6g", ",", header="t,cmd_v,cmd_omega,x,y,yaw", comments="")
+    return text.getvalue().encode()
+
+
+def _model() -> bytes:
+    from slipwise.calibration import calibrate, make_settings
+    from slipwise.logs import open_log
+
     with tempfile.TemporaryDirectory() as folder:
         table = Path(folder) / "drive.csv"
-        columns = np.column_stack([t, v, omega, x, y, yaw])
-        np.savetxt(table, columns, delimiter=",", header="t,cmd_v,cmd_omega,x,y,yaw", comments="")
+        table.write_bytes(_drive())
         model = calibrate(open_log(table), settings=make_settings({"basis": "edd-2"})).model
         model.save(Path(folder) / "model.yaml")
         return (Path(folder) / "model.yaml").read_bytes()
@@ -148,6 +155,7 @@ _SEEDS: dict[str, tuple[Callable[[], bytes], ...]] = {
         lambda: _bag1(Writer1.CompressionFormat.LZ4),
         lambda: _bag1(Writer1.CompressionFormat.BZ2),
     ),
+    "calibrate": (_drive, lambda: _drive().replace(b"cmd", b"odo")),
     "model": (_model,),
     "map": (_MAP.encode,),
     "image": (lambda: _pgm("P2"), lambda: _pgm("P5")),

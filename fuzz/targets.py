@@ -14,7 +14,14 @@ from slipwise.errors import SlipwiseError
 from slipwise.logs import LogOptions, open_log, save_log
 
 OPTIONS = LogOptions(most_unpacked=16.0)
-_ENDINGS = {"rosbag1": ".bag", "model": ".yaml", "map": ".yaml", "image": ".pgm", "settings": ".toml"}
+_ENDINGS = {
+    "rosbag1": ".bag",
+    "calibrate": ".csv",
+    "model": ".yaml",
+    "map": ".yaml",
+    "image": ".pgm",
+    "settings": ".toml",
+}
 _CONVERTED = 7  # every so many logs are written again too
 
 
@@ -69,6 +76,13 @@ def _read_log(path: Path) -> None:
             written.unlink(missing_ok=True)
 
 
+def _learn(path: Path) -> None:
+    from slipwise.calibration import calibrate, make_settings
+
+    result = calibrate(open_log(path, options=OPTIONS), settings=make_settings({"basis": "edd-2"}))
+    assert np.isfinite(result.model.mean).all()
+
+
 def _read_model(path: Path) -> None:
     from slipwise.models import load_model
     from slipwise.prediction import predict
@@ -99,6 +113,7 @@ def _read_settings(path: Path) -> None:
 
 
 _READERS: dict[str, Callable[[Path], None]] = {
+    "calibrate": _learn,
     "model": _read_model,
     "map": _read_map,
     "image": _read_image,
