@@ -18,7 +18,7 @@ from run_fuzz import MEMORY
 from seeds import seeds
 from targets import Target
 
-SLOWEST = 60  # s of one input, then the process is ended
+SLOWEST = 60.0  # s of one input, then the process is ended
 MOST_FINDINGS = 10
 
 
@@ -35,7 +35,7 @@ def main() -> int:
     ):
         data = mutated(draw.choice(corpus), draw, corpus)
         pending.write_bytes(data)  # what a crash or a hang leaves behind
-        signal.alarm(SLOWEST)
+        signal.setitimer(signal.ITIMER_PROF, SLOWEST)  # processor time: being paused is no hang
         try:
             read += not target.run(data)
         except Exception as error:
@@ -48,7 +48,7 @@ def main() -> int:
                 print(
                     f"fuzz: {name}: {fault}: {' '.join(str(error).split())[:150]} ({path.name})", flush=True
                 )
-        signal.alarm(0)
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         count += 1
     pending.unlink(missing_ok=True)
     rate = count / max(time.monotonic() - began, 1e-9)

@@ -84,7 +84,11 @@ class BagFile:
             try:
                 for connection, received_ns, data in _all_messages(reader, wanted):
                     seen += 1
-                    if self._is_time(received_ns, connection.topic):
+                    if connection.topic not in names:  # a damaged index leads anywhere
+                        reason = "messages that the bag's index takes for those of another topic"
+                        where = f"{self._path.name}, {connection.topic}"
+                        self._tally.add("bad-message", reason, count=1, where=where)
+                    elif self._is_time(received_ns, connection.topic):
                         content = unpack_zstd(data) if self._packed else data
                         yield RawMessage(connection.topic, connection.msgtype, received_ns, content)
             except (LogError, GeneratorExit):

@@ -393,6 +393,18 @@ def test_messages_received_at_an_impossible_time_are_counted(tmp_path: Path, imp
     assert len(log.runs[0].poses) == 50
 
 
+def test_a_message_that_belongs_to_another_topic_is_counted(tmp_path: Path) -> None:
+    bag = drive_along_x(Bag(ros1=True))
+    bag.add(EPOCH, "/chatter", POSE, bag.make(POSE, bag.header(EPOCH), bag.pose(0.0, 0.0, 0.0)))
+    content = bytearray(bag.write(tmp_path / "a.bag").read_bytes())
+    own, other = (struct.pack("<L", number) for number in (0, 2))  # connections, in the order written
+    record = content.index(b"conn=" + own, content.index(b"op=\x02"))
+    content[record + 5 : record + 9] = other
+    (tmp_path / "b.bag").write_bytes(content)
+    log = open_log(tmp_path / "b.bag", options=LogOptions(pose_topic="/mocap/robot"))
+    assert counts(log)["bad-message"] == 1
+
+
 def test_a_pipe_in_the_place_of_a_bag_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "a.mcap")
     for path in (tmp_path, tmp_path / "a.mcap"):
