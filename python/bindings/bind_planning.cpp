@@ -41,6 +41,8 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("cruise", &TrajectorySettings::cruise)
       .def_rw("end_speed", &TrajectorySettings::end_speed)
+      .def_rw("rest_speed", &TrajectorySettings::rest_speed)
+      .def_rw("rest_yaw_rate", &TrajectorySettings::rest_yaw_rate)
       .def_rw("longest", &TrajectorySettings::longest)
       .def_rw("backwards", &TrajectorySettings::backwards)
       .def_rw("straight_end", &TrajectorySettings::straight_end)

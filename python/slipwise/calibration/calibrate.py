@@ -74,7 +74,7 @@ def calibrate(
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
     run = start_learning(settings, input_name, windows, record=True, progress=progress)
-    learned = _judged(run, windows, settings)
+    learned = _judged(run, windows, settings, log.advice.get("wheel", ""))
     model = Model(_content(learned, (log, input_name, settings), windows, run.bases))
     return Calibration(
         model,
@@ -106,7 +106,7 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
+def _judged(run: LearningRun, windows: WindowSet, settings: Settings, wheels_advice: str) -> _Learned:
     """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
 
     The predictions are those that `evaluate` makes of the same method, so that one error stands in the
@@ -123,7 +123,8 @@ def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learne
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    verdict = give_verdict(judgement, belief, wheels_logged=has_wheels(windows.drive))
+    wheels_logged = has_wheels(windows.drive)
+    verdict = give_verdict(judgement, belief, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     search = run.limits()
     if search is None:
         return _Learned(belief, tails, judgement, verdict)

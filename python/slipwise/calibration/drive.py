@@ -51,6 +51,7 @@ class WindowSet:
     segments: tuple[_core.Segment, ...]
     known_since: Floats  # s; the input has no gap between it and the start
     usable: tuple[Ints, ...]  # of each run: indices of the poses that are not late
+    unknown_after: float  # s; an input is unknown once it is older than this
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
@@ -66,7 +67,7 @@ class WindowSet:
         distances = np.empty(len(self))
         for k, run in enumerate(self.drive):
             at = self.position == k
-            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy))
+            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy), self.unknown_after)
             distances[at] = driven.between(self.start[at], self.end[at])
         return distances
 
@@ -201,6 +202,7 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
         segments=tuple(segments),
         known_since=np.concatenate([cut.known_since for cut in cuts]),
         usable=tuple(cut.usable for cut in cuts),
+        unknown_after=rules.unknown_after,
         left_out=_merged([item for cut in cuts for item in cut.left_out]),
     )
 
@@ -228,8 +230,12 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
 def _advice(log: Log, input_name: str) -> str:
     if all(len(run.poses) < 2 for run in log.runs):
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
+    if input_name in log.advice:
+        return log.advice[input_name]
+    name = "name the topic or the columns (see `slipwise inspect`)"
     other = "command" if input_name == "wheel" else "wheel"
-    return f"use --input {other}, or name the topic or the columns (see `slipwise inspect`)"
+    there = any((run.commands if other == "command" else run.wheels) is not None for run in log.runs)
+    return f"use --input {other}, or {name}" if there else name
 
 
 def _where(log: Log) -> str:

@@ -11,11 +11,15 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
+from slipwise.calibration.log_table import LogTable
 from slipwise.errors import SettingsError
 from slipwise.files import read_whole
+from slipwise.logs.options import LogOptions
 from slipwise.segments import WindowRules
+from slipwise.validation_text import first_problem
 
 MAX_BYTES = 1024 * 1024  # of a settings file
+_SEE = "docs/settings.md lists the keys and what they take"
 FARTHEST_SENSOR = 50.0  # m from base_link; more is a wrong unit
 LEAST, LARGEST = 1e-9, 1e6  # of a setting in SI units; beyond them the mathematics loses its digits
 Positive = Annotated[float, Field(ge=LEAST, le=LARGEST)]
@@ -222,6 +226,7 @@ class Settings(_Section):
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
     mount: MountTable = MountTable()
+    log: LogTable = LogTable()
 
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""
@@ -237,6 +242,10 @@ class Settings(_Section):
             table.still_speed,
             sensor=self.mount.pose,
         )
+
+    def log_options(self, **given: Any) -> LogOptions:
+        """Return the options for `open_log`: those of [log], and `given` ones before them."""
+        return self.log.options(self.window.unknown_after, given)
 
     def filter_settings(self) -> _core.CausalFilterSettings:
         """Return the core's settings of one causal filter."""
@@ -345,11 +354,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
     try:
         return Settings.model_validate(content)
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(
-            f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
-        ) from problem
+        raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
 
 
 def _weighing(table: AutoTable | ColouredTable | StartTable) -> _core.WeighingSettings:

@@ -72,7 +72,9 @@ def judge(learned: Predictions, plain: Predictions) -> Judgement:
     )
 
 
-def give_verdict(judgement: Judgement, belief: Belief, *, wheels_logged: bool) -> Verdict:
+def give_verdict(
+    judgement: Judgement, belief: Belief, *, wheels_logged: bool, wheels_advice: str = ""
+) -> Verdict:
     """Put the judgement, what is not determined and what looks alike into words."""
     unknown, pairs = undetermined(belief), look_alikes(belief)
     good, sentence = _sentence(judgement, len(unknown), len(belief.mean))
@@ -83,7 +85,7 @@ def give_verdict(judgement: Judgement, belief: Belief, *, wheels_logged: bool) -
         unknown,
         (*longer, *drives_for(unknown), *advice_for_pairs(pairs)),
         pairs,
-        timing_words(belief.motion, unknown, wheels_logged=wheels_logged),
+        timing_words(belief.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice),
     )
 
 

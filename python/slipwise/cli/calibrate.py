@@ -77,7 +77,7 @@ def calibrate(
 
     out = Output(json)
     chosen = chosen_settings(settings, basis, estimator)
-    refuse_unwritable(output, report, out.written_file, inputs=(*logs, settings))
+    refuse_unwritable(output, report, out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "calibrate") as folder:

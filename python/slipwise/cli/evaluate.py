@@ -89,7 +89,9 @@ def evaluate(
     out = Output(json)
     chosen = chosen_settings(settings, basis)
     options = _options(horizons, methods, vendor_track_multiplier, model)
-    refuse_unwritable(predictions, report, out.written_file, inputs=(*logs, model, settings))
+    refuse_unwritable(
+        predictions, report, out.written_file, inputs=(*logs, log_options.poses, model, settings)
+    )
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:

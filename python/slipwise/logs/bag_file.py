@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Any
 from slipwise.errors import LogError
 from slipwise.files import refuse_irregular
 from slipwise.logs.left_out import Tally
-from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
+from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION, TF, TF_DEFINITION
+from slipwise.logs.role_choice import Topic
 from slipwise.logs.stamps import LATEST
-from slipwise.logs.topics import Topic
 from slipwise.logs.unpacking import bound_bag_readers, unpack_zstd
 
 if TYPE_CHECKING:
@@ -58,6 +58,7 @@ class BagFile:
         self._sources: list[tuple[Any, Sequence[Connection]]] = []  # readers with their connections
         self._packed = False  # each message is compressed by itself
         bound_bag_readers()
+        self._seconds = 0.0
         try:
             if not (path.is_dir() and self._open_folder(path, files)):
                 for file in files:
@@ -137,7 +138,8 @@ class BagFile:
             reader: Any = self._stack.enter_context(Reader(path))
             self._packed = mode == "message"  # the reader would unpack these to any size, its storages do not
             opened = reader.storage.storages if self._packed else [reader]
-            self._sources.extend((one, one.connections) for one in opened)
+            for one in opened:
+                self._add(one, reader.duration / len(opened))
         except Exception:  # what a reader raises on damaged bytes has no bounds
             _log.debug("the metadata of %s cannot be used", path, exc_info=True)
             return False
@@ -156,14 +158,14 @@ class BagFile:
                 from rosbags.rosbag1 import Reader as Reader1
 
                 reader1 = self._stack.enter_context(Reader1(named))
-                self._sources.append((reader1, reader1.connections))
+                self._add(reader1, reader1.duration)
             elif magic == MCAP_MAGIC and not _ends_with(file, MCAP_MAGIC):
                 self._open_cut_off(file)
             else:
                 from rosbags.rosbag2 import Reader as Reader2
 
                 reader2 = self._stack.enter_context(Reader2(named))
-                self._sources.append((reader2, reader2.connections))
+                self._add(reader2, reader2.duration)
         except LogError as error:
             raise LogError(error.what, where=error.where or str(file), advice=error.advice) from error
         except Exception as error:  # what a reader raises on damaged bytes has no bounds
@@ -173,6 +175,10 @@ class BagFile:
                 advice="it may be cut off; copy it again, or repair it with `rosbag reindex`, `mcap recover`"
                 " or `ros2 bag reindex`",
             ) from error
+
+    def _add(self, reader: Any, duration_ns: float) -> None:
+        self._sources.append((reader, reader.connections))
+        self._seconds += max(duration_ns, 0) / 1e9
 
     def _open_cut_off(self, file: Path) -> None:
         """Open an MCAP file without an end by giving its whole records one, in a temporary copy."""
@@ -190,7 +196,7 @@ class BagFile:
         reader = McapReader(copy)
         reader.open()
         self._stack.callback(reader.close)
-        self._sources.append((reader, reader.connections))
+        self._add(reader, reader.metadata.duration)
         self._tally.add(
             "damaged-bag",
             "bytes after the last whole record of a cut-off MCAP file",
@@ -212,7 +218,10 @@ class BagFile:
             for connection in connections:
                 key = (connection.topic, connection.msgtype)
                 counts[key] = counts.get(key, 0) + connection.msgcount
-        return tuple(Topic(name, kind, count) for (name, kind), count in counts.items())
+        return tuple(
+            Topic(name, kind, count, count / self._seconds if self._seconds > 0.0 else float("nan"))
+            for (name, kind), count in counts.items()
+        )
 
 
 def bag_files(path: Path) -> list[Path]:
@@ -265,8 +274,9 @@ def _typestore(ros1: bool) -> Typestore:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    if ACKERMANN not in store.fielddefs:
-        store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
+    for kind, definition in ((ACKERMANN, ACKERMANN_DEFINITION), (TF, TF_DEFINITION)):
+        if kind not in store.fielddefs:
+            store.register(get_types_from_msg(definition, kind))
     return store
 
 

@@ -105,13 +105,15 @@ class Source:
 class Log:
     """Everything read from one or several files.
 
-    `notes` say what was guessed or worked out, `left_out` what was wrong with the data.
+    `notes` say what was guessed or worked out, `left_out` what was wrong with the data, `advice` what would
+    give an input that the log could have and has not, by the input's name.
     """
 
     runs: tuple[Run, ...]
     sources: tuple[Source, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     notes: tuple[str, ...] = ()
+    advice: Mapping[str, str] = field(default_factory=dict)
 
 
 def empty_poses() -> Poses:

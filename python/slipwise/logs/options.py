@@ -4,10 +4,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from slipwise.errors import SettingsError
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
+
+AUTO = "auto"
 
 
 @dataclass(frozen=True)
@@ -15,7 +20,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length or a size is not a positive number.
+        SettingsError: a length or a size is not a positive number, or a time is none.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -30,13 +35,19 @@ class LogOptions:
     track: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
     most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
+    poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
+    pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
+    start: float | None = None  # [s] from the log's start; what is before is not used
+    end: float | None = None  # [s] from the log's start; what is after is not used
+    columns: Mapping[str, str] = field(default_factory=dict)  # tidy name -> name in the table
+    unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
 
     def __post_init__(self) -> None:
         for name in ("wheel_radius", "track", "wheelbase"):
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise SettingsError(
-                    f"{name} must be a positive number of metres, not {value}",
+                    f"{_option(name)} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
         if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
@@ -44,3 +55,24 @@ class LogOptions:
                 f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
                 advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
             )
+        for name in ("start", "end", "pose_clock_offset"):
+            given = getattr(self, name)
+            automatic = name == "pose_clock_offset"
+            if given is None or (automatic and given == AUTO):
+                continue
+            if not (isinstance(given, (int, float)) and math.isfinite(given)):
+                advice = f"such as 12.5{', or auto' if automatic else ''}"
+                raise SettingsError(
+                    f"{_option(name)} must be a number of seconds, not {given}", advice=advice
+                )
+        if self.start is not None and self.end is not None and self.end <= self.start:
+            raise SettingsError(
+                f"--end ({self.end:g} s) is not after --start ({self.start:g} s)", advice="exchange them"
+            )
+        if not self.unknown_after > 0.0:
+            raise SettingsError("unknown_after must be more than 0 s", advice="such as 0.5")
+
+
+def _option(name: str) -> str:
+    """Return the option of the command line that sets a field."""
+    return f"--{name.replace('_', '-')}"

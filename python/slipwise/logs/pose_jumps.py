@@ -34,9 +34,12 @@ class Jumps:
     starts: Bools  # [M]
 
 
-def find_jumps(poses: Poses, inputs: Inputs) -> Jumps:
-    """Compare every step between poses of one frame with what the inputs allow, 1 s early or late."""
-    reach = _Reach(poses, inputs)
+def find_jumps(poses: Poses, inputs: Inputs, unknown_after: float) -> Jumps:
+    """Compare every step between poses of one frame with what the inputs allow, 1 s early or late.
+
+    An input is unknown once it is older than `unknown_after` [s].
+    """
+    reach = _Reach(poses, inputs, unknown_after)
     dropped, starts = np.zeros(len(poses), bool), np.zeros(len(poses), bool)
     i = np.arange(len(poses) - 1)
     for step in np.flatnonzero(reach.jumps(i, i + 1)).tolist():
@@ -79,10 +82,11 @@ def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
 class _Reach:
     """How far the robot can have come between two poses."""
 
-    def __init__(self, poses: Poses, inputs: Inputs) -> None:
+    def __init__(self, poses: Poses, inputs: Inputs, unknown_after: float) -> None:
         speed, rate = np.hypot(inputs.v, inputs.vy), np.abs(inputs.omega)
         self._poses = poses
-        self._path, self._turn = HeldSum.of(inputs, speed), HeldSum.of(inputs, rate)
+        self._path = HeldSum.of(inputs, speed, unknown_after)
+        self._turn = HeldSum.of(inputs, rate, unknown_after)
         self._top_speed, self._top_rate = float(speed.max()), float(rate.max())
         self._margin = max(_DISTANCE, _NOISE * _noise(poses))
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Inputs, Log, Run
 from slipwise.logs.motion_windows import motion_windows
@@ -20,8 +21,8 @@ _SLOWEST = 10.0  # [s] between poses
 _FEW = 20  # steps; with fewer no such judgement is made
 
 
-def checked(log: Log) -> Log:
-    """Return the log without pose jumps.
+def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
+    """Return the log without pose jumps; an input is unknown once it is older than `unknown_after` [s].
 
     Raises:
         LogError: poses and inputs contradict each other.
@@ -31,9 +32,9 @@ def checked(log: Log) -> Log:
     _check_seconds(log, where)
     for name in ("commands", "wheels"):
         pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
-        check_plausible(agreement(motion_windows(pairs)), name, where)
+        check_plausible(agreement(motion_windows(pairs, unknown_after)), name, where)
     tally = Tally()
-    runs = tuple(_smooth(run, tally) for run in log.runs)
+    runs = tuple(_smooth(run, unknown_after, tally) for run in log.runs)
     found = tally.result()
     steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
     if steps >= _FEW and sum(entry.count for entry in found) > _TOO_MANY * steps:
@@ -73,11 +74,11 @@ def _named(run: Run, name: str) -> Inputs | None:
     return run.commands if name == "commands" else run.wheels
 
 
-def _smooth(run: Run, tally: Tally) -> Run:
+def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:
     inputs = run.wheels if run.wheels is not None else run.commands
     if inputs is None or len(run.poses) < 2:
         return run
-    jumps = find_jumps(run.poses, inputs)
+    jumps = find_jumps(run.poses, inputs, unknown_after)
     if not (jumps.dropped.any() or jumps.starts.any()):
         return run
     for flags, kind, reason in (

@@ -7,7 +7,7 @@ import contextlib
 import csv
 import hashlib
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import renamed
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
 from slipwise.logs.unpacking import most_bytes, too_large
@@ -96,13 +97,16 @@ class Table:
             return np.asarray(names[indices])
 
 
-def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tally: Tally) -> Table:
+def read_csv(
+    path: Path, *, numeric: Collection[str], text: Collection[str], columns: Mapping[str, str], tally: Tally
+) -> Table:
     """Read a CSV file, compressed with gzip or not, by what its first bytes say.
 
     Args:
         path: the file.
         numeric: names of columns that must hold numbers, where they exist.
         text: names of columns to be read as text, where they exist.
+        columns: names that the table has, by the names to read them as.
         tally: counts the rows that cannot be read.
 
     Raises:
@@ -117,6 +121,7 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     content = _unpack(raw, path) if packed else raw
     header, skip = _header(content, path)
     content = _as_utf8(content, tally, path.name)
+    header = renamed(header, columns, path)
     types: dict[str, Any] = {name: pa.float64() for name in header if name in numeric}
     types |= {name: pa.dictionary(pa.int32(), pa.string()) for name in header if name in text}
     broken: list[int] = []
@@ -144,8 +149,8 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     return Table(path, "csv.gz" if packed else "csv", sha256, arrow.unify_dictionaries(), first_line=skip + 1)
 
 
-def read_parquet(path: Path) -> Table:
-    """Read a Parquet file.
+def read_parquet(path: Path, *, columns: Mapping[str, str]) -> Table:
+    """Read a Parquet file; `columns` are names that the table has, by the names to read them as.
 
     Raises:
         LogError: the file is cut off, is not Parquet, or unpacks to more than is allowed.
@@ -172,7 +177,8 @@ def read_parquet(path: Path) -> Table:
         raise LogError(
             f"not a readable Parquet file: {reason}", where=str(path), advice="copy or write it again"
         ) from error
-    return Table(path, "parquet", hashlib.sha256(raw).hexdigest(), arrow, first_line=1)
+    arrow = arrow.rename_columns(renamed(arrow.column_names, columns, path))
+    return Table(path, "parquet", hashlib.sha256(raw).hexdigest(), arrow.unify_dictionaries(), first_line=1)
 
 
 def _mapped(path: Path) -> pa.Buffer:

@@ -18,6 +18,7 @@ from slipwise.files import write_text_whole
 from slipwise.models.limits import core_limits
 from slipwise.models.schema import READ_VERSIONS, SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
+from slipwise.validation_text import first_problem
 
 MOUNT_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
@@ -103,6 +104,15 @@ class Model:
         if self.limits is None:
             return inputs
         return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
+
+    def driven_from(
+        self, inputs: _core.InputTrack, time: float, measured: _core.BodyTwist
+    ) -> _core.InputTrack:
+        """Return the same where the drive did `measured` at `time` [s], in the stamps of the inputs."""
+        if self.limits is None:
+            return inputs
+        chain = self.motion.chain(self.mean)
+        return _core.limited_track_from(inputs, self.limits, chain, time, measured)
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -217,10 +227,8 @@ def load_model(path: str | Path) -> Model:
     try:
         return Model(ModelFile.model_validate(content | {"slipwise_model": SCHEMA_VERSION}))
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
         raise ModelError(
-            f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file"
+            first_problem(problem), where=str(source), advice="calibrate again, or restore the file"
         ) from problem
     except ModelError as problem:
         raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem

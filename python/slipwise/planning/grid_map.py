@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 
 FINEST, COARSEST = 1e-3, 10.0  # m, of a cell; outside of these the unit is wrong
 FARTHEST = 1e8  # m, of a map's origin
-FAR = 1e3  # m, the clearance in a map without obstacles
+FAR = 1e3  # m, farther than any clearance: beyond the map all is occupied
 CELL_REACH = math.sqrt(0.5)  # cells, from a cell's centre to its corner
 
 
@@ -54,7 +54,8 @@ class GridMap:
         if not all(abs(value) <= FARTHEST for value in self.origin):
             advice = f"give metres, {FARTHEST:g} at most"
             raise PlanningError("the map's origin is no place on earth", where="origin", advice=advice)
-        field_ = _core.distance_field(np.ascontiguousarray(cells, dtype=np.uint8), self.resolution, FAR)
+        beyond = np.pad(cells.astype(np.uint8), 1, constant_values=1)  # what lies beyond the map is not free
+        field_ = _core.distance_field(beyond, self.resolution, FAR)[1:-1, 1:-1]
         reach = 2.0 * CELL_REACH * self.resolution  # half a cell each, of the robot's place and the obstacle
         object.__setattr__(self, "clearance", np.maximum(field_ - np.float32(reach), np.float32(0.0)))
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Poses, Run
 
 Floats = NDArray[np.float64]
@@ -25,7 +26,7 @@ LEAST_SHARE = 0.25  # of the length asked for; a frame shorter than this is no w
 class WindowRules:
     """When two poses and the inputs between them make a window."""
 
-    unknown_after: float = 0.5  # s; an input is unknown once it is older than this
+    unknown_after: float = UNKNOWN_AFTER  # s; an input is unknown once it is older than this
     late_factor: float = (
         2.5  # a pose after a gap of more than this many usual intervals is late: never an end
     )

@@ -87,6 +87,10 @@ def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
     alone = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=False)
     assert "commands and poses alone cannot tell apart" in alone
     assert "Wheel speeds in the log would tell them apart" in alone
+    advised = timing_words(
+        _core.MotionModel(basis, True, False), (), wheels_logged=False, wheels_advice="give --wheel-radius"
+    )
+    assert "Wheel speeds in the log would tell them apart; give --wheel-radius." in advised
     unused = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=True)
     assert "would tell them apart" not in unused
     cascade = timing_words(_core.MotionModel.with_response(basis, True), (), wheels_logged=True)

@@ -100,6 +100,24 @@ jacobian = "thesis"
 process_std = 0.01
 jacobian = "exact"
 
+[log]
+command_topic = "/c"
+pose_topic = "/p"
+wheel_topic = "none"
+imu_topic = "/i"
+pose_frame = "map"
+child_frame = "robot"
+left_joints = ["l"]
+right_joints = ["r"]
+wheel_radius = 0.1
+track = 0.5
+wheelbase = 1.2
+poses = "p.txt"
+pose_clock_offset = 1.5
+start = 1.0
+end = 2.0
+columns = {}
+
 [vehicle]
 track = 1.08
 
@@ -141,6 +159,16 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
     assert settings.vehicle.track == 1.08
+    log = settings.log_options()
+    assert (log.command_topic, log.pose_topic, log.wheel_topic, log.imu_topic) == ("/c", "/p", "none", "/i")
+    assert (log.pose_frame, log.child_frame, log.left_joints, log.right_joints) == (
+        "map",
+        "robot",
+        ("l",),
+        ("r",),
+    )
+    assert (log.wheel_radius, log.track, log.wheelbase, log.poses) == (0.1, 0.5, 1.2, Path("p.txt"))
+    assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
     drift = settings.smoothing.drift_settings()
     assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     estimators = settings.estimator_settings()
@@ -203,11 +231,11 @@ def load_settings_of_nothing() -> Settings:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("colour = 1", "colour: Extra inputs are not permitted"),
-        ("[filter]\nhubber = 2.0", r"filter\.hubber: Extra inputs"),
-        ("[filter]\niterations = 0", r"filter\.iterations: .*greater than or equal to 1"),
+        ("colour = 1", "colour: there is no such key"),
+        ("[filter]\nhubber = 2.0", r"filter\.hubber: there is no such key"),
+        ("[filter]\niterations = 0", r"filter\.iterations: must be at least 1"),
         ("[filter]\nhuber = nan", r"filter\.huber"),
-        ("[prior]\nlag = -1.0", r"prior\.lag: .*greater than or equal to 0\.000001"),
+        ("[prior]\nlag = -1.0", r"prior\.lag: must be at least 1e-06"),
         ("[prior]\nlag = inf", r"prior\.lag"),
         ("[noise]\npsd_time = [1.0]", r"noise\.psd_time"),
         ("[noise]\npsd_motion = [-1.0, 0.0, 0.0]", r"noise\.psd_motion"),
@@ -215,12 +243,12 @@ def load_settings_of_nothing() -> Settings:
         ("[auto]\nshare = 1.0", r"auto\.share"),
         ("[auto]\nbases = []", r"auto\.bases"),
         ("[window]\nlength = 0.0", r"window\.length"),
-        ("[noise]\npose_std_yaw = 1e12", r"noise\.pose_std_yaw: .*less than or equal to 1000000"),
-        ("[noise]\nfraction = [1e300, 0.0, 0.0]", r"noise\.fraction\.0: .*less than or equal to 1000000"),
-        ("[prior]\nclock_offset_std = 1e300", r"prior\.clock_offset_std: .*less than or equal to 100"),
-        ("[prior]\nslip_fraction = 1e-300", r"prior\.slip_fraction: .*greater than or equal to 0\.000000001"),
-        ("[vehicle]\ntrack = 1000000000", r"vehicle\.track: .*less than or equal to 100"),
-        ("basis = 3", "basis: Input should be a valid string"),
+        ("[noise]\npose_std_yaw = 1e12", r"noise\.pose_std_yaw: must be at most 1e\+06"),
+        ("[noise]\nfraction = [1e300, 0.0, 0.0]", r"noise\.fraction\.0: must be at most 1e\+06"),
+        ("[prior]\nclock_offset_std = 1e300", r"prior\.clock_offset_std: must be at most 100"),
+        ("[prior]\nslip_fraction = 1e-300", r"prior\.slip_fraction: must be at least 1e-09"),
+        ("[vehicle]\ntrack = 1000000000", r"vehicle\.track: must be at most 100"),
+        ("basis = 3", "basis: must be text, not 3"),
         ("basis", r"not a TOML file: .*write lines like basis = \"auto\""),
         ("basis = 'a'\nbasis = 'b'", "not a TOML file"),
     ],

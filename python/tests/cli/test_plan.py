@@ -68,6 +68,33 @@ def test_a_pose_that_cannot_be_is_refused(
     assert not Path("plan.html").exists()
 
 
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (
+            ("--seed", "-1"),
+            "a search with seed -1 and 1500 attempts cannot begin (seed): give a seed of 0 or more",
+        ),
+        (("--cruise", "1e-300"), "the cruise speed must be 0.001 m/s at least"),
+        (("--cruise", "-1"), "the cruise speed must be 0.001 m/s at least"),
+        (("--longest", "1e300"), "the longest path must lie between 0.01 and 10000 m"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused_with_advice(
+    slipwise: Slipwise, arguments: list[object], option: tuple[str, str], message: str
+) -> None:
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, *option)
+    assert result.code == 2
+    assert message in result.line
+
+
+def test_a_route_over_the_edge_of_the_map_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:
+    write_pgm(Path("map.pgm"), np.ones((80, 120)))
+    result = slipwise(*arguments, "--radius", "2", "--from", "0.05,0.05,0", "--to", "8,0.05,0")
+    assert result.code == 2
+    assert "the start lies in or too near an obstacle, or off the map" in result.line
+
+
 def test_a_model_of_another_schema_version_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:
     text = Path("model.yaml").read_text(encoding="utf-8").replace("slipwise_model: 3", "slipwise_model: 9")
     Path("model.yaml").write_text(text, encoding="utf-8")

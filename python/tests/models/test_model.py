@@ -99,8 +99,8 @@ def set_key(path: str, value: object) -> Callable[[Content], None]:
 
 
 WRONG = {
-    "unknown key": (set_key("colour", "red"), "colour: Extra inputs are not permitted"),
-    "unknown key in depth": (set_key("noise.colour", 1.0), r"noise\.colour: Extra inputs"),
+    "unknown key": (set_key("colour", "red"), "colour: there is no such key"),
+    "unknown key in depth": (set_key("noise.colour", 1.0), r"noise\.colour: there is no such key"),
     "newer schema": (set_key("slipwise_model", 4), "schema version 4, this slipwise reads 2 and 3"),
     "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2 and 3"),
     "no schema": (set_key("slipwise_model", None), "schema version None"),
@@ -121,7 +121,7 @@ WRONG = {
         set_key("coloured.candidates.1.time_constant", 0.0),
         r"candidates\.1\.time_constant",
     ),
-    "unknown input": (set_key("input", "joystick"), "input: Input should be"),
+    "unknown input": (set_key("input", "joystick"), "input: must be 'command' or 'wheel', not 'joystick'"),
     "value is not a number": (set_key("parameters.1.value", float("nan")), r"parameters\.1\.value"),
     "value is infinite": (set_key("parameters.1.value", float("inf")), r"parameters\.1\.value"),
     "value is a flag": (set_key("parameters.0.value", True), r"parameters\.0\.value: .*not true or false"),
@@ -147,8 +147,8 @@ WRONG = {
     "parameters missing": (set_key("parameters", []), "covariance must have 0 rows"),
     "chain without parameters": (set_key("dynamics", False), "the parameters are .* have"),
     "offset without a parameter": (set_key("clock_offset", True), "the parameters are .* have"),
-    "section is a list": (set_key("noise", [1, 2]), "noise: Input should be"),
-    "verdict missing": (lambda c: c.pop("verdict"), "verdict: Field required"),
+    "section is a list": (set_key("noise", [1, 2]), "noise: must be a table of keys"),
+    "verdict missing": (lambda c: c.pop("verdict"), "verdict: is missing"),
 }
 
 

@@ -54,11 +54,20 @@ def test_clearance_never_overstates_the_room_and_ends_at_the_map() -> None:
     rng = np.random.Generator(np.random.PCG64(2))
     points = np.array([1.0, 2.0]) + rng.random((400, 2)) * grid.size
     low, high = np.array([7.0, 6.0]), np.array([7.2, 6.6])  # the obstacle's corners
-    true = np.hypot(*np.maximum(np.maximum(low - points, points - high), 0.0).T)
+    to_obstacle = np.hypot(*np.maximum(np.maximum(low - points, points - high), 0.0).T)
+    to_edge = np.minimum(points - grid.origin, np.array(grid.origin) + grid.size - points).min(axis=1)
+    true = np.minimum(to_obstacle, to_edge)
     stated = grid.clearance_at(points)
     assert (stated <= true + 1e-9).all()
     assert (stated >= true - 0.6).all()
     assert grid.clearance_at([[0.9, 3.0], [100.0, 3.0]]).tolist() == [0.0, 0.0]
+
+
+def test_beyond_the_map_nothing_is_free() -> None:
+    grid = GridMap(np.zeros((100, 200), dtype=bool), 0.1, (-10.0, -5.0))
+    middle, edge = grid.clearance_at([[0.0, 0.0], [-9.75, 0.0]])
+    assert 4.7 < middle <= 5.0
+    assert edge <= 0.25
 
 
 @pytest.mark.parametrize(

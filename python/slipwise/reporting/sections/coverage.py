@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.logs.log import Inputs
+from slipwise.logs.held import held_for
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, numbers, top_colour_bar
 from slipwise.reporting.markup import legend, missing
 from slipwise.reporting.palette import SEQUENTIAL
-from slipwise.segments import WindowRules
 
 _BINS = 32
 _SHORTEST = 1e-3  # s; shorter is drawn like this
@@ -36,7 +35,7 @@ class CoverageSection:
             name = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
             return missing(f"The log has no {name}, so there is no plane of inputs to cover.")
         v, omega = (np.concatenate([getattr(part, name) for part in used]) for name in ("v", "omega"))
-        held = np.concatenate([_held_for(part) for part in used])
+        held = np.concatenate([held_for(part, contents.unknown_after) for part in used])
         seconds, v_edges, omega_edges = np.histogram2d(
             v, omega, bins=_BINS, range=(_range(v), _range(omega)), weights=held
         )
@@ -67,12 +66,6 @@ class CoverageSection:
             caption=f"{held.sum():.0f} s of known input; colours are logarithmic, white was never driven.",
         )
         return legend((("range of the model", "#1b2430", "dash"),)) + figure.html()
-
-
-def _held_for(inputs: Inputs) -> Floats:
-    """How long each input was held [s]; an old one is unknown."""
-    longest = WindowRules().unknown_after
-    return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), longest)
 
 
 def _range(values: Floats) -> tuple[float, float]:
