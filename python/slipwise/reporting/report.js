@@ -16,12 +16,16 @@
   document.addEventListener("securitypolicyviolation", (event) => note("refused: " + event.violatedDirective));
 
   const mouse = window.matchMedia("(hover: hover)").matches;
+  // Every button is named here: none that a version of Plotly adds, such as one that uploads the chart, comes by itself.
+  const saved = ["toImage"];
+  const flat = [saved, ["zoom2d", "pan2d"], ["zoomIn2d", "zoomOut2d", "resetScale2d"]];
+  const solid = [saved, ["orbitRotation", "pan3d", "zoom3d"], ["resetCameraDefault3d"]];
   const config = {
     responsive: true,
     displayModeBar: mouse ? "hover" : false,
     displaylogo: false,
     showTips: false,
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "sendDataToCloud"],
+    plotlyServerURL: "",
   };
   const sources = Array.from(document.querySelectorAll("script[data-figure]"));
   state.figures = String(sources.length);
@@ -32,7 +36,8 @@
       const figure = JSON.parse(source.textContent);
       figure.layout.dragmode = mouse ? "zoom" : false; // a finger on a figure scrolls the page
       if (figure.layout.scene) figure.layout.dragmode = "turntable";
-      await Plotly.newPlot(place, figure.data, figure.layout, config);
+      const modeBarButtons = figure.layout.scene ? solid : flat;
+      await Plotly.newPlot(place, figure.data, figure.layout, { ...config, modeBarButtons });
       place.dataset.drawn = "yes";
       state.drawn = String(Number(state.drawn) + 1);
     } catch (problem) {

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from reporting.browser import Browser
 from reporting.page_parts import figures_of
+from reporting.page_privacy import assert_sends_nothing
 from reporting.synthetic_results import make_results
 
 from slipwise.reporting import write_report
@@ -46,6 +47,11 @@ def test_all_figures_are_drawn_without_error_or_request(
     assert drawn == names
     pictures = browser.screenshots(tmp_path, f"report-{width}")
     assert all(picture.stat().st_size > 5000 for picture in pictures[:-1])
+
+
+def test_no_button_sends_anything(browser: Browser, page: Path) -> None:
+    browser.open(page, width=1280)
+    assert_sends_nothing(browser, page)
 
 
 def test_page_never_scrolls_sideways(browser: Browser, width: int) -> None:
