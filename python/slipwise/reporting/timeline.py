@@ -43,6 +43,10 @@ class Timeline:
         place = np.clip(run, 0, len(self.first) - 1)
         return np.asarray(t - self.first[place] + self.offset[place])
 
+    def seconds(self, run: int, t: float) -> float:
+        """Return the common time of one time `t` in a run."""
+        return float(self.at(np.array([run]), np.array([t]))[0])
+
     def shapes(self) -> list[dict[str, Any]]:
         """Return a thin vertical line where each later run starts, none where there are too many."""
         starts = self.offset[1:].tolist()

@@ -15,6 +15,8 @@ from slipwise.reporting.plan_drawing import Plan
 from slipwise.reporting.plan_page import plan_page
 
 START, GOAL = (1.5, 6.0, 0.0), (5.0, 6.4, 0.1)
+pytestmark = pytest.mark.slow
+
 STATE = "document.documentElement.dataset"
 
 

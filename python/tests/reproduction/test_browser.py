@@ -14,6 +14,8 @@ from reproduction.toy_chapters import exhibit, solid, toy_results
 from slipwise.reproduction import ChapterResult
 from slipwise.reproduction.draw_page import draw_page
 
+pytestmark = pytest.mark.slow
+
 STATE = "document.documentElement.dataset"
 CANVASES = "document.querySelectorAll('.plot canvas').length"
 
