@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from slipwise.evaluation.result import Score
 from slipwise.reporting.markup import number
 
+TRUE = "Yes"
 _HELD = 0.95  # by the ellipsoid that is judged
 _RARE = 0.025  # probability of a count that a true covariance has no more often, to either side
 
@@ -23,8 +24,8 @@ class Honesty:
 
     @property
     def sentence(self) -> str:
-        """All three."""
-        reason = "" if self.short in self.figures else f" {self.short.capitalize()}."
+        """All three, the reason once."""
+        reason = "" if self.answer == TRUE else f" {self.short[0].upper()}{self.short[1:]}."
         return f"{self.answer}.{reason} {self.figures}"
 
 
@@ -50,7 +51,7 @@ def honesty_of(score: Score | None) -> Honesty | None:
         return Honesty("Nearly, it is a little small", size, figures)
     if score.nis < low:
         return Honesty("Yes, with a margin", size, figures)
-    return Honesty("Yes", f"{held} lie inside their 95 % ellipsoids", figures)
+    return Honesty(TRUE, f"{held} lie inside their 95 % ellipsoids", figures)
 
 
 def _at_most(inside: int, count: int) -> float:

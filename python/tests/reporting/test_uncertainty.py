@@ -33,7 +33,7 @@ def test_answer_follows_coverage_and_nis(coverage: float, nis: float, answer: st
     honesty = honesty_of(_score(coverage=(0.5, 0.9, coverage), nis=nis))
     assert honesty is not None
     assert honesty.answer == answer
-    assert f"{round(40 * coverage)} of 40 measured ends" in honesty.sentence
+    assert honesty.sentence.count(f"{round(40 * coverage)} of 40 measured ends") == 1
 
 
 def test_errors_of_a_covariance_four_times_too_small_are_twice_as_large() -> None:

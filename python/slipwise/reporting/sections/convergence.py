@@ -74,7 +74,7 @@ def _values(contents: Contents) -> str:
     )
     pairs = ", ".join(map(str, contents.calibration.verdict.look_alikes))
     confounded = paragraph(f"Confounded parameters (correlation of their errors): {pairs}.") if pairs else ""
-    return html + paragraph(note) + confounded
+    return html + paragraph(f"{note} {contents.calibration.verdict.timing}".strip()) + confounded
 
 
 def _alarms(contents: Contents, history: History) -> str:
@@ -87,7 +87,8 @@ def _alarms(contents: Contents, history: History) -> str:
     more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
     return paragraph(
         f"The terrain seems to change {len(alarms)} time{'s' if len(alarms) > 1 else ''}, marked by an "
-        f"orange line: at {shown}{more}. There, what was learned before counts less."
+        f"orange line: at {shown}{more}. There, what was learned before counts less.",
+        kind="note",
     )
 
 

@@ -44,7 +44,7 @@ class PathsSection:
         text, paths = _paths(contents)
         first = maps[0] if maps else missing("The log has no measured poses, so there is no map.")
         shown = _grid([f'<div class="double">{first}</div>', *paths[:_SHOWN_AT_ONCE]])
-        folded = _folded("paths", paths[_SHOWN_AT_ONCE:]) + _folded("maps", maps[1:])
+        folded = _folded((paths[_SHOWN_AT_ONCE:], "paths"), (maps[1:], "maps"))
         return text + shown + folded + (paragraph(note, kind="note") if note else "")
 
 
@@ -52,8 +52,11 @@ def _grid(figures: Sequence[str]) -> str:
     return f'<div class="fine-grid">{"".join(figures)}</div>'
 
 
-def _folded(what: str, figures: Sequence[str]) -> str:
-    return details(f"{len(figures)} more {what}", _grid(figures)) if figures else ""
+def _folded(*kinds: tuple[Sequence[str], str]) -> str:
+    """Fold away the figures that are not shown at once, counted by kind."""
+    counted = " and ".join(f"{len(figures)} more {what}" for figures, what in kinds if figures)
+    figures = [figure for some, _ in kinds for figure in some]
+    return details(counted, _grid(figures)) if figures else ""
 
 
 def _paths(contents: Contents) -> tuple[str, list[str]]:
@@ -71,7 +74,8 @@ def _paths(contents: Contents) -> tuple[str, list[str]]:
         return missing(absent), []
     timeline = Timeline.of(contents.log)
     figures = [
-        _figure(contents, window, path, (predictions, timeline)).html() for window, path in drawn.items()
+        _figure(contents, window, path, (predictions, timeline)).html()
+        for window, path in sorted(drawn.items(), key=lambda item: item[0].number)
     ]
     return _legend(contents, method) + _notes(list(drawn.values())), figures
 
@@ -130,7 +134,7 @@ def _figure(
             "yaxis": axis("left y [m]", scaleanchor="x", scaleratio=1, nticks=5),
         },
         height=HEIGHT,
-        caption=f"Off by {_off(end, measured)}; baseline {_off(path.plain[-1], measured)}",
+        caption=f"{_off(end, measured)} off; baseline {_off(path.plain[-1], measured)}",
     )
 
 

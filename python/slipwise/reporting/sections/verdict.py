@@ -98,8 +98,6 @@ def _column(heading: str, html: str) -> str:
 def _learned(contents: Contents) -> str:
     verdict = contents.calibration.verdict
     sentences = list(summarise(contents.calibration.model).sentences)
-    if verdict.timing:
-        sentences.append(verdict.timing)
     if verdict.undetermined:
         sentences.append(f"Not identifiable from this log: {', '.join(verdict.undetermined)}.")
     return (

@@ -85,3 +85,10 @@ def test_headings_give_times_from_the_start_of_the_log() -> None:
         start = timeline.seconds(window.run, window.t_start)
         assert 0.0 <= start < 240.0
         assert f"{window.number}: field {window.run}, {start:.1f} s to {start + 5.0:.1f} s" in text
+
+
+def test_most_various_paths_are_shown_at_once_whatever_their_run() -> None:
+    html = PathsSection().html(contents_of(make_results(runs=3)))
+    shown, folded = html.split("<details>")
+    assert [n for n in figures_of(shown) if "path" in n] == [f"figure-path-{n}" for n in (1, 2, 3)]
+    assert "6 more paths and 2 more maps" in folded
