@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from planning.planning_samples import learned_model, walled_map
 from reporting.browser import Browser
+from reporting.page_layout import overlaps
 from reporting.page_privacy import assert_sends_nothing
 
 from slipwise.planning import RouteOptions, RoutePlanner
@@ -38,6 +39,9 @@ def test_map_and_commands_are_drawn_without_error_and_fit_the_width(
     assert browser.problems == []
     assert browser.value(f"{STATE}.drawn") == "2"
     assert browser.value("document.documentElement.scrollWidth") == width
+    assert overlaps(browser) == []
+    shown = browser.value("document.getElementById('figure-plan')._fullLayout.yaxis.range")
+    assert shown == pytest.approx([0.0, 8.0], abs=1e-6)  # the map and nothing beside it
 
 
 def test_no_button_sends_anything(browser: Browser, page: Path) -> None:
