@@ -28,12 +28,9 @@ def drawing_part(name: str) -> Any:
     Raises:
         SlipwiseError: Matplotlib is not installed.
     """
-    try:
-        return importlib.import_module(f"matplotlib.{name}")
-    except ImportError as error:
-        raise SlipwiseError(
-            "pictures need Matplotlib, which is not installed", where=str(error), advice=ADVICE
-        ) from error
+    if not can_draw():
+        raise SlipwiseError("pictures need Matplotlib, which is not installed", advice=ADVICE)
+    return importlib.import_module(f"matplotlib.{name}")
 
 
 def write_png(path: Path, figure: Any) -> Path:
