@@ -86,5 +86,5 @@ def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:
         (jumps.starts, "pose-jump", "steps between poses that jump; poses after are in a frame of their own"),
     ):
         first = float(run.poses.t[np.argmax(flags)])
-        tally.add(kind, reason, count=int(flags.sum()), where=f"run {run.name}, t = {first:.3f} s")
+        tally.add(kind, reason, count=int(flags.sum()), where=run.place(first))
     return replace(run, poses=without_jumps(run.poses, jumps))
