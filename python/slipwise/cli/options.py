@@ -94,6 +94,7 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
     "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+    "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
     "poses": (Path, "FILE", "Measured poses in a file beside the log: TUM, CSV, Parquet or RTKLIB .pos."),
     "pose_clock_offset": (
         str,

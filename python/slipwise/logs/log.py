@@ -94,6 +94,20 @@ class Run:
         counted = {"commands": self.commands, "wheel speeds": self.wheels, "poses": self.poses}
         return [f"{len(part)} {name}" for name, part in counted.items() if part is not None and len(part)]
 
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last stamp of poses, commands and wheels [s], zeros where there are none."""
+        times = [
+            part.t for part in (self.poses, self.commands, self.wheels) if part is not None and len(part)
+        ]
+        if not times:
+            return 0.0, 0.0
+        return float(min(t[0] for t in times)), float(max(t[-1] for t in times))
+
+    def place(self, t: float) -> str:
+        """Say where a time [s] is: counted from the run's start, and as it stands in the file."""
+        return f"run {self.name}, {t - self.span[0]:.1f} s from its start (t = {t:.3f} s)"
+
 
 @dataclass(frozen=True)
 class LeftOut:

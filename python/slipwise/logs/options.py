@@ -10,6 +10,7 @@ from pathlib import Path
 
 from slipwise.errors import SettingsError
 from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
 
 AUTO = "auto"
 
@@ -19,7 +20,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length is not a positive number, or a time is none.
+        SettingsError: a length or a size is not a positive number, or a time is none.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -33,6 +34,7 @@ class LogOptions:
     wheel_radius: float | None = None  # [m]
     track: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
+    most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
     poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
     pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
     start: float | None = None  # [s] from the log's start; what is before is not used
@@ -48,6 +50,11 @@ class LogOptions:
                     f"{_option(name)} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
+        if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
+            raise SettingsError(
+                f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
+                advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
+            )
         for name in ("start", "end", "pose_clock_offset"):
             given = getattr(self, name)
             automatic = name == "pose_clock_offset"
