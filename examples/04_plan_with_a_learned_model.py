@@ -17,7 +17,7 @@ from slipwise import planning
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-model = sw.calibrate(log, input_name="command").model
+model = sw.calibrate(log, input="command").model
 
 # %% [markdown]
 # One manoeuvre to a pose 6 m ahead and 2 m to the left, facing left. The limits are those that the model

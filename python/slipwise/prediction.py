@@ -5,16 +5,24 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.frames import data_frame
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
 from slipwise.models.schema import Tail
+from slipwise.number_text import number_text
+from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import plotly.graph_objects as go
 
 Floats = NDArray[np.float64]
 
@@ -32,6 +40,26 @@ class Path:
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
     covariance: Floats  # [N, 3, 3] parameters, slip that wanders, slip noise, and two measured poses' noise
     dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
+
+    def __repr__(self) -> str:
+        x, y, yaw = (number_text(value) for value in self.poses[-1].tolist())
+        seconds = number_text(float(self.t[-1] - self.t[0]))
+        return f"<Path of {len(self.t)} poses over {seconds} s to x {x} m, y {y} m, yaw {yaw} rad>"
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return t, x, y, yaw, the covariance and dof as a pandas data frame, a pose a row.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        columns = {"t": self.t, **dict(zip(("x", "y", "yaw"), self.poses.T, strict=True))}
+        upper = (("xx", 0, 0), ("xy", 0, 1), ("xt", 0, 2), ("yy", 1, 1), ("yt", 1, 2), ("tt", 2, 2))
+        columns |= {f"cov_{label}": self.covariance[:, i, j] for label, i, j in upper}
+        return data_frame(columns | {"dof": self.dof})
+
+    def plot(self) -> go.Figure:
+        """Return a Plotly figure of the path from above, with 95 % ellipses; a notebook shows it."""
+        return path_figure(self.poses, self.covariance, self.dof)
 
 
 def predict(  # noqa: PLR0913  (all but the first two are options)

@@ -27,7 +27,7 @@ BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", 
 
 def learned(basis: str, input_name: str) -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
-    return calibrate(log, input_name=input_name, settings=make_settings({"basis": basis})).model
+    return calibrate(log, input=input_name, settings=make_settings({"basis": basis})).model
 
 
 @pytest.fixture(scope="module")

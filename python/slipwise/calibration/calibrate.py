@@ -52,7 +52,7 @@ class _Learned:
 def calibrate(
     log: Log,
     *,
-    input_name: str | None = None,
+    input: str | None = None,
     settings: Settings | None = None,
     smooth: bool = False,
     progress: Progress | None = None,
@@ -61,7 +61,7 @@ def calibrate(
 
     Args:
         log: what `open_log` returned.
-        input_name: "command" or "wheel"; by default commands where the log has them.
+        input: "command" or "wheel"; by default commands where the log has them.
         settings: what to learn and how. Where the estimator fits all windows at once, off-line, the verdict
             is that of the filter that runs along.
         smooth: also say what the slip was during each window, given the whole log: for slip that changes
@@ -73,7 +73,7 @@ def calibrate(
         SettingsError: a basis or a term is unknown.
     """
     settings = settings or Settings()
-    input_name = input_name or choose_input(log)
+    input_name = input or choose_input(log)
     drive = prepare_drive(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from slipwise.logs.options import LogOptions
+from slipwise.logs.unpacking import MOST_UNPACKED
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Radians = Annotated[float, Field(allow_inf_nan=False)]
@@ -35,6 +36,7 @@ class LogTable(BaseModel):
     command_scale: Factors = [1.0, 1.0]  # of the commanded speed and yaw rate
     wheel_scale: Factors = [1.0, 1.0]  # of the wheels'
     pose_yaw_offset: Radians = 0.0  # rad
+    most_unpacked: Positive = MOST_UNPACKED  # MiB that a compressed table, or a chunk of a bag, may unpack to
     poses: str | None = None  # a file beside the log
     pose_clock_offset: Seconds | Literal["auto"] | None = None  # s
     start: Seconds | None = None  # s

@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 _NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo")
 
 
-def judged_method(methods: tuple[str, ...]) -> str | None:
-    """Return the method that is judged: `model`, else `auto`, else the first that learns a model; or None."""
+def judged_method(methods: tuple[str, ...], models: tuple[str, ...] = ()) -> str | None:
+    """Return the method judged: the first model file, else `auto`, else the first that learns; or None."""
     names = [name for name in methods if name not in _NOT_JUDGED]
-    return next((name for name in ("model", "auto") if name in names), names[0] if names else None)
+    return next((name for name in (*models, "model", "auto") if name in names), names[0] if names else None)
 
 
 def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Verdict | None:
@@ -32,7 +32,7 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     from slipwise.calibration.judgement import judge
     from slipwise.calibration.verdict import LogFacts, give_verdict
 
-    method = judged_method(evaluation.methods)
+    method = judged_method(evaluation.methods, evaluation.models)
     if method is None or source is None:
         return None
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}

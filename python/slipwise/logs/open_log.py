@@ -17,6 +17,7 @@ from slipwise.logs.piped import regular_file
 from slipwise.logs.quality import checked
 from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.unpacking import unpacking_at_most
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -49,7 +50,7 @@ def readable(path: Path) -> tuple[Path, bool]:
     """
     from slipwise.logs.bag_file import is_bag
 
-    if not path.exists():
+    if "\0" in str(path) or not path.exists():
         raise LogError("no such file", where=str(path), advice="check the path")
     try:
         file = regular_file(path)
@@ -71,7 +72,7 @@ def readable(path: Path) -> tuple[Path, bool]:
 
 def _open_one(path: Path, options: LogOptions) -> Log:
     file, bag = readable(path)
-    with named_in_errors(path, file):
+    with named_in_errors(path, file), unpacking_at_most(options.most_unpacked):
         log = _completed(_read(file, options, bag=bag), options)
         return _named(checked(log, options.unknown_after), file, path)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from slipwise.errors import SettingsError
 from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
 
 AUTO = "auto"
 
@@ -19,7 +20,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length is not a positive number, a time or an angle is none, or a factor is 0.
+        SettingsError: a length or a size is not positive, a time or an angle is no number, or a factor is 0.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -36,6 +37,7 @@ class LogOptions:
     command_scale: tuple[float, float] = (1.0, 1.0)  # factors of the commanded speed and yaw rate
     wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
     pose_yaw_offset: float = 0.0  # [rad] added to the heading of every pose
+    most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
     poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
     pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
     start: float | None = None  # [s] from the log's start; what is before is not used
@@ -52,6 +54,11 @@ class LogOptions:
                     advice="measure it on the robot",
                 )
         self._check_corrections()
+        if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
+            raise SettingsError(
+                f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
+                advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
+            )
         for name in ("start", "end", "pose_clock_offset"):
             given = getattr(self, name)
             automatic = name == "pose_clock_offset"

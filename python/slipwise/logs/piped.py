@@ -29,7 +29,7 @@ def regular_file(path: Path) -> Path:
         return path
     inherited = _INHERITED.fullmatch(str(path))
     if inherited is None:
-        raise LogError("neither a file nor a folder", where=str(path), advice=_SAVE)
+        raise LogError("not a regular file", where=str(path), advice=_SAVE)
     if stat.S_ISCHR(mode):
         advice = "write `... | slipwise inspect /dev/stdin`, or name a file"
         raise LogError("nothing is piped in", where=str(path), advice=advice)

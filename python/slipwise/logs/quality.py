@@ -16,6 +16,7 @@ from slipwise.logs.plausibility import agreement, check_plausible
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
 _TOO_MANY = 0.3  # part of all steps; more jumps than this are no accident
+_HARDLY = 10.0  # times as many poses out of order as in order
 _SLOWEST = 10.0  # [s] between poses
 _FEW = 20  # steps; with fewer no such judgement is made
 
@@ -27,6 +28,7 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
         LogError: poses and inputs contradict each other.
     """
     where = log.sources[0].path if log.sources else ""
+    _check_forward(log, where)
     _check_seconds(log, where)
     for name in ("commands", "wheels"):
         pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
@@ -42,6 +44,22 @@ def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
             advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
         )
     return replace(log, runs=runs, left_out=log.left_out + found)
+
+
+def _check_forward(log: Log, where: str) -> None:
+    """Refuse a log in which hardly any pose is later than those before it: its stamps are no times."""
+    kept = sum(len(run.poses) for run in log.runs)
+    rejected = sum(
+        entry.count
+        for entry in log.left_out
+        if entry.kind in ("duplicate-stamp", "backward-stamp") and entry.reason.startswith("poses")
+    )
+    if rejected >= _FEW and rejected > _HARDLY * kept:
+        raise LogError(
+            f"stamps do not go forward in {rejected} of {kept + rejected} poses",
+            where=where,
+            advice="give each measurement its own time, in seconds",
+        )
 
 
 def _check_seconds(log: Log, where: str) -> None:
@@ -68,5 +86,5 @@ def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:
         (jumps.starts, "pose-jump", "steps between poses that jump; poses after are in a frame of their own"),
     ):
         first = float(run.poses.t[np.argmax(flags)])
-        tally.add(kind, reason, count=int(flags.sum()), where=f"run {run.name}, t = {first:.3f} s")
+        tally.add(kind, reason, count=int(flags.sum()), where=run.place(first))
     return replace(run, poses=without_jumps(run.poses, jumps))

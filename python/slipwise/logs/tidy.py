@@ -110,8 +110,21 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
         wheels=wheel_columns(table, options, tally, notes),
         pose=pose,
         fresh=_fresh(table, pose, tally, notes) if pose else np.zeros(len(table), bool),
-        extra={name: table.other(name) for name in names if name not in USED},
+        extra=_extra(table, notes),
     )
+
+
+def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
+    """Return the columns that are carried along; notes those that cannot be read."""
+    found = {}
+    for name in table.names:
+        if name in USED:
+            continue
+        try:
+            found[name] = table.other(name)
+        except LogError:
+            notes.append(f"{table.path.name}: column {name!r} cannot be read and is not carried along")
+    return found
 
 
 def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]) -> Bools:

@@ -21,9 +21,9 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     """Say delays and time constants, of speed and yaw rate together where these are alike."""
     if model.content.input != "command":
         return []
-    if not model.content.dynamics:
-        return ["Follows commands at once."]
     found = {p.name: p for p in parameters}
+    if not any(name.startswith(("lag_", "delay_")) for name in found):
+        return ["Follows commands at once."]
     channels = {"speed commands": _channel(found, "v"), "yaw-rate commands": _channel(found, "omega")}
     if _alike(found, channels):
         return [f"Follows commands {channels['speed commands']}."]
@@ -33,8 +33,8 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
 
 def _channel(found: Found, place: str) -> str:
     parts = []
-    delay = found[f"delay_{place}"]
-    if delay.identified:
+    delay = found.get(f"delay_{place}")
+    if delay is not None and delay.identified:
         parts.append(f"after {_seconds(delay)}")
     constants = _time_constants(found, place)
     if constants:
@@ -44,8 +44,8 @@ def _channel(found: Found, place: str) -> str:
 
 def _time_constants(found: Found, place: str) -> str:
     """One time constant, or those of a fast and a slow mode; nothing where they are not identified."""
-    lag = found[f"lag_{place}"]
-    if not lag.identified:
+    lag = found.get(f"lag_{place}")
+    if lag is None or not lag.identified:
         return ""
     slow, slow_lag = found.get(f"slow_share_{place}"), found.get(f"slow_lag_{place}")
     one = f"a time constant of {_seconds(lag)}"

@@ -84,4 +84,6 @@ def _effects(model: Model) -> NDArray[np.float64]:
 
 
 def _may_be_zero(name: str) -> bool:
-    return name == "clock_offset" or name.startswith(("log_lag", "log_delay", "slow_share", "sensor_"))
+    return name == "clock_offset" or name.startswith(
+        ("log_lag", "log_delay", "delay_", "slow_share", "sensor_")
+    )

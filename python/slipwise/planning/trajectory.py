@@ -166,8 +166,8 @@ def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
 
 
 def pose_text(pose: Pose) -> str:
-    """Return a pose in few digits."""
-    return ", ".join(f"{value:.4g}" for value in pose)
+    """Return a pose to the millimetre and milliradian."""
+    return ", ".join(f"{round(value, 3) + 0.0:.10g}" for value in pose)
 
 
 def placed(poses: Floats, start: Pose) -> Floats:

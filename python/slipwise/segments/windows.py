@@ -203,7 +203,7 @@ class _Cutter:
         pairs = np.array(self._pairs, dtype=np.int64).reshape(-1, 2)
         i, j = pairs[:, 0], pairs[:, 1]
         left_out = tuple(
-            LeftOut(_REASONS[kind], count, f"run {self._run.name}, t = {self._first[kind]:.3f} s", kind)
+            LeftOut(_REASONS[kind], count, self._run.place(self._first[kind]), kind)
             for kind, count in sorted(self._counts.items())
         )
         usable = np.concatenate([np.empty(0, dtype=np.int64), *self._usable])

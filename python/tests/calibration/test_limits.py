@@ -55,7 +55,7 @@ def log() -> Log:
 
 @pytest.fixture(scope="module")
 def model(log: Log) -> Model:
-    return calibrate(log, input_name="command").model
+    return calibrate(log, input="command").model
 
 
 @pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
@@ -111,7 +111,7 @@ def test_limits_are_used_where_they_predict_better(model: Model) -> None:
 
 def test_without_the_setting_there_are_none(log: Log) -> None:
     settings = Settings(auto={"limits": False})
-    learned = calibrate(log, input_name="command", settings=settings).model
+    learned = calibrate(log, input="command", settings=settings).model
     assert learned.limits is None
 
 
@@ -226,7 +226,7 @@ def test_limits_that_change_are_found_again() -> None:
     changed = replace(
         first, v=np.where(late, second.v, first.v), omega=np.where(late, second.omega, first.omega)
     )
-    learned = calibrate(driven(commands, changed), input_name="command").model.limits
+    learned = calibrate(driven(commands, changed), input="command").model.limits
     assert learned is not None
     assert learned.side.top == pytest.approx(0.8, rel=0.1)
 

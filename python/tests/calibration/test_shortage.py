@@ -16,7 +16,7 @@ EDD_2 = make_settings({"basis": "edd-2"})
 
 
 def advice_of(log: Log, input_name: str) -> str:
-    verdict = calibrate(log, input_name=input_name, settings=EDD_2).verdict
+    verdict = calibrate(log, input=input_name, settings=EDD_2).verdict
     assert not verdict.good
     return " ".join(verdict.advice)
 
@@ -47,5 +47,5 @@ def test_a_log_without_any_input_does_not_propose_the_other_one() -> None:
     run = replace(simulated_log(Drive(seconds=20.0)).runs[0], commands=None, wheels=None)
     for name in (None, "command", "wheel"):
         with pytest.raises(LogError, match=r"no commands and no wheel speeds: record") as caught:
-            calibrate(Log(runs=(run,)), input_name=name)
+            calibrate(Log(runs=(run,)), input=name)
         assert "--input" not in str(caught.value)

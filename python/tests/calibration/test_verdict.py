@@ -26,7 +26,7 @@ SLIP = _core.named_basis("edd-2")
 
 
 def verdict_of(drive: Drive, basis: str = "auto", input_name: str = "wheel") -> Calibration:
-    return calibrate(simulated_log(drive), input_name=input_name, settings=make_settings({"basis": basis}))
+    return calibrate(simulated_log(drive), input=input_name, settings=make_settings({"basis": basis}))
 
 
 def test_drive_that_slips_gives_a_good_verdict_with_its_figures() -> None:
@@ -122,7 +122,7 @@ def test_verdict_reads_as_sentences() -> None:
 
 def test_a_log_that_contradicts_itself_gives_no_good_model_and_no_talk_of_slip() -> None:
     log = stopped(sound_log(), 0.0, 0.01)
-    result = calibrate(log, input_name="wheel", settings=make_settings({"basis": "edd-2"}))
+    result = calibrate(log, input="wheel", settings=make_settings({"basis": "edd-2"}))
     assert not result.verdict.good
     assert result.verdict.sentence.startswith("Do not use this model: the robot does not move although its")
     assert result.verdict.sentence.count("m and") == 0  # errors of such a model mean nothing
@@ -137,14 +137,14 @@ def test_a_log_that_contradicts_itself_gives_no_good_model_and_no_talk_of_slip()
 def test_poses_that_integrate_the_wheels_give_no_good_model() -> None:
     log = circular(sound_log())
     for name in ("command", "wheel"):
-        verdict = calibrate(log, input_name=name, settings=make_settings({"basis": "edd-2"})).verdict
+        verdict = calibrate(log, input=name, settings=make_settings({"basis": "edd-2"})).verdict
         assert not verdict.good
         assert "the poses carry no information of their own" in verdict.sentence
         assert any(text.startswith("Record poses of another source") for text in verdict.advice)
 
 
 def test_a_log_that_no_model_can_hold_is_an_error_that_names_the_cause() -> None:
-    learned = calibrate(sound_log(), input_name="command", settings=make_settings({"basis": "edd-2"})).model
+    learned = calibrate(sound_log(), input="command", settings=make_settings({"basis": "edd-2"})).model
     cause = Contradiction("backward-poses", "the poses move backwards", ("Give --command-scale -1,1.",))
     rows = [p.model_copy(update={"value": 9.0}) for p in learned.content.parameters]
     content = learned.content.model_copy(update={"parameters": rows})

@@ -17,7 +17,7 @@ from slipwise import load_model, load_settings, open_log
 Slipwise = Callable[..., Result]
 
 COMMANDS = (
-    *("demo", "inspect", "calibrate", "evaluate", "show", "export"),
+    *("demo", "inspect", "calibrate", "evaluate", "show", "compare", "export"),
     *("plan", "lattice", "simulate", "convert", "reproduce"),
 )
 

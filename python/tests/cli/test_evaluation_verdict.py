@@ -32,9 +32,9 @@ def test_first_method_that_learns_a_model_is_judged_after_model_and_auto(
 
 def test_an_evaluation_and_a_calibration_say_the_same_of_the_same_log() -> None:
     settings = make_settings({"basis": "edd-2"})
-    calibration = calibrate(sound_log(), input_name="wheel", settings=settings)
+    calibration = calibrate(sound_log(), input="wheel", settings=settings)
     options = EvaluationOptions(methods=("none", "edd-2"))
-    evaluation = evaluate(sound_log(), input_name="wheel", settings=settings, options=options)
+    evaluation = evaluate(sound_log(), input="wheel", settings=settings, options=options)
     verdict = verdict_on(evaluation, calibration)
     assert verdict is not None
     assert verdict.sentence == calibration.verdict.sentence
@@ -43,10 +43,10 @@ def test_an_evaluation_and_a_calibration_say_the_same_of_the_same_log() -> None:
 
 
 def test_an_evaluation_on_a_log_that_contradicts_itself_is_not_good_though_the_model_is() -> None:
-    model = calibrate(sound_log(), input_name="wheel", settings=make_settings({"basis": "edd-2"})).model
+    model = calibrate(sound_log(), input="wheel", settings=make_settings({"basis": "edd-2"})).model
     other = replace(turned(sound_log(), 1.5707963), sources=())
     options = EvaluationOptions(methods=("none", "model"), model=model)
-    verdict = verdict_on(evaluate(other, input_name="wheel", options=options), model)
+    verdict = verdict_on(evaluate(other, input="wheel", options=options), model)
     assert model.content.verdict.good
     assert verdict is not None
     assert not verdict.good

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -48,6 +49,20 @@ def test_plan_without_a_picture_needs_no_matplotlib_and_tells_machines(
     assert result.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
     assert result.json["legs"] == 1
     assert not Path("plan.png").exists()
+
+
+def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
+    slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    result = slipwise(*arguments, "--from", START, "--to", GOAL)
+    assert (result.code, result.err) == (0, "")
+    assert sorted(path.name for path in Path().glob("plan.*")) == ["plan.csv", "plan.html"]
+    assert 'The picture was left out: it needs Matplotlib (pip install "slipwise[plot]").' in result.out
+    refused = slipwise(*arguments, "--from", START, "--to", GOAL, "--picture")
+    assert refused.code == 2
+    assert "pictures need Matplotlib, which is not installed" in refused.line
+    assert 'pip install "slipwise[plot]"' in refused.line
 
 
 @pytest.mark.parametrize(

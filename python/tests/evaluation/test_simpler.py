@@ -66,7 +66,7 @@ def test_a_method_that_has_seen_the_windows_is_not_proposed() -> None:
 
 
 def test_a_calibration_proposes_it_where_its_report_shows_one() -> None:
-    calibration = calibrate(sound_log(), input_name="wheel", settings=make_settings({"basis": "odd-even-10"}))
+    calibration = calibrate(sound_log(), input="wheel", settings=make_settings({"basis": "odd-even-10"}))
     advised = proposing(calibration, table(edd_2=0.5, odd_even_10=1.0))
     assert advised.verdict.advice[-1].startswith("edd-2, of 2 slip terms, predicts clearly better: ")
     assert advised.verdict.advice[:-1] == calibration.verdict.advice

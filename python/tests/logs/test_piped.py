@@ -64,5 +64,5 @@ def test_too_much_through_a_pipe_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
 def test_devices_and_named_pipes_are_no_logs(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", Path("/dev/zero")):
-        with pytest.raises(LogError, match=r"neither a file nor a folder .*: save it to a file"):
+        with pytest.raises(LogError, match=r"not a regular file .*: save it to a file"):
             open_log(path)

@@ -27,7 +27,7 @@ Content = dict[str, Any]
 @pytest.fixture(scope="module")
 def model() -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.3, delay=0.2))
-    return calibrate(log, input_name="command", settings=make_settings({"basis": "full-linear-6"})).model
+    return calibrate(log, input="command", settings=make_settings({"basis": "full-linear-6"})).model
 
 
 @pytest.fixture(scope="module")
@@ -68,7 +68,7 @@ def test_read_model_predicts_to_the_last_bit_as_the_learned_one(model: Model, tm
 def test_model_without_parameters_makes_the_round_trip(tmp_path: Path) -> None:
     log = simulated_log(Drive(seconds=40.0))
     plain = make_settings({"basis": "none", "learn_clock_offset": False})
-    model = calibrate(log, input_name="wheel", settings=plain).model
+    model = calibrate(log, input="wheel", settings=plain).model
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
     assert again.covariance.shape == (0, 0)

@@ -25,6 +25,7 @@ from slipwise.planning import (
     uncertain_path,
 )
 from slipwise.planning.limits import ACCELERATION
+from slipwise.planning.trajectory import pose_text
 
 OPTIONS = TrajectoryOptions(cruise=1.0, longest=8.0)
 
@@ -147,3 +148,8 @@ def test_options_that_contradict_the_limits_are_refused() -> None:
         Limits(speed=1.0, yaw_rate=0.0, curvature=1.0)
     with pytest.raises(SettingsError, match="not finite"):
         DriveState(drive=(math.nan, 0.0))
+
+
+def test_pose_is_said_to_the_millimetre_without_a_tail_of_rounding() -> None:
+    assert pose_text((10.0, -1e-9, 1.259e-08)) == "10, 0, 0"
+    assert pose_text((12345.6784, 1.2346, -0.5)) == "12345.678, 1.235, -0.5"
