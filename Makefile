@@ -23,7 +23,7 @@ PYTHON_CHECKED := python/slipwise tools
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build demo test test-slow test-cpp test-python test-python-slow asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build demo fuzz test test-slow test-cpp test-python test-python-slow asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-tidy format bench thesis clean distclean FORCE
 
 help: ## list the targets
@@ -88,6 +88,9 @@ format: $(STAMPS)/dev ## lay out all Python and C++ sources
 	@ruff format .
 	@clang-format -i $(CPP_FORMATTED)
 
+fuzz: build $(STAMPS)/fuzz ## fuzz every reader; ARGS=60 for 60 s each
+	@$(PYTHON_IN) fuzz/run_fuzz.py $(ARGS)
+
 bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
 	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
 
@@ -117,7 +120,7 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 
 $(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev gp thesis > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev thesis > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 
@@ -129,8 +132,14 @@ $(STAMPS)/bench: $(STAMPS)/dev
 
 $(STAMPS)/thesis: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the thesis's figures need"
-	@$(PYTHON_IN) tools/requirements.py gp thesis > $(STAMPS)/thesis.txt
+	@$(PYTHON_IN) tools/requirements.py thesis > $(STAMPS)/thesis.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/thesis.txt
+	@touch $@
+
+$(STAMPS)/fuzz: $(STAMPS)/run
+	@echo "installing what fuzzing needs"
+	@$(PYTHON_IN) tools/requirements.py fuzz > $(STAMPS)/fuzz.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/fuzz.txt
 	@touch $@
 
 $(STAMPS)/doctest: $(STAMPS)/native

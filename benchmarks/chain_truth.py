@@ -164,7 +164,7 @@ def from_commands(
     robot = drawn_robot(seed)
     run = known_run(robot, commands(seed, seconds), (0.0, seconds), random=np.random.default_rng([seed, 3]))
     log = Log(runs=(replace(run, wheels=None),))
-    model = calibrate(log, input_name="command", settings=make_settings(dict(given))).model
+    model = calibrate(log, input="command", settings=make_settings(dict(given))).model
     true = truth_of(robot, wheels=False)
     return [Found(p.name, true[p.name], p.value, p.std, p.prior_std) for p in model.content.parameters]
 
@@ -187,7 +187,7 @@ def in_physics(seed: int) -> list[Found]:
     assert run.commands is not None
     log = Log(runs=(replace(run, wheels=None, poses=_seen(run.poses, PHYSICS_SENSOR)),))
     settings = make_settings(LEARN | {"basis": PHYSICS_BASIS})
-    model = calibrate(log, input_name="command", settings=settings).model
+    model = calibrate(log, input="command", settings=settings).model
     true = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), PHYSICS_SENSOR, strict=True))
     for channel, (lag, delay) in shown_responses(simulation.truth, run.commands, vehicle).items():
         true[f"log_lag_{channel}"] = float(np.log(lag))
@@ -241,7 +241,7 @@ def dull(seed: int) -> tuple[str, ...]:
     told = Inputs(t=t, v=np.full(len(t), rng.uniform(0.3, 1.5)), vy=np.zeros(len(t)), omega=np.zeros(len(t)))
     run = known_run(robot, told, (SETTLED, SETTLED + DULL_SECONDS), random=rng)
     log = Log(runs=(replace(run, wheels=None),))
-    return calibrate(log, input_name="command", settings=make_settings(LEARN)).verdict.undetermined
+    return calibrate(log, input="command", settings=make_settings(LEARN)).verdict.undetermined
 
 
 NOT_SHOWN = ("log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega", "sensor_x", "sensor_y")

@@ -64,9 +64,9 @@ def measure(data: DataSet) -> list[Convergence]:
         options = EvaluationOptions(
             horizons=(data.horizon,),
             methods=("none", "auto", "model"),
-            model=slipwise.calibrate(log, input_name=name).model,
+            model=slipwise.calibrate(log, input=name).model,
         )
-        evaluation = slipwise.evaluate(log, input_name=name, options=options)
+        evaluation = slipwise.evaluate(log, input=name, options=options)
         by_method = {p.method: p for p in evaluation.predictions}
         auto, final = by_method["auto"], by_method["model"]
         if len(auto) < FEWEST_WINDOWS:

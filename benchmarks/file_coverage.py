@@ -110,7 +110,7 @@ def main() -> None:
         for name in ("wheel", "command"):
             try:
                 first, second = halves(log)
-                rows = coverage(calibrate(first, input_name=name).model, second)
+                rows = coverage(calibrate(first, input=name).model, second)
             except SlipwiseError as problem:
                 print(f"{data_set.name}, {name}: {problem.what}")
                 continue

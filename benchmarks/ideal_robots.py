@@ -96,7 +96,7 @@ def log_of(case: Case) -> Log:
 def harm(case: Case) -> Harm:
     """Learn one robot and compare with the baseline."""
     options = slipwise.EvaluationOptions(horizons=HORIZONS, methods=("none", "auto"))
-    evaluation = slipwise.evaluate(log_of(case), input_name=case.input, options=options)
+    evaluation = slipwise.evaluate(log_of(case), input=case.input, options=options)
     scores = [score for score in evaluation.scores if score.method == "auto"]
     none, auto = ([p for p in evaluation.predictions if p.method == name] for name in options.methods or ())
     judged = [judge(learned, plain) for learned, plain in zip(auto, none, strict=True)]

@@ -45,7 +45,7 @@ def score_log(data: DataSet) -> list[LogScore]:
     scores = []
     for name in (name for name in TARGETS if has[name]):
         start = time.perf_counter()
-        evaluation = slipwise.evaluate(log, input_name=name, options=options)
+        evaluation = slipwise.evaluate(log, input=name, options=options)
         scores.append(log_score(data.name, evaluation, time.perf_counter() - start))
     return scores
 

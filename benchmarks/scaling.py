@@ -56,9 +56,9 @@ def measure(path: Path, minutes: float) -> Cost:
 
     log = slipwise.open_log(path)
     mark()
-    slipwise.calibrate(log, input_name=INPUT)
+    slipwise.calibrate(log, input=INPUT)
     mark()
-    slipwise.evaluate(log, input_name=INPUT, options=slipwise.EvaluationOptions(methods=METHODS))
+    slipwise.evaluate(log, input=INPUT, options=slipwise.EvaluationOptions(methods=METHODS))
     mark()
     times = [after - before for marks in (walls, processors) for before, after in itertools.pairwise(marks)]
     return Cost(minutes, path.stat().st_size / 1e6, log_megabytes(log), *times, *peaks)

@@ -77,9 +77,9 @@ def drive(method: str, motions: list[Motion], options: MppiOptions) -> Drive:
 def methods() -> dict[str, list[Motion]]:
     """Return what each method believes; the vendor's multiplier is the best constant for this ground."""
     log = simulate(Scenario(duration=LEARNED_FROM), seed=5).log
-    constant = sw.calibrate(log, input_name="command", basis="edd-2").model
+    constant = sw.calibrate(log, input="command", basis="edd-2").model
     turn = {p.name: p.value for p in constant.content.parameters}["ang.w"]
-    learned = sw.calibrate(log, input_name="command").model
+    learned = sw.calibrate(log, input="command").model
     return {
         "plain": [plain_motion()],
         "vendor": [vendor_motion(1.0 / (1.0 + turn))],

@@ -24,20 +24,19 @@ log = simulate(Scenario(duration=150.0), seed=3).log
 # what it is told", on predictions that were made before the data they are judged by had been learned.
 
 # %%
-result = sw.calibrate(log, input_name="command")
+result = sw.calibrate(log, input="command")
 print(result.verdict)
 assert result.verdict.good
 
 # %% [markdown]
-# The numbers: each parameter with its standard deviation. `ang.w` is the share of the commanded yaw rate
-# that is lost (it is negative: the robot turns less than it is told). Lags and delays are kept as
-# logarithms of seconds.
+# What was learned, in words, and then each parameter with its standard deviation. `ang.w` is the fraction of
+# the commanded yaw rate that is lost (it is negative: the robot turns less than is commanded).
 
 # %%
-for parameter in result.model.content.parameters:
-    print(f"{parameter.name:16} {parameter.value:8.3f} +- {parameter.std:.3f} {parameter.unit}")
-turn_slip = next(p for p in result.model.content.parameters if p.name == "ang.w")
-assert -0.6 < turn_slip.value < -0.2
+print(sw.summarise(result.model))
+for parameter in result.model.parameters.values():
+    print(parameter, "" if parameter.identified else "(not identified)")
+assert -0.6 < result.model["ang.w"].value < -0.2
 
 # %% [markdown]
 # The model file is the only thing that a planner needs. It reads back to the same model.

@@ -24,7 +24,7 @@ settings = sw.make_settings(
 # The same keys can stand in a TOML file, which `slipwise calibrate --settings FILE` reads.
 
 # %%
-result = sw.calibrate(log, input_name="command", settings=settings)
+result = sw.calibrate(log, input="command", settings=settings)
 names = [parameter.name for parameter in result.model.content.parameters]
 print(", ".join(names))
 assert names[:5] == ["lon.V", "lon.V*abs(w)", "lat.V*w", "ang.w", "ang.w*abs(V)"]
@@ -35,7 +35,7 @@ assert names[:5] == ["lon.V", "lon.V*abs(w)", "lat.V*w", "ang.w", "ang.w*abs(V)"
 
 # %%
 options = sw.EvaluationOptions(horizons=(2.0,), methods=("none", "edd-2", "custom", "auto"))
-evaluation = sw.evaluate(log, input_name="command", settings=settings, options=options)
+evaluation = sw.evaluate(log, input="command", settings=settings, options=options)
 for score in evaluation.scores:
     mean = score.position
     print(f"{score.method:8} {mean.mean:.3f} m  (95 %: {mean.low:.3f} to {mean.high:.3f})")

@@ -17,7 +17,7 @@ import slipwise as sw
 from slipwise.simulation import Scenario, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-model = sw.calibrate(log, input_name="command").model
+model = sw.calibrate(log, input="command").model
 
 # %% [markdown]
 # An S-curve. The ellipse grows along the way.
@@ -42,7 +42,7 @@ assert all(later > earlier for earlier, later in itertools.pairwise(spread))
 
 # %%
 options = sw.EvaluationOptions(methods=("none", "auto"))
-evaluation = sw.evaluate(log, input_name="command", options=options)
+evaluation = sw.evaluate(log, input="command", options=options)
 for horizon in evaluation.horizons:
     score = evaluation.score("auto", horizon)
     inside = ", ".join(f"{100 * share:.0f} %" for share in score.coverage)

@@ -17,7 +17,7 @@ from slipwise import planning
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-model = sw.calibrate(log, input_name="command").model
+model = sw.calibrate(log, input="command").model
 
 # %% [markdown]
 # One manoeuvre to a pose 6 m ahead and 2 m to the left, facing left. The limits are those that the model
@@ -67,16 +67,16 @@ assert errors["learned"] < 0.5 * errors["plain"]
 
 # %% [markdown]
 # Round an obstacle. A map is an array of what is occupied, or a file of ROS's map_server (`load_map`). The
-# covariance says how far off the robot may be if it does not look where it is. `slipwise plan` does the same
-# from the command line and draws it.
+# covariance says how far off the robot may be if it does not look where it is; a route is refused where
+# that may be in what is not free. `slipwise plan` does the same from the command line and draws it.
 
 # %%
-occupied = np.zeros((120, 200), dtype=bool)
-occupied[:80, 95:105] = True
+occupied = np.zeros((200, 200), dtype=bool)
+occupied[:60, 95:105] = True
 planner = planning.RoutePlanner(
     model, planning.GridMap(occupied, 0.1), search=planning.RouteOptions(radius=0.9, attempts=1500)
 )
-route = planner.route((3.0, 3.0, 0.0), (16.0, 5.0, -0.5))
+route = planner.route((3.0, 4.0, 0.5), (16.0, 5.0, -0.5))
 spread = math.sqrt(np.linalg.eigvalsh(route.covariance[-1][:2, :2]).max())
 print(f"{route.legs} manoeuvres, {route.trajectory.duration:.0f} s, {route.clearance:.2f} m clear")
 print(f"at the goal the longest 1-sigma axis is {spread:.2f} m")

@@ -15,7 +15,7 @@ from slipwise.planning import Controller, Motion, MppiOptions, Track, learned_mo
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
-model = sw.calibrate(log, input_name="command").model
+model = sw.calibrate(log, input="command").model
 
 # %% [markdown]
 # The track, and one drive along it. The controller is called once per period, with the robot's pose and what

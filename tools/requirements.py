@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -14,6 +15,8 @@ ROOT = Path(__file__).resolve().parent.parent
 def requirements(project: dict[str, Any], part: str) -> list[str]:
     """Return the requirements of `part`: "build", "run", an extra, or a dependency group.
 
+    An extra that names others of the project, as in "slipwise[plot,sim]", stands for theirs.
+
     Raises:
         KeyError: there is no such part.
     """
@@ -23,14 +26,21 @@ def requirements(project: dict[str, Any], part: str) -> list[str]:
         return list(project["project"]["dependencies"])
     extras = project["project"].get("optional-dependencies", {})
     groups = project.get("dependency-groups", {})
-    return list((extras | groups)[part])
+    own = re.compile(re.escape(project["project"]["name"]) + r"\[(.+)\]")
+    found: list[str] = []
+    for requirement in (extras | groups)[part]:
+        others = own.fullmatch(requirement)
+        parts = others.group(1).split(",") if others else []
+        found += (
+            [line for other in parts for line in requirements(project, other)] if others else [requirement]
+        )
+    return found
 
 
 def main(parts: list[str]) -> int:
-    """Print the requirements of all `parts`, one a line."""
+    """Print the requirements of all `parts`, each once, one a line."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    for part in parts:
-        print("\n".join(requirements(project, part)))
+    print("\n".join(dict.fromkeys(line for part in parts for line in requirements(project, part))))
     return 0
 
 

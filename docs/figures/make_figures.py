@@ -1,146 +1,140 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Draws the README's figure from a seeded simulation; needs matplotlib, which slipwise itself does not."""
+"""Draws the README's figure from a real log: a Husky, learned from two runs and predicted in a third."""
 
 from __future__ import annotations
 
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse
 from numpy.typing import NDArray
 
 import slipwise as sw
-from slipwise.logs import Inputs, Log, Poses
-from slipwise.simulation import Scenario, simulate
-from slipwise.student import ellipse_squared
+from slipwise.calibration import make_settings
+from slipwise.files import write_whole
+from slipwise.logs import Log, Run
+from slipwise.reporting.png_picture import drawing_part, small_png
 
 Floats = NDArray[np.float64]
 
-SEED = 7
+LOG = "husky/tile_deflated_tyres.csv.gz"  # a Clearpath Husky, skid-steered, with soft tyres on tiles
+INPUT = "command"
 HORIZON = 5.0  # [s]
-LEARNED_UNTIL, END = 300.0, 366.0  # [s] the paths are predicted in the minute after the part that is learned
-STARTS = np.arange(LEARNED_UNTIL, END - HORIZON, 10.0)  # [s]
+SHOWN = 5  # paths
 PLAIN, SIMPLE, LEARNED = "none", "edd-2", "auto"
-COLOURS = {PLAIN: "#c1443c", SIMPLE: "#8a8a8a", LEARNED: "#1f6fb2"}
-LABELS = {PLAIN: "as commanded", SIMPLE: "edd-2 with lag and delay", LEARNED: "slipwise"}
-HELD = 0.95  # share of the positions in an ellipse
+NAMES = {PLAIN: "as commanded", SIMPLE: "two fitted numbers", LEARNED: "slipwise"}
+COLOURS = {PLAIN: "#9aa5b1", SIMPLE: "#d55e00", LEARNED: "#0072b2"}
+DASHES = {PLAIN: ":", SIMPLE: "--", LEARNED: "-"}
+SIZE, DPI, LARGEST = (7.6, 3.8), 130, 100_000  # [in], [1/in], [bytes]
+TEXT = 12  # [pt], to be read on a phone
 
 
-def until(log: Log, t: float) -> Log:
-    """Return what had been recorded by time t [s]."""
-    run = log.runs[0]
-    poses, commands = run.poses, run.commands
-    assert commands is not None
-    seen, told = int(np.searchsorted(poses.t, t)), int(np.searchsorted(commands.t, t))
-    earlier_poses = Poses(
-        t=poses.t[:seen], x=poses.x[:seen], y=poses.y[:seen], yaw=poses.yaw[:seen], frame=poses.frame[:seen]
-    )
-    earlier_commands = Inputs(
-        t=commands.t[:told], v=commands.v[:told], vy=commands.vy[:told], omega=commands.omega[:told]
-    )
-    return replace(log, runs=(replace(run, poses=earlier_poses, commands=earlier_commands),))
+def parts(log: Log) -> tuple[Log, Run]:
+    """Return the runs to learn from, and the last one to predict in."""
+    return replace(log, runs=log.runs[:-1]), log.runs[-1]
 
 
-def pose_at(log: Log, t: float) -> Floats:
-    """Return the measured (x, y, yaw) nearest to time t [s]."""
-    poses = log.runs[0].poses
-    at = int(np.argmin(np.abs(poses.t - t)))
-    return np.array([poses.x[at], poses.y[at], poses.yaw[at]])
+def pose_at(run: Run, t: float) -> Floats:
+    """Return the measured (x, y, yaw) at time t [s]."""
+    poses = run.poses
+    yaw = np.unwrap(poses.yaw)
+    return np.array([np.interp(t, poses.t, values) for values in (poses.x, poses.y, yaw)])
 
 
-def ellipse(centre: Floats, covariance: Floats, dof: float) -> Ellipse:
-    """Return the ellipse that holds 95 % of a Student t."""
-    variances, axes = np.linalg.eigh(covariance)
-    width, height = 2.0 * np.sqrt(ellipse_squared(HELD, dof) * variances)
-    angle = float(np.degrees(np.arctan2(axes[1, 0], axes[0, 0])))
-    centre_xy = (float(centre[0]), float(centre[1]))
-    return Ellipse(centre_xy, width, height, angle=angle, color=COLOURS[LEARNED], alpha=0.25, linewidth=0)
+def seen_from(start: Floats, points: Floats) -> Floats:
+    """Return points [N, 2] of the map in the frame of the robot at `start` (x, y, yaw)."""
+    cos, sin = np.cos(start[2]), np.sin(start[2])
+    seen: Floats = (points - start[:2]) @ np.array([[cos, -sin], [sin, cos]])
+    return seen
 
 
-def draw_paths(axes: Axes, log: Log, models: dict[str, sw.Model]) -> None:
-    """Draw the measured path, and the 5 s that each model predicts from the commands at some starts."""
-    run = log.runs[0]
+def starts(run: Run) -> list[float]:
+    """Choose starts [s] whose motions differ: each time the one farthest from those chosen."""
+    times = np.arange(run.poses.t[0] + 1.0, run.poses.t[-1] - HORIZON, HORIZON)
+    ends = np.array([seen_from(pose_at(run, t), pose_at(run, t + HORIZON)[None, :2])[0] for t in times])
+    taken = [int(np.argmax(np.linalg.norm(ends, axis=1)))]
+    while len(taken) < SHOWN:
+        apart = np.linalg.norm(ends[:, None] - ends[taken][None], axis=2).min(axis=1)
+        taken.append(int(np.argmax(apart)))
+    return [float(times[place]) for place in taken]
+
+
+def baseline(model: sw.Model) -> sw.Model:
+    """Return the model that does at once what is commanded."""
+    slip = model.content.slip.model_copy(update={"basis": "none", "lon": [], "lat": [], "ang": []})
+    bare = {"parameters": [], "covariance": [], "dynamics": False, "response": False, "limits": None}
+    return sw.Model(model.content.model_copy(update={"slip": slip, **bare}))
+
+
+def draw_paths(axes: Any, run: Run, models: dict[str, sw.Model]) -> None:
+    """Draw measured paths and those that each model predicts, seen from the robot at the start."""
     assert run.commands is not None
     assert run.wheels is not None
-    shown = (run.poses.t >= LEARNED_UNTIL) & (run.poses.t <= END)
-    axes.plot(run.poses.x[shown], run.poses.y[shown], color="black", linewidth=1.0, label="measured")
-    for method, model in models.items():
-        label: str | None = LABELS[method]
-        for start in STARTS.tolist():
-            x, y, yaw = pose_at(log, start)
-            wheels = int(np.searchsorted(run.wheels.t, start, side="right")) - 1
-            initial = (float(run.wheels.v[wheels]), float(run.wheels.omega[wheels]))
+    for number, start in enumerate(starts(run)):
+        inside = (run.poses.t >= start) & (run.poses.t <= start + HORIZON)
+        here = pose_at(run, start)
+        measured = seen_from(here, np.column_stack((run.poses.x, run.poses.y))[inside])
+        wheels = int(np.searchsorted(run.wheels.t, start, side="right")) - 1
+        initial = (float(run.wheels.v[wheels]), float(run.wheels.omega[wheels]))
+        axes.plot(*measured.T, color="black", linewidth=3.2, alpha=0.85, label=None if number else "measured")
+        for method, model in models.items():
             path = sw.predict(model, run.commands, horizon=HORIZON, start=start, initial=initial)
-            turn = np.array([[np.cos(yaw), -np.sin(yaw)], [np.sin(yaw), np.cos(yaw)]])
-            points = path.poses[:, :2] @ turn.T + (x, y)
-            axes.plot(*points.T, color=COLOURS[method], linewidth=2.2, alpha=0.9, label=label)
-            axes.plot(*pose_at(log, start + HORIZON)[:2], "o", color="black", markersize=4, zorder=3)
-            label = None
-            if method == LEARNED:
-                spread = turn @ path.covariance[-1, :2, :2] @ turn.T
-                axes.add_patch(ellipse(points[-1], spread, float(path.dof[-1])))
+            name = None if number else NAMES[method]
+            style = {"color": COLOURS[method], "linestyle": DASHES[method], "linewidth": 2.0, "label": name}
+            axes.plot(*path.poses[:, :2].T, **style)
+            axes.plot(*path.poses[-1, :2], "o", color=COLOURS[method], markersize=4)
+        axes.plot(*measured[-1], "o", color="black", markersize=6)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title("The next 5 s, predicted from the commands", fontsize=10)
-    axes.set_xlabel("x [m]")
-    axes.set_ylabel("y [m]")
-    axes.legend(fontsize=8, frameon=False, loc="best")
+    axes.set(title="The next 5 s, predicted from the commands", xlabel="x [m]", ylabel="y [m]")
 
 
-def draw_errors(axes: Axes, evaluation: sw.Evaluation) -> None:
-    """Draw the mean position error per horizon with its 95 % interval."""
-    for method in (PLAIN, SIMPLE, LEARNED):
-        scores = [evaluation.score(method, horizon) for horizon in evaluation.horizons]
-        mean = np.array([score.position.mean for score in scores])
-        low = mean - np.array([score.position.low for score in scores])
-        high = np.array([score.position.high for score in scores]) - mean
-        axes.errorbar(
-            evaluation.horizons,
-            mean,
-            (low, high),
-            color=COLOURS[method],
-            label=LABELS[method],
-            marker="o",
-            capsize=3,
-        )
-    axes.set_yscale("log")
-    ticks = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
-    axes.set_yticks(ticks, labels=[f"{tick:g}" for tick in ticks])
-    axes.minorticks_off()
-    axes.set_title("Mean held-out position error", fontsize=10)
-    axes.set_xlabel("horizon [s]")
-    axes.set_ylabel("[m]")
-    axes.legend(fontsize=8, frameon=False)
+def draw_errors(axes: Any, evaluation: sw.Evaluation) -> None:
+    """Draw the mean held-out position error at the horizon with its 95 % interval."""
+    for place, method in enumerate((LEARNED, SIMPLE, PLAIN)):
+        error = evaluation.score(method, HORIZON).position
+        spread = [[error.mean - error.low], [error.high - error.mean]]
+        axes.barh(place, error.mean, xerr=spread, color=COLOURS[method], height=0.6, capsize=3)
+        axes.text(error.high, place, f"  {error.mean:.3f} m", va="center", fontsize=TEXT)
+        axes.text(0.0, place + 0.36, NAMES[method], va="bottom", fontsize=TEXT)
+    windows = evaluation.score(PLAIN, HORIZON).windows
+    axes.set(title="Mean error after 5 s", xlabel=f"[m], {windows} held-out windows", yticks=[])
+    axes.set_xlim(0.0, 1.5 * evaluation.score(PLAIN, HORIZON).position.high)
+    axes.set_ylim(-0.5, 2.85)
+
+
+def save(path: Path, picture: bytes) -> None:
+    """Write the bytes of a picture."""
+    path.write_bytes(picture)
 
 
 def main(folder: Path) -> Path:
     """Write the figure into `folder`; return its path."""
-    mpl.rcParams.update({"axes.spines.top": False, "axes.spines.right": False, "font.size": 9})
-    log = simulate(Scenario(duration=END), seed=SEED).log
-    earlier = until(log, LEARNED_UNTIL)
-    learned = sw.calibrate(earlier, input_name="command").model
-    plain = sw.Model(
-        learned.content.model_copy(
-            update={
-                "slip": learned.content.slip.model_copy(update={"lon": [], "lat": [], "ang": []}),
-                "parameters": [],
-                "covariance": [],
-                "dynamics": False,
-            }
-        )
+    data = os.environ.get("SLIPWISE_DATA")
+    if not data:
+        sys.exit("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
+    log = sw.open_log(Path(data) / LOG)
+    earlier, last = parts(log)
+    learned = {
+        name: sw.calibrate(earlier, input=INPUT, settings=make_settings({"basis": name})).model
+        for name in (SIMPLE, LEARNED)
+    }
+    models = {PLAIN: baseline(learned[SIMPLE])} | learned
+    options = sw.EvaluationOptions(horizons=(HORIZON,), methods=(PLAIN, SIMPLE, LEARNED))
+    evaluation = sw.evaluate(log, input=INPUT, options=options)
+    drawing_part("pyplot").rcParams.update(
+        {"axes.spines.top": False, "axes.spines.right": False, "font.size": TEXT, "axes.titlesize": TEXT}
     )
-    options = sw.EvaluationOptions(methods=(PLAIN, SIMPLE, LEARNED))
-    evaluation = sw.evaluate(earlier, input_name="command", options=options)
-    figure = Figure(figsize=(9.0, 3.8), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1.7, 1.0))
-    draw_paths(left, log, {PLAIN: plain, LEARNED: learned})
+    figure = drawing_part("figure").Figure(figsize=SIZE, layout="constrained")
+    left, right = figure.subplots(1, 2, width_ratios=(1.55, 1.0))
+    draw_paths(left, last, models)
+    left.legend(fontsize=TEXT - 1, frameon=False, loc="lower right", handlelength=1.2)
     draw_errors(right, evaluation)
     path = folder / "prediction.png"
-    figure.savefig(path, dpi=120, metadata={"Software": None})
+    picture = small_png(figure, dpi=DPI, largest=LARGEST)
+    write_whole(path, lambda target: save(target, picture))
     return path
 
 

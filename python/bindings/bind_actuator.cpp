@@ -10,6 +10,7 @@
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/measured_start.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -90,8 +91,17 @@ void bind_actuator(nb::module_& m) {
       .def(
           "settled", [](const CommandLimits& self, const BodyTwist& command) { return settled(self, command); },
           "command"_a, "What is left of a command that is held for long.");
-  m.def("limited_track", &limited_track, "commands"_a, "limits"_a, "longest_piece"_a,
+  m.def("limited_track", nb::overload_cast<const InputTrack&, const CommandLimits&, double>(&limited_track),
+        "commands"_a, "limits"_a, "longest_piece"_a,
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");
+  m.def(
+      "limited_track_from",
+      [](const InputTrack& commands, const CommandLimits& limits, const CommandChain& chain, double time,
+         const BodyTwist& measured) {
+        return limited_track(commands, limits, measured_start(chain, time, measured), kRampPiece);
+      },
+      "commands"_a, "limits"_a, "chain"_a, "time"_a, "measured"_a,
+      "The same where the drive did `measured` at `time` [s], in the stamps of the commands.");
   m.attr("RAMP_PIECE") = kRampPiece;
   m.def(
       "chain_output",

@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/estimate/coloured_slip.hpp"
 
 namespace nb = nanobind;
@@ -23,6 +24,8 @@ void bind_coloured_slip(nb::module_& m) {
           "__init__",
           [](MotionBelief* self, const MotionModel& model, const Estimate& estimate, const Eigen::VectorXd& prior_std,
              const MotionNoise& shape, const Eigen::Vector3d& noise_scale) {
+            check_estimate(model, estimate);
+            check_size(prior_std, model.size(), "the prior of a model");
             new (self) MotionBelief{model, estimate, prior_std, shape, noise_scale};
           },
           "model"_a, "estimate"_a, "prior_std"_a, "shape"_a, "noise_scale"_a);

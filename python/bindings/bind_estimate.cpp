@@ -8,6 +8,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/estimate/batch.hpp"
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/iekf.hpp"
@@ -88,7 +89,13 @@ void bind_settings(nb::module_& m) {
 
 void bind_results(nb::module_& m) {
   nb::class_<Estimate>(m, "Estimate", "Gaussian belief about a parameter vector.")
-      .def(nb::init<Eigen::VectorXd, Eigen::MatrixXd>(), "mean"_a, "covariance"_a)
+      .def(
+          "__init__",
+          [](Estimate* self, Eigen::VectorXd mean, Eigen::MatrixXd covariance) {
+            check_square(covariance, mean.size(), "the covariance of an estimate");
+            new (self) Estimate{std::move(mean), std::move(covariance)};
+          },
+          "mean"_a, "covariance"_a)
       .def_ro("mean", &Estimate::mean)
       .def_ro("covariance", &Estimate::covariance);
   nb::enum_<Status>(m, "Status")
@@ -164,9 +171,7 @@ void bind_slip_ratios(nb::module_& m) {
 BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
                             const std::vector<const InputTrack*>& inputs, const std::vector<Segment>& segments,
                             const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
-  if (inputs.size() != segments.size() || noise.size() != segments.size()) {
-    throw std::invalid_argument("a batch fit needs inputs and noise for every segment");
-  }
+  check_inputs(inputs, segments.size(), noise.size());
   std::vector<BatchDatum> data;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     data.push_back({inputs[i], segments[i], noise[i]});
@@ -252,7 +257,10 @@ void bind_estimate(nb::module_& m) {
   m.def(
       "prediction_covariance",
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
-         const Eigen::Vector3d& scale) { return prediction_covariance(at, parameters, shape, scale); },
+         const Eigen::Vector3d& scale) {
+        check_square(parameters, at.by_parameter.cols(), "the covariance of a prediction's parameters");
+        return prediction_covariance(at, parameters, shape, scale);
+      },
       "at"_a, "parameters"_a, "shape"_a, "scale"_a, "Covariance of a predicted chart (x, y, theta), [3, 3].");
   nb::class_<CorrelatedPair>(m, "CorrelatedPair", "Two parameters whose errors go together.")
       .def_ro("first", &CorrelatedPair::first)
@@ -260,7 +268,10 @@ void bind_estimate(nb::module_& m) {
       .def_ro("correlation", &CorrelatedPair::correlation);
   m.def(
       "correlated_pairs",
-      [](const Eigen::MatrixXd& covariance, double least) { return correlated_pairs(covariance, least); },
+      [](const Eigen::MatrixXd& covariance, double least) {
+        check_square(covariance, covariance.rows(), "a covariance");
+        return correlated_pairs(covariance, least);
+      },
       "covariance"_a, "least"_a, "Pairs of parameters with at least this correlation, the closest first.");
   m.def(
       "observability",
@@ -295,7 +306,14 @@ void bind_estimate(nb::module_& m) {
   nb::class_<PredictiveScore>(m, "PredictiveScore", "Scores a model learned elsewhere; learns the size of its noise.")
       .def(nb::init<const NoiseSettings&>(), "settings"_a)
       .def(nb::init<const PredictiveScore&>(), "other"_a, "A copy.")
-      .def("score", &PredictiveScore::score, "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
+      .def(
+          "score",
+          [](PredictiveScore& score, const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+             const Segment& segment) {
+            check_estimate(model, estimate);
+            return score.score(model, estimate, inputs, segment);
+          },
+          "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
       .def_prop_ro("noise_scale", &PredictiveScore::noise_scale);
   nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighed by how well they predict.")
       .def(

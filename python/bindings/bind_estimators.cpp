@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/estimate/chain_learner.hpp"
 #include "slipwise/estimate/estimator.hpp"
 #include "slipwise/estimate/following_estimator.hpp"
@@ -55,9 +56,7 @@ void bind_smoother(nb::module_& m) {
       [](const MotionModel& model, const Estimate& prior, const std::vector<const InputTrack*>& inputs,
          const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise, const DriftSettings& drift,
          const IekfSettings& iekf) {
-        if (inputs.size() != segments.size() || noise.size() != segments.size()) {
-          throw std::invalid_argument("smoothing needs inputs and noise for every segment");
-        }
+        check_inputs(inputs, segments.size(), noise.size());
         std::vector<BatchDatum> data;
         for (std::size_t i = 0; i < segments.size(); ++i) {
           data.push_back({inputs[i], segments[i], noise[i]});
@@ -110,7 +109,10 @@ void bind_estimators(nb::module_& m) {
   m.def(
       "segment_jacobian",
       [](SegmentJacobian kind, const MotionModel& model, const SegmentLinearization& at,
-         const Segment& segment) -> Eigen::MatrixXd { return segment_jacobian(kind, model, at, segment); },
+         const Segment& segment) -> Eigen::MatrixXd {
+        check_columns(at.by_parameter, model.size(), "the derivative of a segment");
+        return segment_jacobian(kind, model, at, segment);
+      },
       "kind"_a, "model"_a, "at"_a, "segment"_a, "Derivative of a segment: exact, or as the thesis prints it (6.7).");
 }
 

@@ -38,10 +38,10 @@ void bind_limits(nb::module_& m) {
       .value("Top", LimitKind::Top)
       .value("Acceleration", LimitKind::Acceleration)
       .value("Braking", LimitKind::Braking);
-  nb::enum_<Lane>(m, "Lane", "The commanded speed, the commanded yaw rate, or both sides.")
-      .value("Speed", Lane::Speed)
-      .value("YawRate", Lane::YawRate)
-      .value("Side", Lane::Side);
+  nb::enum_<LimitedAxis>(m, "LimitedAxis", "The commanded speed, the commanded yaw rate, or both sides.")
+      .value("Speed", LimitedAxis::Speed)
+      .value("YawRate", LimitedAxis::YawRate)
+      .value("Side", LimitedAxis::Side);
   nb::class_<FoundLimit>(m, "FoundLimit", "A limit that the data show, with its standard deviation.")
       .def_ro("lane", &FoundLimit::lane)
       .def_ro("kind", &FoundLimit::kind)

@@ -5,6 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/motion/slip_wander.hpp"
 
@@ -53,7 +54,11 @@ void bind_motion(nb::module_& m) {
       .def_prop_ro("chain_size", &MotionModel::chain_size)
       .def_prop_ro("parameters", &MotionModel::parameters)
       .def(
-          "chain", [](const MotionModel& model, const Eigen::VectorXd& parameters) { return model.chain(parameters); },
+          "chain",
+          [](const MotionModel& model, const Eigen::VectorXd& parameters) {
+            model.check(parameters);
+            return model.chain(parameters);
+          },
           "parameters"_a);
   nb::class_<SlipWander>(m, "SlipWander", "One guess of how slip wanders: Gauss-Markov processes of one time constant.")
       .def(
@@ -85,8 +90,10 @@ void bind_motion(nb::module_& m) {
   m.def(
       "covariance_over",
       [](const MotionModel& model, const Eigen::MatrixXd& learned, const WanderLaw& law,
-         const Eigen::VectorXd& prior_std,
-         double seconds) { return covariance_over(model, learned, law, prior_std, seconds); },
+         const Eigen::VectorXd& prior_std, double seconds) {
+        check_square(learned, model.size(), "the covariance of a model");
+        return covariance_over(model, learned, law, prior_std, seconds);
+      },
       "model"_a, "learned"_a, "law"_a, "prior_std"_a, "seconds"_a,
       "Covariance of the parameters' mean over some time, in which slip wanders about them.");
 }

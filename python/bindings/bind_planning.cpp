@@ -41,6 +41,8 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("cruise", &TrajectorySettings::cruise)
       .def_rw("end_speed", &TrajectorySettings::end_speed)
+      .def_rw("rest_speed", &TrajectorySettings::rest_speed)
+      .def_rw("rest_yaw_rate", &TrajectorySettings::rest_yaw_rate)
       .def_rw("longest", &TrajectorySettings::longest)
       .def_rw("backwards", &TrajectorySettings::backwards)
       .def_rw("straight_end", &TrajectorySettings::straight_end)
@@ -119,9 +121,10 @@ void bind_mppi_settings(nb::module_& m) {
       .def_rw("costs", &MppiSettings::costs);
 }
 
-using Rows = nb::ndarray<const double, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+template <int kColumns>
+using Rows = nb::ndarray<const double, nb::shape<-1, kColumns>, nb::c_contig, nb::device::cpu>;
 
-std::vector<DriveCommand> commands_of(const Rows& rows) {
+std::vector<DriveCommand> commands_of(const Rows<2>& rows) {
   std::vector<DriveCommand> commands;
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
     commands.push_back({.v = rows(i, 0), .omega = rows(i, 1)});
@@ -129,7 +132,7 @@ std::vector<DriveCommand> commands_of(const Rows& rows) {
   return commands;
 }
 
-MppiReference reference_of(const Rows& rows) {
+MppiReference reference_of(const Rows<3>& rows) {
   MppiReference reference;
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
     reference.x.push_back(static_cast<float>(rows(i, 0)));
@@ -171,8 +174,8 @@ void bind_mppi(nb::module_& m) {
           "models"_a, "settings"_a)
       .def(
           "step",
-          [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows& past, const Rows& reference,
-             const Costmap* map) {
+          [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows<2>& past,
+             const Rows<3>& reference, const Costmap* map) {
             const MppiState state{.start = {.pose = pose, .drive = {.v = drive.first, .omega = drive.second}},
                                   .past = commands_of(past)};
             return self.step(state, reference_of(reference), map);

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/estimate/bayesian_regression.hpp"
 #include "slipwise/estimate/least_squares_surface.hpp"
 #include "slipwise/estimate/prior.hpp"
@@ -31,6 +32,7 @@ std::pair<Eigen::VectorXd, Eigen::VectorXd> predict_rows(const BayesianRegressio
 }
 
 Eigen::VectorXd mean_variances(const LeastSquaresFit& fit, const Eigen::MatrixXd& rows) {
+  check_columns(rows, fit.scale.size(), "a prediction");
   Eigen::VectorXd variance(rows.rows());
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     variance[i] = fit.mean_variance(rows.row(i).transpose());

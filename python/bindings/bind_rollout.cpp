@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/rollout/gpu.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 #include "slipwise/rollout/rollout_covariance.hpp"
@@ -122,6 +123,9 @@ void bind_uncertain(nb::module_& m) {
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
              const WanderLaw& wander, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
              const CommandLimits* limits) {
+            model.check(parameters);
+            check_square(covariance, model.size(), "the covariance of a model");
+            check_size(prior_std, model.size(), "the prior of a model");
             new (self) UncertainModel{model,
                                       parameters,
                                       {covariance, noise, scale, growth, wander, prior_std},

@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
@@ -35,6 +36,7 @@ void bind_steady(nb::module_& m) {
           "__init__",
           [](SteadySegment* self, const BodyTwist& command, const Eigen::VectorXd& times,
              const Eigen::MatrixX3d& poses) {
+            check_size(times, poses.rows(), "a path of poses with their times");
             std::vector<Pose2> list;
             for (Eigen::Index i = 0; i < poses.rows(); ++i) {
               list.push_back(Pose2::from_vector(poses.row(i).transpose()));

@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/slip/basis.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
@@ -54,12 +55,14 @@ void bind_slip(nb::module_& m) {
   m.def(
       "slip_rate",
       [](const Basis& basis, const Eigen::VectorXd& alpha, const SlipState& state) {
+        check_size(alpha, static_cast<Eigen::Index>(basis.size()), "a slip rate");
         return slip_rate(basis, alpha, state);
       },
       "basis"_a, "alpha"_a, "state"_a, "Slip rates (m/s, m/s, rad/s) at one state, [3].");
   m.def(
       "slip_rate_covariance",
       [](const Basis& basis, const Eigen::MatrixXd& covariance, const SlipState& state) {
+        check_square(covariance, static_cast<Eigen::Index>(basis.size()), "the covariance of slip rates");
         return slip_rate_covariance(basis, covariance, state);
       },
       "basis"_a, "covariance"_a, "state"_a, "Covariance of the slip rates, [3, 3].");

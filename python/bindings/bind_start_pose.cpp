@@ -13,6 +13,10 @@ namespace slipwise::bindings {
 namespace {
 
 SeenPoses seen_poses(const std::vector<double>& stamps, const Eigen::MatrixX3d& rows) {
+  if (rows.rows() != std::ssize(stamps)) {
+    throw std::invalid_argument("each pose needs a stamp, got " + std::to_string(stamps.size()) + " stamps and " +
+                                std::to_string(rows.rows()) + " poses");
+  }
   SeenPoses seen{.stamps = stamps, .poses = {}};
   for (const auto& row : rows.rowwise()) {
     seen.poses.push_back(Pose2::from_vector(row.transpose()));

@@ -11,7 +11,7 @@ import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from slipwise.errors import OutputError
+from slipwise.errors import OutputError, SlipwiseError
 from slipwise.part_folder import part_folder, sweep_parts
 
 _ADVICE = {
@@ -114,3 +114,35 @@ def _take_after(temporary: Path, place: Path) -> None:
     with contextlib.suppress(OSError):  # only some may give files away
         os.chown(temporary, old.st_uid, old.st_gid)
     temporary.chmod(stat.S_IMODE(old.st_mode))
+
+
+def refuse_irregular(path: Path, *, error: type[SlipwiseError]) -> None:
+    """Raise where `path` is a pipe or a device: reading one may never end.
+
+    Raises:
+        SlipwiseError: of type `error`.
+    """
+    mode = path.stat().st_mode
+    if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
+        raise error("not a regular file", where=str(path), advice="copy what it gives into a file first")
+
+
+def read_whole(path: Path, *, most: int, error: type[SlipwiseError], what: str = "") -> bytes:
+    """Return the bytes of a regular file of at most `most` bytes; `what` names it in an error.
+
+    Raises:
+        SlipwiseError: of type `error`: the file is missing, a folder, a pipe or a device, or too large.
+    """
+    try:
+        refuse_irregular(path, error=error)
+        with path.open("rb") as file:
+            data = file.read(most + 1)
+    except OSError as problem:
+        raise error(
+            f"cannot read{what and ' '}{what}: {problem.strerror}", where=str(path), advice="check the path"
+        ) from problem
+    except ValueError as problem:  # the name holds a character that no name may hold
+        raise error("not the name of a file", where=str(path), advice="check the path") from problem
+    if len(data) > most:
+        raise error("the file is too large", where=str(path), advice=f"at most {most} bytes are read")
+    return data

@@ -5,21 +5,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.frames import data_frame
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
 from slipwise.models.schema import Tail
+from slipwise.number_text import number_text
+from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import plotly.graph_objects as go
 
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, between the poses of a predicted path
 LONGEST_OFFSET = 10.0  # s; no clock offset is longer
+LONGEST_HORIZON = 3600.0  # s
+LARGEST_SPEED = 1e3  # m/s and rad/s; what is faster has another unit
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +40,26 @@ class Path:
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
     covariance: Floats  # [N, 3, 3] parameters, slip that wanders, slip noise, and two measured poses' noise
     dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
+
+    def __repr__(self) -> str:
+        x, y, yaw = (number_text(value) for value in self.poses[-1].tolist())
+        seconds = number_text(float(self.t[-1] - self.t[0]))
+        return f"<Path of {len(self.t)} poses over {seconds} s to x {x} m, y {y} m, yaw {yaw} rad>"
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return t, x, y, yaw, the covariance and dof as a pandas data frame, a pose a row.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        columns = {"t": self.t, **dict(zip(("x", "y", "yaw"), self.poses.T, strict=True))}
+        upper = (("xx", 0, 0), ("xy", 0, 1), ("xt", 0, 2), ("yy", 1, 1), ("yt", 1, 2), ("tt", 2, 2))
+        columns |= {f"cov_{label}": self.covariance[:, i, j] for label, i, j in upper}
+        return data_frame(columns | {"dof": self.dof})
+
+    def plot(self) -> go.Figure:
+        """Return a Plotly figure of the path from above, with 95 % ellipses; a notebook shows it."""
+        return path_figure(self.poses, self.covariance, self.dof)
 
 
 def predict(  # noqa: PLR0913  (all but the first two are options)
@@ -50,25 +80,33 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s]; by default at the first command.
         initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the
-            commands.
+            commands, before the first of which the robot is at rest.
         slip_now: where slip that wanders is at the start, as `slip_seen` says; by default nothing recent is
             known of it.
 
     Raises:
-        SettingsError: the horizon is not positive, the start lies before the first command, or the commands
-            are not such rows.
+        SettingsError: the horizon is not positive or longer than an hour, the start lies before the first
+            command, or commands or initial speeds are not such rows, not finite or beyond all speeds.
     """
     model = model.body
     inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
     if not (np.isfinite(horizon) and horizon > 0.0):
         raise SettingsError("the horizon must be positive seconds", advice="such as horizon=5.0")
+    if horizon > LONGEST_HORIZON:
+        raise SettingsError(
+            f"a horizon of {horizon:g} s is too long", advice=f"give {LONGEST_HORIZON:g} s at most"
+        )
+    _check_speeds("commands", inputs.v, inputs.vy, inputs.omega)
     begin = float(inputs.t[0]) if start is None else start
     if not (np.isfinite(begin) and begin >= inputs.t[0]):
         raise SettingsError("the start must not lie before the first command", advice="give earlier commands")
-    if initial is not None and not np.isfinite(initial).all():
-        raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
-    track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
+    if initial is not None:
+        if not np.isfinite(initial).all():
+            raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
+        _check_speeds("initial speeds", np.asarray(initial))
+    given = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
     known = _known_drive(begin, initial)
+    track = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     coloured = _core.ColouredSlip(model.wander)
     now = coloured.now(model.belief, track, []) if slip_now is None else slip_now
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
@@ -157,6 +195,15 @@ def tail_at(model: Model, horizon: float) -> Tail:
         for name in ("growth", "dof")
     )
     return Tail(growth=float(growth), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+
+
+def _check_speeds(name: str, *speeds: Floats) -> None:
+    fastest = max(float(np.abs(column).max(initial=0.0)) for column in speeds)
+    if fastest > LARGEST_SPEED:
+        raise SettingsError(
+            f"the {name} reach {fastest:g}, where {LARGEST_SPEED:g} is the most",
+            advice="give v in m/s and omega in rad/s",
+        )
 
 
 def _inputs(commands: ArrayLike) -> Inputs:

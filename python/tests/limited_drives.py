@@ -42,7 +42,9 @@ def search(limits: _core.CommandLimits, commands: Inputs, seed: int) -> _core.Li
 
 def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:
     """The truth of a limit that was found."""
-    lane = {_core.Lane.Speed: limits.speed, _core.Lane.YawRate: limits.yaw_rate}.get(found.lane, limits.side)
+    lane = {_core.LimitedAxis.Speed: limits.speed, _core.LimitedAxis.YawRate: limits.yaw_rate}.get(
+        found.lane, limits.side
+    )
     kinds = _core.LimitKind
     return {
         kinds.DeadBand: lane.dead_band,

@@ -29,7 +29,7 @@ def test_model_files_are_equal_byte_by_byte(
 ) -> None:
     settings = Settings(estimator=estimator)
     paths = [
-        calibrate(log_of(source, request), input_name="wheel", settings=settings).model.save(tmp_path / name)
+        calibrate(log_of(source, request), input="wheel", settings=settings).model.save(tmp_path / name)
         for name in ("one.yaml", "two.yaml")
     ]
     assert paths[0].read_bytes() == paths[1].read_bytes()
@@ -39,7 +39,7 @@ def test_model_files_are_equal_byte_by_byte(
 def test_prediction_files_and_scores_are_equal_byte_by_byte(
     source: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    results = [evaluate(log_of(source, request), input_name="wheel", options=OPTIONS) for _ in range(2)]
+    results = [evaluate(log_of(source, request), input="wheel", options=OPTIONS) for _ in range(2)]
     paths = [tmp_path / "one.csv", tmp_path / "two.csv"]
     for path, result in zip(paths, results, strict=True):
         write_predictions(path, result)

@@ -15,8 +15,8 @@ from pathlib import Path
 
 import pytest
 
-from slipwise.errors import OutputError
-from slipwise.files import sha256_of, write_text_whole, write_whole
+from slipwise.errors import ModelError, OutputError
+from slipwise.files import read_whole, sha256_of, write_text_whole, write_whole
 
 
 def raising(problem: BaseException) -> Callable[[Path], None]:
@@ -166,3 +166,32 @@ def test_what_is_being_written_or_not_ours_is_not_swept(tmp_path: Path) -> None:
     write_whole(tmp_path / "a.txt", write)
     assert (tmp_path / "a.txt").read_text(encoding="utf-8") == "first"
     assert {p.name for p in tmp_path.iterdir()} == {"a.txt", "b.txt"} | others
+
+
+@pytest.mark.parametrize("name", ["pipe", "/dev/zero"])
+def test_a_pipe_or_device_is_never_read(tmp_path: Path, name: str) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(ModelError, match=r"not a regular file \(.*\): copy what it gives into a file first"):
+        read_whole(tmp_path / name, most=10, error=ModelError)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("none", "cannot read: No such file"),
+        (".", "cannot read: Is a directory"),
+        ("a\0b", "not the name of a file"),
+    ],
+)
+def test_what_cannot_be_read_is_said_in_the_kind_of_error_asked_for(
+    tmp_path: Path, name: str, expected: str
+) -> None:
+    with pytest.raises(ModelError, match=expected):
+        read_whole(tmp_path / name, most=10, error=ModelError)
+
+
+def test_a_file_is_read_up_to_the_size_allowed(tmp_path: Path) -> None:
+    (tmp_path / "a").write_bytes(b"0123456789")
+    assert read_whole(tmp_path / "a", most=10, error=ModelError) == b"0123456789"
+    with pytest.raises(ModelError, match=r"the file is too large .*at most 9 bytes are read"):
+        read_whole(tmp_path / "a", most=9, error=ModelError)

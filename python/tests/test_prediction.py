@@ -27,7 +27,7 @@ BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", 
 
 def learned(basis: str, input_name: str) -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
-    return calibrate(log, input_name=input_name, settings=make_settings({"basis": basis})).model
+    return calibrate(log, input=input_name, settings=make_settings({"basis": basis})).model
 
 
 @pytest.fixture(scope="module")
@@ -212,3 +212,15 @@ def test_plain_model_and_vendor_multiplier_are_their_formulas(v: float, omega: f
         at = _core.linearize_segment(forecaster.belief(0).motion, forecaster.belief(0).mean, track, segment)
         expected = _core.exp(np.array([v, 0.0, rate]) * 3.0).vector()
         assert at.predicted.vector() == pytest.approx(expected, abs=1e-12)
+
+
+def test_a_horizon_of_years_is_refused(model: Model) -> None:
+    with pytest.raises(SettingsError, match=r"a horizon of 1e[+]09 s is too long: give 3600 s at most"):
+        predict(model, [[0.0, 1.0, 0.0]], horizon=1e9)
+
+
+def test_speeds_of_no_robot_are_refused(model: Model) -> None:
+    with pytest.raises(SettingsError, match=r"the commands reach 1e[+]300, .* m/s and omega in rad/s"):
+        predict(model, [[0.0, 1e300, 1e300]], horizon=5.0)
+    with pytest.raises(SettingsError, match="the initial speeds reach"):
+        predict(model, [[0.0, 1.0, 0.0]], horizon=5.0, initial=(-1e12, 0.0))

@@ -9,20 +9,17 @@
 #include <span>
 
 #include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/drive_channel.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
-#include "slipwise/actuator/sensitive_lag.hpp"
 
 namespace slipwise {
 namespace {
 
-using Row = Eigen::Matrix<double, 1, kChainParameters>;
-using Value = Sensitive<kChainParameters>;
+using Row = ChainRow;
+using Value = ChainValue;
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-
-constexpr ChannelPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
-constexpr ChannelPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
 
 /// A moment that moves with one of the chain's parameters: later with a delay, earlier with the clock offset.
 struct Moment {
@@ -49,6 +46,7 @@ class DelayedCursor {
         end_(std::max(next_, inputs.count_until(known_until))) {}
 
   BodyTwist held() const { return next_ == 0 ? BodyTwist{} : inputs_.sample(next_ - 1); }
+  bool before_first() const { return next_ == 0; }
   double next_change() const { return next_ < end_ ? inputs_.time(next_) + delay_ : kNever; }
   Moment change_moment() const { return {next_change(), index_}; }
   void advance() { ++next_; }
@@ -67,97 +65,6 @@ class DelayedCursor {
   Eigen::Index index_;
   std::size_t next_;
   std::size_t end_;
-};
-
-/// Advances one lag over a step; returns the integral.
-double advance(Value& state, double input, const LagDecay& decay) {
-  const LagStep step = linearize_lag_step(state.value, input, decay).value;
-  state.value = step.output;
-  return step.integral;
-}
-
-/// How the gaps of a channel's two lags close over a step.
-struct ChannelDecay {
-  LagDecay fast, slow;
-
-  ChannelDecay(const ChannelResponse& response, double duration)
-      : fast(response.lag, duration), slow(response.slow_lag, duration) {}
-};
-
-/// One channel of the drive: two lags side by side.
-class DriveChannel {
- public:
-  DriveChannel(const ChannelResponse& response, const ChannelPlaces& places) : response_(response), places_(places) {}
-
-  /// Settled on an input that was held for long.
-  void settle(double input) {
-    moves_ = input != 0.0;
-    fast_ = part_of<kChainParameters>(input, response_, places_, false);
-    slow_ = response_.has_slow_part() ? part_of<kChainParameters>(input, response_, places_, true) : Value{};
-  }
-
-  /// The whole was measured: what the fast part does not explain is the slow part's.
-  void measured(double value) {
-    moves_ = moves_ || value != 0.0;
-    if (response_.has_slow_part()) {
-      slow_ = {value - fast_.value, -fast_.slope};
-    } else {
-      fast_ = {.value = value};
-    }
-  }
-
-  /// Advances over a step; returns the integral.
-  double step(double input, const ChannelDecay& decay) {
-    if (rests(input)) {
-      return 0.0;
-    }
-    double integral = advance(fast_, response_.fast_share() * input, decay.fast);
-    if (response_.has_slow_part()) {
-      integral += advance(slow_, response_.share() * response_.gain * input, decay.slow);
-    }
-    return integral;
-  }
-
-  /// Goes on for a while that nobody looks at, with slopes.
-  void follow(double input, const ChannelDecay& decay, const Row& duration_slope) {
-    if (rests(input)) {
-      return;
-    }
-    const Value fast = part_of<kChainParameters>(input, response_, places_, false);
-    slipwise::follow(fast_, fast, linearize_lag_step(fast_.value, fast.value, decay.fast), places_.lag, duration_slope);
-    if (response_.has_slow_part()) {
-      const Value slow = part_of<kChainParameters>(input, response_, places_, true);
-      slipwise::follow(slow_, slow, linearize_lag_step(slow_.value, slow.value, decay.slow), places_.slow_lag,
-                       duration_slope);
-    }
-  }
-
-  Value linearize_step(double input, const ChannelDecay& decay, const Row& duration_slope) {
-    if (rests(input)) {
-      return {};
-    }
-    Value integral = advance(fast_, part_of<kChainParameters>(input, response_, places_, false), decay.fast,
-                             places_.lag, duration_slope);
-    if (response_.has_slow_part()) {
-      const Value slow = advance(slow_, part_of<kChainParameters>(input, response_, places_, true), decay.slow,
-                                 places_.slow_lag, duration_slope);
-      integral.value += slow.value;
-      integral.slope += slow.slope;
-    }
-    return integral;
-  }
-
- private:
-  /// Most robots never drive sideways. What has not moved, and is not told to, has no slopes either.
-  bool rests(double input) {
-    moves_ = moves_ || input != 0.0;
-    return !moves_;
-  }
-
-  ChannelResponse response_;
-  ChannelPlaces places_;
-  Value fast_, slow_;
-  bool moves_ = false;
 };
 
 /// Walks over the delayed input changes of a window, with or without slopes.
@@ -192,9 +99,9 @@ class ChainWalk {
       approach({chain_start_.t - warm_up_, kFixed}, chain_start_);
     }
     if (window_.initial) {
-      v_.measured(window_.initial->v);
-      vy_.measured(window_.initial->vy);
-      omega_.measured(window_.initial->omega);
+      start_at(cursor_v_, v_, &BodyTwist::v);
+      start_at(cursor_v_, vy_, &BodyTwist::vy);
+      start_at(cursor_omega_, omega_, &BodyTwist::omega);
     }
     if (window_.known && start_.t < chain_start_.t) {
       follow_measured(*window_.known->twist, result);
@@ -210,8 +117,18 @@ class ChainWalk {
 
   /// How long the state at the start hangs on earlier inputs: where the drive was measured, its parts alone do.
   double warm_up() const {
-    return window_.initial ? fast_warm_up(speed_, turn_)
+    return window_.initial ? parts_warm_up(speed_, turn_)
                            : kSettledLags * std::max(speed_.longest_lag(), turn_.longest_lag());
+  }
+
+  /// The channel where the chain starts, as it was measured.
+  void start_at(const DelayedCursor& cursor, DriveChannel& channel, double BodyTwist::* part) const {
+    const double value = (*window_.initial).*part;
+    if (cursor.before_first()) {
+      channel.keep(value);
+    } else {
+      channel.measured(value, cursor.held().*part);
+    }
   }
 
   /// Records the drive as it was measured, from the start until the chain takes over.
@@ -259,6 +176,9 @@ class ChainWalk {
       }
       if (cursor.next_change() <= next.t) {
         cursor.advance();
+        for (const auto& [channel, part] : driven) {
+          channel.begin();
+        }
       }
       now = next;
     }
@@ -286,9 +206,12 @@ class ChainWalk {
     const bool together = chain_.delay_v == 0.0 && chain_.delay_omega == 0.0;
     if (v_changes) {
       cursor_v_.advance();
+      v_.begin();
+      vy_.begin();
     }
     if (omega_changes && (together || !v_changes)) {
       cursor_omega_.advance();
+      omega_.begin();
     }
   }
 
@@ -316,9 +239,9 @@ class ChainWalk {
   /// Without lag, and where no duration moves, only the gains tell.
   DriveStepJacobian gain_slopes(double duration) const {
     DriveStepJacobian jacobian = DriveStepJacobian::Zero();
-    jacobian(1, kSpeedPlaces.gain) = cursor_v_.held().v * duration;
-    jacobian(2, kSpeedPlaces.gain) = cursor_v_.held().vy * duration;
-    jacobian(3, kTurnPlaces.gain) = cursor_omega_.held().omega * duration;
+    jacobian(1, kSpeedPlaces.gain) = v_.by_gain(cursor_v_.held().v, duration);
+    jacobian(2, kSpeedPlaces.gain) = vy_.by_gain(cursor_v_.held().vy, duration);
+    jacobian(3, kTurnPlaces.gain) = omega_.by_gain(cursor_omega_.held().omega, duration);
     return jacobian;
   }
 

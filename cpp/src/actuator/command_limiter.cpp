@@ -26,14 +26,29 @@ void CommandLimiter::settle(const BodyTwist& command) {
 }
 
 void CommandLimiter::place(const BodyTwist& given) {
-  const BodyTwist asked =
-      sides_ ? BodyTwist{given.v / limits_.gain_v, given.vy, given.omega / limits_.gain_omega} : given;
+  const BodyTwist asked = asked_for(given);
   tell(asked);
   speed_.place(asked.v);
   yaw_rate_.place(asked.omega);
   const SideSpeeds sides = asked_of_sides(asked.v, asked.omega);
   left_.place(sides.left);
   right_.place(sides.right);
+}
+
+void CommandLimiter::reach(const BodyTwist& given, bool speed, bool yaw_rate) {
+  const BodyTwist asked = asked_for(given);
+  if (speed) {
+    speed_.reach(asked.v, speed_.target());
+  }
+  if (yaw_rate) {
+    yaw_rate_.reach(asked.omega, yaw_rate_.target());
+  }
+  if (sides_ && (speed || yaw_rate)) {
+    const SideSpeeds now = asked_of_sides(asked.v, asked.omega);
+    const SideSpeeds goal = asked_of_sides(speed_.target(), yaw_rate_.target());
+    left_.reach(now.left, left_.limited(goal.left));
+    right_.reach(now.right, right_.limited(goal.right));
+  }
 }
 
 void CommandLimiter::tell(const BodyTwist& command) {

@@ -9,8 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/measured_start.hpp"
 
 namespace slipwise {
 namespace {
@@ -74,12 +76,12 @@ CommandLimits channel_limits(const CommandLimits& limits) {
   return {.speed = limits.speed, .yaw_rate = limits.yaw_rate};
 }
 
-InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
-  need_positive("a ramp's longest piece", longest_piece);
-  CommandLimiter limiter(limits);
-  if (unlimited(limits)) {
-    return commands;
-  }
+namespace {
+
+/// Cuts ramps into held pieces. `reach` is called before each piece, with its end, and may move the ramps.
+template <typename Reach>
+InputTrack limited_pieces(const InputTrack& commands, CommandLimiter limiter, double longest_piece,
+                          const Reach& reach) {
   std::vector<double> t;
   std::vector<BodyTwist> twist;
   t.reserve(2 * commands.size());
@@ -99,8 +101,12 @@ InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits
       if (next - now > kMostPieces * piece) {
         piece = std::max(piece, std::min(limiter.seconds_left(), kLongestRamp) / kMostPieces);
       }
-      for (int k = 0; k <= kMostPieces && next - now > kNoTime && limiter.ramps(); ++k) {
+      for (int k = 0; k <= kMostPieces && next - now > kNoTime; ++k) {
         const double taken = std::min(piece, next - now);
+        reach(limiter, now + taken);
+        if (!limiter.ramps()) {
+          break;
+        }
         push(now, limiter.mean_over(piece, taken));
         now += taken;
       }
@@ -110,6 +116,42 @@ InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits
     }
   }
   return {std::move(t), std::move(twist)};
+}
+
+}  // namespace
+
+InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
+  need_positive("a ramp's longest piece", longest_piece);
+  const CommandLimiter at_rest(limits);
+  return unlimited(limits) ? commands
+                           : limited_pieces(commands, at_rest, longest_piece, [](CommandLimiter&, double) {});
+}
+
+MeasuredStart measured_start(const CommandChain& chain, double time, const BodyTwist& measured) {
+  const ChannelResponse speed = speed_response(chain), turn = turn_response(chain);
+  return {.keeping = {speed.keeping_input(measured.v), speed.keeping_input(measured.vy),
+                      turn.keeping_input(measured.omega)},
+          .v_until = time - chain.delay_v,
+          .omega_until = time - chain.delay_omega};
+}
+
+InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, const MeasuredStart& start,
+                         double longest_piece) {
+  need_positive("a ramp's longest piece", longest_piece);
+  CommandLimiter limiter(limits);
+  if (unlimited(limits) || commands.size() == 0) {
+    return commands;
+  }
+  const double first = commands.time(0);
+  const BodyTwist& keeping = start.keeping;
+  limiter.place({first > start.v_until ? keeping.v : 0.0, 0.0, first > start.omega_until ? keeping.omega : 0.0});
+  bool v = first > start.v_until, omega = first > start.omega_until;
+  return limited_pieces(commands, limiter, longest_piece, [&](CommandLimiter& ramps, double end) {
+    const bool v_now = !v && end > start.v_until, omega_now = !omega && end > start.omega_until;
+    ramps.reach(keeping, v_now, omega_now);
+    v = v || v_now;
+    omega = omega || omega_now;
+  });
 }
 
 }  // namespace slipwise

@@ -18,7 +18,7 @@ class LaneWalk {
   using Value = Sensitive<N>;
   using Row = Eigen::Matrix<double, 1, N>;
 
-  LaneWalk(const InputTrack& inputs, const Lane& lane, const LaneState& start, double time)
+  LaneWalk(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start, double time)
       : inputs_(inputs), lane_(lane), now_(time), next_(inputs.count_until(time - lane.delay)) {
     fast_.value = start.fast;
     slow_.value = start.slow;
@@ -82,7 +82,7 @@ class LaneWalk {
   }
 
   const InputTrack& inputs_;
-  const Lane& lane_;
+  const ActuatorAxis& lane_;
   double now_;
   double moves_ = 0.0;
   std::size_t next_;
@@ -92,8 +92,8 @@ class LaneWalk {
 
 /// Hands `record` each interval's mean, and then both parts at the end.
 template <int N, typename Record>
-void walk_lane(const InputTrack& inputs, const Lane& lane, const LaneState& start, std::span<const double> edges,
-               Record record) {
+void walk_lane(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start,
+               std::span<const double> edges, Record record) {
   LaneWalk<N> walk(inputs, lane, start, edges.front());
   const auto intervals = std::ssize(edges) - 1;
   for (std::ptrdiff_t k = 0; k < intervals; ++k) {
@@ -105,12 +105,12 @@ void walk_lane(const InputTrack& inputs, const Lane& lane, const LaneState& star
 
 }  // namespace
 
-LaneState settled_lane(const InputTrack& inputs, const Lane& lane, double time) {
+LaneState settled_lane(const InputTrack& inputs, const ActuatorAxis& lane, double time) {
   const double input = inputs.at(time - lane.delay).*lane.part;
   return {lane.response.fast_share() * input, lane.response.share() * lane.response.gain * input};
 }
 
-LaneMotion lane_motion(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+LaneMotion lane_motion(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start,
                        std::span<const double> edges) {
   const auto rows = std::ssize(edges) + 1;
   LaneMotion motion{Eigen::VectorXd(rows),
@@ -122,7 +122,7 @@ LaneMotion lane_motion(const InputTrack& inputs, const Lane& lane, const LaneSta
   return motion;
 }
 
-Eigen::VectorXd lane_values(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+Eigen::VectorXd lane_values(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start,
                             std::span<const double> edges) {
   Eigen::VectorXd values(std::ssize(edges) + 1);
   walk_lane<0>(inputs, lane, start, edges,

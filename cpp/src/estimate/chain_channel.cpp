@@ -50,7 +50,7 @@ Estimate ChainChannel::estimate() const {
           joint_.covariance.topLeftCorner(kChannelParameters, kChannelParameters)};
 }
 
-Lane ChainChannel::lane(const Eigen::VectorXd& state, std::size_t i) const {
+ActuatorAxis ChainChannel::lane(const Eigen::VectorXd& state, std::size_t i) const {
   return lane_of(model_.parts[live_[i]], state.head<kChannelParameters>());
 }
 
@@ -64,7 +64,7 @@ bool ChainChannel::begin(const ChannelWindow& window) {
     if (std::ranges::find(live_, i) != live_.end()) {
       continue;
     }
-    const Lane its = lane_of(model_.parts[i], joint_.mean.head<kChannelParameters>());
+    const ActuatorAxis its = lane_of(model_.parts[i], joint_.mean.head<kChannelParameters>());
     if (const auto first = first_state(window, its, model_.noise.wander * size_)) {
       live_.push_back(i);
       const Eigen::Index n = joint_.mean.size() + kLaneStates;

@@ -125,7 +125,7 @@ class ChannelWalk {
   }
 
   SeenLane see(const FollowedLane& followed, const ChannelWindow& window, const DriveNoiseMeans& noise) const {
-    const Lane lane = lane_of(model_.parts[followed.place], point_);
+    const ActuatorAxis lane = lane_of(model_.parts[followed.place], point_);
     SeenLane seen{lane_passage(window, lane, followed.mean, noise), lane_means(window.seen, lane), {}, {}};
     seen.innovation -= seen.at.value.head(seen.innovation.size());
     seen.spread = seen.by_state() * followed.covariance;

@@ -18,7 +18,8 @@ constexpr double kNear = 0.1;          // of a dead-band; which commands it bloc
 constexpr std::ptrdiff_t kBeside = 3;  // places tried on each side
 
 /// The drive with a dead-band that blocks command `at` and none faster.
-LimitedDrive with_dead_band(LimitedDrive drive, Lane lane, const std::vector<Asked>& commands, std::ptrdiff_t at) {
+LimitedDrive with_dead_band(LimitedDrive drive, LimitedAxis lane, const std::vector<Asked>& commands,
+                            std::ptrdiff_t at) {
   const auto place = static_cast<std::size_t>(at);
   lane_of(drive.limits, lane).dead_band = 0.5 * (commands[place].speed + commands[place + 1].speed);
   return drive;
@@ -44,7 +45,7 @@ std::ptrdiff_t steps_as_long_as(MayGo may_go) {
 }  // namespace
 
 ScoredDrive DeadBandSearch::best(ScoredDrive drive) const {
-  for (const Lane lane : kLanes) {
+  for (const LimitedAxis lane : kLanes) {
     if (lane_of(drive.drive.limits, lane).dead_band > 0.0) {
       drive = best(drive, lane);
     }
@@ -55,7 +56,7 @@ ScoredDrive DeadBandSearch::best(ScoredDrive drive) const {
 LimitedDrive DeadBandSearch::between_commands(LimitedDrive drive) const {
   drive.edge.reset();
   if (drive.limits.side.dead_band > 0.0) {
-    const std::vector<Asked> commands = lane_range(records_, drive.limits, Lane::Side).commands;
+    const std::vector<Asked> commands = lane_range(records_, drive.limits, LimitedAxis::Side).commands;
     const std::ptrdiff_t passed = first_passed(commands, drive.limits.side.dead_band);
     if (passed > 0 && passed < std::ssize(commands)) {
       const auto place = static_cast<std::size_t>(passed);
@@ -65,7 +66,7 @@ LimitedDrive DeadBandSearch::between_commands(LimitedDrive drive) const {
   return drive;
 }
 
-ScoredDrive DeadBandSearch::best(const ScoredDrive& drive, Lane lane) const {
+ScoredDrive DeadBandSearch::best(const ScoredDrive& drive, LimitedAxis lane) const {
   const std::vector<Asked> commands = lane_range(records_, drive.drive.limits, lane).commands;
   if (commands.size() < 2) {
     return drive;
@@ -91,7 +92,7 @@ ScoredDrive DeadBandSearch::best(const ScoredDrive& drive, Lane lane) const {
   }
 }
 
-double DeadBandSearch::std(const ScoredDrive& drive, Lane lane, const Eigen::Matrix3d& to_sides) const {
+double DeadBandSearch::std(const ScoredDrive& drive, LimitedAxis lane, const Eigen::Matrix3d& to_sides) const {
   const CommandLimits& limits = drive.drive.limits;
   const std::vector<Asked> commands = lane_range(records_, limits, lane).commands;
   const double value = lane_of(limits, lane).dead_band;
@@ -106,14 +107,14 @@ double DeadBandSearch::std(const ScoredDrive& drive, Lane lane, const Eigen::Mat
   const double lower = low >= 0 ? commands[static_cast<std::size_t>(low)].speed : 0.0;
   const double upper = high < std::ssize(commands) ? commands[static_cast<std::size_t>(high)].speed : value;
   const double plateau = std::max(upper - value, value - lower) / std::numbers::sqrt3;
-  return std::hypot(plateau, lane == Lane::Side ? side_std(limits, lower, upper, to_sides) : 0.0);
+  return std::hypot(plateau, lane == LimitedAxis::Side ? side_std(limits, lower, upper, to_sides) : 0.0);
 }
 
 /// How uncertain it is what the commands ask of a side that ask for about `lower` to `upper`.
 double DeadBandSearch::side_std(const CommandLimits& limits, double lower, double upper,
                                 const Eigen::Matrix3d& to_sides) const {
   double variance = 0.0;
-  for (const Asked& command : lane_range(records_, limits, Lane::Side).commands) {
+  for (const Asked& command : lane_range(records_, limits, LimitedAxis::Side).commands) {
     if (command.speed > (1.0 - kNear) * lower && command.speed < (1.0 + kNear) * upper) {
       const double half = 0.5 * command.of_side.omega * limits.track;
       const Eigen::Vector3d slope(command.of_side.v, half, half * limits.gain_omega);

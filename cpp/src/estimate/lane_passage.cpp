@@ -11,7 +11,7 @@ namespace {
 constexpr double kSlowRange = 0.3;  // of the speed range, that the slow part may hold
 
 /// The fastest that the lane was told to go, or went.
-double fastest(const ChannelWindow& window, const Lane& lane) {
+double fastest(const ChannelWindow& window, const ActuatorAxis& lane) {
   const auto& [inputs, seen] = window;
   double speed = 0.0;
   for (const BodyTwist& twist : seen.twist) {
@@ -27,7 +27,7 @@ double fastest(const ChannelWindow& window, const Lane& lane) {
 
 }  // namespace
 
-Lane lane_of(double BodyTwist::* part, const ChannelParameters& parameters) {
+ActuatorAxis lane_of(double BodyTwist::* part, const ChannelParameters& parameters) {
   return {part,
           {.gain = parameters[2],
            .lag = std::exp(parameters[0]),
@@ -36,7 +36,7 @@ Lane lane_of(double BodyTwist::* part, const ChannelParameters& parameters) {
           std::exp(parameters[1])};
 }
 
-std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Lane& lane, double wander) {
+std::optional<FirstLaneState> first_state(const ChannelWindow& window, const ActuatorAxis& lane, double wander) {
   const double range = fastest(window, lane);
   if (!(range > 0.0)) {
     return std::nullopt;
@@ -45,7 +45,7 @@ std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Lan
   return FirstLaneState{{settled.fast, settled.slow, 0.0}, {range * range, std::pow(kSlowRange * range, 2), wander}};
 }
 
-LanePassage lane_passage(const ChannelWindow& window, const Lane& lane, const LaneVector& start,
+LanePassage lane_passage(const ChannelWindow& window, const ActuatorAxis& lane, const LaneVector& start,
                          const DriveNoiseMeans& noise) {
   const LaneMotion motion = lane_motion(window.inputs, lane, {.fast = start[0], .slow = start[1]}, window.seen.edges);
   const Eigen::Index rows = motion.value.size() + 1;
@@ -64,7 +64,7 @@ LanePassage lane_passage(const ChannelWindow& window, const Lane& lane, const La
   return passage;
 }
 
-Eigen::VectorXd lane_means(const WheelMeans& seen, const Lane& lane) {
+Eigen::VectorXd lane_means(const WheelMeans& seen, const ActuatorAxis& lane) {
   Eigen::VectorXd means(std::ssize(seen.twist));
   for (Eigen::Index k = 0; k < means.size(); ++k) {
     means[k] = seen.twist[static_cast<std::size_t>(k)].*lane.part;

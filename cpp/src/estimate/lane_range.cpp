@@ -13,19 +13,19 @@ constexpr double kRounding = 1e-9;   // [m/s or rad/s]; what is slower is what r
 constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
 
 /// A twist in a lane: once, or once for each side.
-std::array<double, 2> in_lane(const CommandLimits& limits, Lane lane, const BodyTwist& twist) {
-  if (lane == Lane::Side) {
+std::array<double, 2> in_lane(const CommandLimits& limits, LimitedAxis lane, const BodyTwist& twist) {
+  if (lane == LimitedAxis::Side) {
     const SideSpeeds sides = side_speeds(limits, twist);
     return {sides.left, sides.right};
   }
-  const double one = lane == Lane::Speed ? twist.v : twist.omega;
+  const double one = lane == LimitedAxis::Speed ? twist.v : twist.omega;
   return {one, one};
 }
 
 /// Wheels have passed all gains.
 CommandLimits of_wheels(const CommandLimits& limits) { return {.track = limits.track}; }
 
-void add_commands(LaneRange& range, const CommandLimits& limits, Lane lane, const InputTrack& commands) {
+void add_commands(LaneRange& range, const CommandLimits& limits, LimitedAxis lane, const InputTrack& commands) {
   std::array<double, 2> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const BodyTwist twist = commands.sample(i);
@@ -40,7 +40,7 @@ void add_commands(LaneRange& range, const CommandLimits& limits, Lane lane, cons
   }
 }
 
-void add_wheels(LaneRange& range, const CommandLimits& limits, Lane lane, const DriveRecord& record) {
+void add_wheels(LaneRange& range, const CommandLimits& limits, LimitedAxis lane, const DriveRecord& record) {
   std::size_t from = 0;
   for (std::size_t i = 0; i < record.t.size(); ++i) {
     const double seconds = record.t[i] - record.t[from];
@@ -58,10 +58,10 @@ void add_wheels(LaneRange& range, const CommandLimits& limits, Lane lane, const 
 
 }  // namespace
 
-LaneRange lane_range(std::span<const DriveRecord> records, const CommandLimits& limits, Lane lane) {
+LaneRange lane_range(std::span<const DriveRecord> records, const CommandLimits& limits, LimitedAxis lane) {
   LaneRange range;
   for (const DriveRecord& record : records) {
-    const bool behind = lane == Lane::Side && !unlimited(channel_limits(limits));
+    const bool behind = lane == LimitedAxis::Side && !unlimited(channel_limits(limits));
     add_commands(range, limits, lane,
                  behind ? limited_track(record.commands, channel_limits(limits)) : record.commands);
     add_wheels(range, of_wheels(limits), lane, record);

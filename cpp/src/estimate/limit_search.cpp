@@ -38,7 +38,7 @@ double quantile(const std::vector<double>& sorted, double share) {
 
 int count_of(const CommandLimits& limits) {
   int count = 0;
-  for (const Lane lane : kLanes) {
+  for (const LimitedAxis lane : kLanes) {
     for (const LimitKind kind : kLimitKinds) {
       count += limits_anything(lane_of(limits, lane), kind) ? 1 : 0;
     }
@@ -88,7 +88,7 @@ class Search {
   std::vector<FoundLimit> found(const ScoredDrive& best) const {
     const LimitedDriveFit::Spread spread = fit_.spread(best.drive);
     std::vector<FoundLimit> result;
-    for (const Lane lane : kLanes) {
+    for (const LimitedAxis lane : kLanes) {
       for (std::size_t k = 0; k < kLimitKinds.size(); ++k) {
         const LimitKind kind = kLimitKinds.at(k);
         const LaneLimits& limits = lane_of(best.drive.limits, lane);
@@ -111,7 +111,7 @@ class Search {
   }
 
   LimitedDrive with_all(LimitedDrive drive) const {
-    for (const Lane lane : {Lane::Speed, Lane::YawRate}) {
+    for (const LimitedAxis lane : {LimitedAxis::Speed, LimitedAxis::YawRate}) {
       const LaneRange range = lane_range(records_, drive.limits, lane);
       if (range.commands.empty() || range.speeds.empty() || range.rates.empty()) {
         continue;
@@ -158,7 +158,7 @@ class Search {
   /// The best limit, or pair of rates, to add; nothing where none gains enough.
   std::optional<ScoredDrive> with_one_more(const ScoredDrive& now) const {
     std::vector<ScoredDrive> trials;
-    for (const Lane lane : kLanes) {
+    for (const LimitedAxis lane : kLanes) {
       const LaneRange range = lane_range(records_, now.drive.limits, lane);
       const LaneLimits& limits = lane_of(now.drive.limits, lane);
       for (const LimitKind kind : kLimitKinds) {
@@ -193,7 +193,7 @@ class Search {
 
   /// The best of the candidates, the chain held but for what took the limit's place: lag that of a rate, gain that of
   /// a top.
-  std::optional<ScoredDrive> profile(const ScoredDrive& now, Lane lane, const std::vector<LimitKind>& kinds,
+  std::optional<ScoredDrive> profile(const ScoredDrive& now, LimitedAxis lane, const std::vector<LimitKind>& kinds,
                                      const LaneRange& range) const {
     std::optional<ScoredDrive> best;
     for (const double value : candidates(kinds.front(), range)) {
@@ -271,7 +271,7 @@ class Search {
     return smooth.loss.total > best.loss.total ? best : bands_.best(smooth);
   }
 
-  ScoredDrive without(const ScoredDrive& all, Lane lane, LimitKind kind, double wanted = kAnyLoss) const {
+  ScoredDrive without(const ScoredDrive& all, LimitedAxis lane, LimitKind kind, double wanted = kAnyLoss) const {
     LimitedDrive drive = all.drive;
     limit_of(lane_of(drive.limits, lane), kind) = limit_of(LaneLimits{}, kind);
     return refined(drive, kShortRefinement, wanted);
@@ -279,12 +279,12 @@ class Search {
 
   /// Moves a limit to another lane, where it explains more; whether one was moved.
   bool move_one(ScoredDrive& best) const {
-    for (const Lane from : kLanes) {
+    for (const LimitedAxis from : kLanes) {
       for (const LimitKind kind : kLimitKinds) {
         if (!limits_anything(lane_of(best.drive.limits, from), kind)) {
           continue;
         }
-        for (const Lane to : kLanes) {
+        for (const LimitedAxis to : kLanes) {
           if (limits_anything(lane_of(best.drive.limits, to), kind)) {
             continue;
           }
@@ -314,7 +314,7 @@ class Search {
   bool drop_idle(ScoredDrive& best) const {
     std::optional<ScoredDrive> idle;
     double least = least_gain_;
-    for (const Lane lane : kLanes) {
+    for (const LimitedAxis lane : kLanes) {
       for (const LimitKind kind : kLimitKinds) {
         if (limits_anything(lane_of(best.drive.limits, lane), kind)) {
           const ScoredDrive less = without(best, lane, kind, best.loss.total + least * best.loss.inflation);

@@ -51,7 +51,7 @@ double inflation_of(const Eigen::ArrayXd& score) {
   return std::clamp((1.0 + alike) / (1.0 - alike), 1.0, kMostInflation);
 }
 
-Lane lane_of_channel(int c) { return c == 0 ? Lane::Speed : Lane::YawRate; }
+LimitedAxis lane_of_channel(int c) { return c == 0 ? LimitedAxis::Speed : LimitedAxis::YawRate; }
 
 OutputChannel output_channel(const CommandChain& chain, int c) {
   return c == 0 ? speed_channel(chain) : turn_channel(chain);
@@ -79,11 +79,11 @@ double LaneLimits::* member_of(LimitKind kind) {
   }
 }
 
-LaneLimits CommandLimits::* member_of(Lane lane) {
+LaneLimits CommandLimits::* member_of(LimitedAxis lane) {
   switch (lane) {
-    case Lane::Speed:
+    case LimitedAxis::Speed:
       return &CommandLimits::speed;
-    case Lane::YawRate:
+    case LimitedAxis::YawRate:
       return &CommandLimits::yaw_rate;
     default:
       return &CommandLimits::side;
@@ -100,9 +100,9 @@ bool limits_anything(const LaneLimits& limits, LimitKind kind) {
   return limit_of(limits, kind) != limit_of(LaneLimits{}, kind);
 }
 
-LaneLimits& lane_of(CommandLimits& limits, Lane lane) { return limits.*member_of(lane); }
+LaneLimits& lane_of(CommandLimits& limits, LimitedAxis lane) { return limits.*member_of(lane); }
 
-const LaneLimits& lane_of(const CommandLimits& limits, Lane lane) { return limits.*member_of(lane); }
+const LaneLimits& lane_of(const CommandLimits& limits, LimitedAxis lane) { return limits.*member_of(lane); }
 
 double speed_of_side(const CommandLimits& limits, const SideCommand& command) {
   return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.track);

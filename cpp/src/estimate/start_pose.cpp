@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -39,8 +38,10 @@ void check_seen(const SeenPoses& seen, const Segment& segment) {
     throw std::invalid_argument("each pose before a start needs a stamp, got " + std::to_string(seen.stamps.size()) +
                                 " stamps and " + std::to_string(seen.poses.size()) + " poses");
   }
-  const bool increase = std::ranges::adjacent_find(seen.stamps, std::greater_equal<>{}) == seen.stamps.end();
-  if (!increase || (!seen.stamps.empty() && seen.stamps.back() != segment.start)) {
+  const auto not_later = [](double one, double next) { return !(one < next); };  // true for NaN too
+  const bool increase = std::ranges::adjacent_find(seen.stamps, not_later) == seen.stamps.end();
+  const bool finite = std::ranges::all_of(seen.stamps, [](double stamp) { return std::isfinite(stamp); });
+  if (!increase || !finite || (!seen.stamps.empty() && seen.stamps.back() != segment.start)) {
     throw std::invalid_argument("the stamps of poses before a start must increase, and the last must be the start");
   }
 }

@@ -85,7 +85,10 @@ Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings)
   }
 }
 
-void Mppi::reset(const DriveCommand& command) { std::ranges::fill(plan_, command); }
+void Mppi::reset(const DriveCommand& command) {
+  std::ranges::fill(plan_, command);
+  planned_ = true;
+}
 
 void Mppi::sample(const DriveCommand& last) {
   const std::size_t count = settings_.rollouts;
@@ -231,8 +234,12 @@ MppiResult Mppi::step(const MppiState& state, const MppiReference& reference, co
          "the robot starts inside an obstacle; free it first, or check its pose and the map");
   }
   const DriveCommand last = state.past.empty() ? state.start.drive : state.past.back();
-  std::ranges::rotate(plan_, plan_.begin() + 1);
-  plan_.back() = plan_[periods - 2];
+  if (planned_) {
+    std::ranges::rotate(plan_, plan_.begin() + 1);
+    plan_.back() = plan_[periods - 2];
+  } else {  // a moving robot goes on as it was commanded
+    reset(last);
+  }
   sample(last);
   std::ranges::fill(mean_, 0.0F);
   std::ranges::fill(worst_, 0.0F);

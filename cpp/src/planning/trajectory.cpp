@@ -4,13 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/lie/angle.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kSettledLags = 5.0;  // time constants until a lag has come to rest (e^-5)
+constexpr int kSettlings = 3;         // how often the time until the end is found again
+constexpr double kNoTime = 1e-3;      // [s]
+constexpr double kLongestPath = 1e4;  // [m]
 constexpr double kAtRest = 1e-3;      // [m/s]
 constexpr double kShortest = 1e-2;    // [m] of a commanded path
 constexpr int kMostCommands = 1000;
@@ -24,16 +33,77 @@ void need(bool fine, const char* fault) {
 
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 
-/// How long the last command is held: until it has come through the delay, and at rest through the lag too. Then the
-/// next plan finds nothing on its way to the drive but that command.
-double settling_time(const CommandChain& chain, double end_speed) {
-  const double lags = end_speed > 0.0 ? 0.0 : kSettledLags;
-  return std::max(chain.delay_v, chain.delay_omega) +
-         lags * std::max({chain.lag_v, chain.lag_omega, chain.slow_lag_v, chain.slow_lag_omega});
+/// When the last command has come through the delay [s].
+double latest_delay(const CommandChain& chain) { return std::max(chain.delay_v, chain.delay_omega); }
+
+/// How long a channel whose lags hold `fast` and `slow` takes until it is slower than `slowest` for good [s].
+double seconds_to_rest(const ChannelResponse& response, double fast, double slow, double slowest) {
+  const auto left = [&](double seconds) {
+    return std::abs(lag_output(fast, 0.0, response.lag, seconds)) +
+           std::abs(lag_output(slow, 0.0, response.slow_lag, seconds));
+  };
+  double late = 0.0;
+  for (double step = response.longest_lag(); step > kNoTime && left(late) > slowest; late += step) {
+  }
+  double early = std::max(0.0, late - response.longest_lag());
+  while (late - early > kNoTime) {
+    const double middle = 0.5 * (early + late);
+    (left(middle) > slowest ? early : late) = middle;
+  }
+  return late;
 }
 
-/// Whether attempt `a` came nearer to the goal than `b`.
-bool nearer(const Reach& a, const Reach& b) { return a.gap_xy + a.gap_yaw < b.gap_xy + b.gap_yaw; }
+/// How long the last command is held, until what `at` drives with these parameters has come to rest [s].
+double settling_time(const ReachProblem& at, const ManoeuvreVector& parameters, const TrajectorySettings& settings) {
+  ReachProblem acts = at;
+  acts.frame.settling = latest_delay(at.model.chain());
+  const ManoeuvrePath path = manoeuvre_path(acts.model, acts.frame, parameters, acts.start);
+  const auto rest = [&](const ChannelResponse& response, double BodyTwist::* part, double slowest) {
+    return seconds_to_rest(response, path.fast.*part, path.drive.*part - path.fast.*part, slowest);
+  };
+  const ChannelResponse speed = speed_response(at.model.chain()), turn = turn_response(at.model.chain());
+  return acts.frame.settling +
+         std::max({rest(speed, &BodyTwist::v, settings.rest_speed), rest(speed, &BodyTwist::vy, settings.rest_speed),
+                   rest(turn, &BodyTwist::omega, settings.rest_yaw_rate)});
+}
+
+/// Reaches the goal, and ends there when the robot has come to rest. Where it drives on, the last command has but come
+/// through the delay: the next plan finds nothing on its way to the drive but that command.
+Reach reach_at_rest(ReachProblem& at, const Pose2& goal, const ManoeuvreVector& guess,
+                    const TrajectorySettings& settings) {
+  Reach reach = reach_goal(at, goal, guess, settings.reach);
+  int linearizations = reach.linearizations;
+  for (int i = 0; i < kSettlings && reach.reached && settings.end_speed == 0.0; ++i) {
+    at.frame.settling = settling_time(at, reach.parameters, settings);
+    reach = reach_goal(at, goal, reach.parameters, settings.reach);
+    linearizations += reach.linearizations;
+  }
+  reach.linearizations = linearizations;
+  return reach;
+}
+
+/// Whether the robot turns once more than its heading at the goal needs.
+bool loops(const Reach& reach, const Pose2& goal) {
+  return std::abs(reach.pose.theta - wrap_angle(goal.theta)) > std::numbers::pi;
+}
+
+/// A straight path to the goal: what a table that is sampled evenly may lack.
+ManoeuvreVector straight_guess(const Pose2& goal) {
+  ManoeuvreVector guess = ManoeuvreVector::Zero();
+  guess[kLength] = std::hypot(goal.x, goal.y);
+  return guess;
+}
+
+/// What a search came to: a reached goal counts most, then a path without a needless turn, then the gap.
+bool better(const Reach& a, const Reach& b, const Pose2& goal) {
+  if (a.reached != b.reached) {
+    return a.reached;
+  }
+  if (a.reached) {
+    return !loops(a, goal) && loops(b, goal);
+  }
+  return a.gap_xy + a.gap_yaw < b.gap_xy + b.gap_yaw;
+}
 
 Trajectory trajectory_of(const Reach& reach, const ReachProblem& at) {
   const HeldCommands held = held_commands(at.frame, reach.parameters);
@@ -71,9 +141,11 @@ std::string_view advice(TrajectoryStatus status) {
 }
 
 void TrajectorySettings::check(const DriveLimits& limits) const {
-  need(positive(cruise) && cruise <= limits.speed, "the cruise speed must be positive and within the limit of speed");
+  need(cruise >= kAtRest && cruise <= limits.speed,
+       "the cruise speed must be 0.001 m/s at least, and within the limit of speed");
   need(end_speed >= 0.0 && end_speed <= cruise, "the speed at the goal must lie between 0 and the cruise speed");
-  need(positive(longest) && longest > kShortest, "the longest path must be positive metres");
+  need(longest > kShortest && longest <= kLongestPath, "the longest path must lie between 0.01 and 10000 m");
+  need(positive(rest_speed) && positive(rest_yaw_rate), "the speeds that count as rest must be positive");
   need(commands >= 4 && commands <= kMostCommands, "the number of commands must lie between 4 and 1000");
   need(samples > 0 && guesses > 0 && reach.iterations > 0, "samples, guesses and iterations must be positive");
   need(positive(reach.tolerance_xy) && positive(reach.tolerance_yaw) && positive(reach.turn_length),
@@ -97,7 +169,7 @@ ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) 
                        .acceleration = limits_.acceleration,
                        .direction = direction,
                        .commands = settings_.commands};
-  frame.settling = settling_time(model_.chain(), settings_.end_speed);
+  frame.settling = latest_delay(model_.chain());
   const double curvature = std::min(limits_.curvature, limits_.yaw_rate / fastest);
   const double shortest = SpeedProfile::shortest(frame.speeds, frame.acceleration) + kShortest;
   ManoeuvreBounds bounds{.low = ManoeuvreVector::Constant(-curvature), .high = ManoeuvreVector::Constant(curvature)};
@@ -115,29 +187,36 @@ ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) 
 Trajectory TrajectoryPlanner::to(const Pose2& goal, const DriveStart& start) const {
   need(goal.vector().allFinite(), "the goal is not finite; give x and y in metres and the heading in radians");
   Trajectory best{.gap_xy = std::hypot(goal.x, goal.y), .gap_yaw = std::abs(wrap_angle(goal.theta))};
-  const auto guesses = table_.nearest(goal, settings_.guesses, settings_.reach.turn_length);
+  std::vector<ManoeuvreVector> guesses;
+  for (const ManoeuvreTable::Entry& entry : table_.nearest(goal, settings_.guesses, settings_.reach.turn_length)) {
+    guesses.push_back(entry.parameters);
+  }
+  guesses.insert(guesses.begin(), straight_guess(goal));
   int linearizations = 0;
-  bool any = false;
+  std::optional<Reach> found;
   double cruise = settings_.cruise;
   for (int slower = 0; slower < kSlower; ++slower, cruise *= 0.5) {
-    const ReachProblem at = problem(start, cruise);
-    Reach nearest{.parameters = ManoeuvreVector::Zero()};
-    for (std::size_t i = 0; i < guesses.size(); ++i) {
-      const Reach reach = reach_goal(at, goal, guesses[i].parameters, settings_.reach);
+    const ReachProblem start_of_all = problem(start, cruise);
+    ManoeuvreFrame frame = start_of_all.frame;
+    std::optional<Reach> nearest;
+    for (const ManoeuvreVector& guess : guesses) {
+      ReachProblem at = start_of_all;
+      const Reach reach = reach_at_rest(at, goal, guess, settings_);
       linearizations += reach.linearizations;
-      if (i == 0 || nearer(reach, nearest)) {
+      if (!nearest || better(reach, *nearest, goal)) {
         nearest = reach;
+        frame = at.frame;
       }
-      if (reach.reached) {
+      if (reach.reached && !loops(reach, goal)) {
         break;
       }
     }
-    if (!guesses.empty() && (!any || nearest.reached)) {
-      best = trajectory_of(nearest, at);
-      any = true;
+    if (!found || nearest->reached) {
+      found = nearest;
+      best = trajectory_of(*nearest, {start_of_all.model, frame, start_of_all.start, start_of_all.bounds});
     }
     // Slower commands bend more only where the yaw rate is what limits them.
-    if (nearest.reached || limits_.curvature * at.frame.speeds.cruise <= limits_.yaw_rate) {
+    if (nearest->reached || limits_.curvature * start_of_all.frame.speeds.cruise <= limits_.yaw_rate) {
       break;
     }
   }

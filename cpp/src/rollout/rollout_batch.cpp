@@ -220,7 +220,7 @@ class BlockOfBatch {
     return SentCommands<Scalar>{batch_, rollout, past_of(rollout), commands, channel}(i);
   }
 
-  /// `command(i, channel)` is what was told in period i of the chain; none before `oldest` differs from that.
+  /// `command(i, channel)` is what was sent in period i of the chain, from `known_before` periods before the start on.
   template <typename Command>
   Drives drives_of(std::size_t rollout, std::size_t known_before, const Command& command) const {
     const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
@@ -246,8 +246,9 @@ class BlockOfBatch {
     Drives drives{};
     if (program_.limited()) {
       const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
-      const LimitedStart start = limited_start(
-          program_, past_of(rollout), {told_by(chain_.v.response, now.v), told_by(chain_.omega.response, now.omega)});
+      const LimitedStart start =
+          limited_start(program_, past_of(rollout),
+                        {chain_.v.response.keeping_input(now.v), chain_.omega.response.keeping_input(now.omega)});
       for (std::size_t lane = first; lane < last; ++lane) {
         commands_.set_start(lane, start);
       }

@@ -83,7 +83,7 @@ std::vector<Case> sample_cases() {
   const Chain shorter = parameters({0.11, 0.07, 0.2163, 0.1331, -0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
   const Chain slow = parameters({0.11, 0.27, 0.0163, 0.1331, 0.1171, 0.9, 1.1, 0.2, 0.4, 1.3, 2.1});
   const Chain early = parameters({0.2, 0.3, 0.003, 0.004, -0.33, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
-  const BodyTwist moving{0.6, 0.1, -0.3};
+  const BodyTwist moving{0.6, 0.1, -0.3}, still{-0.2, -0.1, 0.4}, fast{1.9, 0.7, -1.3};
   const auto wheels =
       std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.003, 0.05, 200));
   const KnownDrive until_now{wheels, 2.013};
@@ -95,6 +95,9 @@ std::vector<Case> sample_cases() {
       {"1 Hz held commands", 1.0137, {.start = 6.31, .end = 11.27, .initial = moving, .longest_step = 0.11}, lagging},
       {"1 Hz held commands, warmed up", 1.0137, {.start = 6.31, .end = 11.27, .longest_step = 0.11}, shorter},
       {"20 Hz, slow part, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, slow},
+      {"20 Hz, slow part, far slower than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = still}, slow},
+      {"20 Hz, slow part, far faster than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = fast}, slow},
+      {"20 Hz, slow part, measured before any input acts", 0.05, {.start = 0.083, .end = 1.487, .initial = fast}, slow},
       {"20 Hz, slow part, warmed up", 0.05, {.start = 4.013, .end = 6.487}, slow},
       {"20 Hz, known until after the start",
        0.05,
@@ -142,6 +145,21 @@ TEST_CASE(
   CHECK(tests::jacobian_error(totals_jacobian(linearized).middleCols<5>(2), numeric) < tests::kDerivativeTolerance);
   const double left_behind = inputs.at(2.013 - 0.0231 - 0.113).v - inputs.at(4.487 - 0.0231 - 0.113).v;
   CHECK(totals_jacobian(linearized)(1, 2) == doctest::Approx(left_behind).epsilon(1e-12));
+}
+
+TEST_CASE("without lag, a speed that was measured before any input acts is exact in gains, delays and clock offset") {
+  const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
+  const DriveWindow window{.start = 0.083, .end = 1.487, .initial = BodyTwist{1.9, 0.7, -1.3}};
+  const Chain point = parameters({0.0, 0.0, 0.2163, 0.1331, 0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
+  const auto value = [&](const Eigen::VectorXd& p) {
+    Chain all = point;
+    all.segment<5>(2) = p;
+    return totals(drive_steps(inputs, chain_of(all), window));
+  };
+  const auto linearized = linearize_drive_steps(inputs, chain_of(point), window);
+  const auto numeric = tests::finite_difference(value, point.segment<5>(2), 1e-4);
+  CHECK(tests::jacobian_error(totals_jacobian(linearized).middleCols<5>(2), numeric, 0.1) <
+        tests::kDerivativeTolerance);
 }
 
 TEST_CASE("the identity chain hands each held input on as it is") {

@@ -20,7 +20,7 @@ const std::vector<double> kEdges{0.45, 0.6, 0.77, 1.25, 1.4};
 
 InputTrack commands() { return {kTimes, kSpeeds, kStill, kTurns}; }
 
-Lane lane_of(const Eigen::VectorXd& p) {
+ActuatorAxis lane_of(const Eigen::VectorXd& p) {
   return {&BodyTwist::omega, {.gain = p[2], .lag = p[0], .slow_share = p[3], .slow_lag = p[4]}, p[1]};
 }
 
@@ -32,7 +32,7 @@ TEST_CASE("a lane's means sum to what the whole chain drives") {
                            .gain_omega = 0.9,
                            .slow_share_omega = 0.3,
                            .slow_lag_omega = 0.8};
-  const Lane lane{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
+  const ActuatorAxis lane{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
   const InputTrack inputs = commands();
   const double long_before = -20.0;
   const std::vector<double> all{long_before, 0.45, 0.6, 0.77, 1.25, 1.4};
@@ -47,7 +47,7 @@ TEST_CASE("a lane's means sum to what the whole chain drives") {
 }
 
 TEST_CASE("a lane that is followed in two stretches ends as in one") {
-  const Lane lane{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
+  const ActuatorAxis lane{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
   const InputTrack inputs = commands();
   const LaneMotion whole = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, kEdges);
   const LaneMotion first = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, std::span(kEdges).first(3));

@@ -43,8 +43,8 @@ Drive drive(int seed, double seconds, const CommandChain& chain = kTrue) {
   for (int i = 0; i * kPeriod <= seconds; ++i) {
     edges.push_back(i * kPeriod);
   }
-  const Lane speed{&BodyTwist::v, speed_response(chain), chain.delay_v};
-  const Lane turn{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
+  const ActuatorAxis speed{&BodyTwist::v, speed_response(chain), chain.delay_v};
+  const ActuatorAxis turn{&BodyTwist::omega, turn_response(chain), chain.delay_omega};
   Eigen::VectorXd driven = lane_motion(commands, speed, {}, edges).value;
   Eigen::VectorXd turned = lane_motion(commands, turn, {}, edges).value;
   edges.pop_back();

@@ -16,16 +16,20 @@ from slipwise.calibration.drive import (
     prepare_drive,
 )
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
+from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
 from slipwise.calibration.learner import Belief, Progress
 from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration, Verdict
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.shortage import shortage_advice
 from slipwise.calibration.smoothing import smooth as smooth_windows
-from slipwise.calibration.verdict import FEWEST_WINDOWS, Judgement, give_verdict, judge
+from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.calibration.wheel_drive import has_wheels
-from slipwise.errors import LogError
+from slipwise.errors import LogError, ModelError
+from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models import schema
 from slipwise.models.limits import limits_section
@@ -48,7 +52,7 @@ class _Learned:
 def calibrate(
     log: Log,
     *,
-    input_name: str | None = None,
+    input: str | None = None,
     settings: Settings | None = None,
     smooth: bool = False,
     progress: Progress | None = None,
@@ -57,7 +61,7 @@ def calibrate(
 
     Args:
         log: what `open_log` returned.
-        input_name: "command" or "wheel"; by default commands where the log has them.
+        input: "command" or "wheel"; by default commands where the log has them.
         settings: what to learn and how. Where the estimator fits all windows at once, off-line, the verdict
             is that of the filter that runs along.
         smooth: also say what the slip was during each window, given the whole log: for slip that changes
@@ -65,17 +69,18 @@ def calibrate(
         progress: called with the share done, 0 to 1.
 
     Raises:
-        LogError: the log has no such input, no poses, or no window to learn from.
+        LogError: the log has no such input, no poses or no window to learn from, or no model holds it.
         SettingsError: a basis or a term is unknown.
     """
     settings = settings or Settings()
-    input_name = input_name or choose_input(log)
+    input_name = input or choose_input(log)
     drive = prepare_drive(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
+    found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
     run = start_learning(settings, input_name, windows, record=True, progress=progress)
-    learned = _judged(run, windows, settings)
-    model = Model(_content(learned, (log, input_name, settings), windows, run.bases))
+    learned = _judged(run, windows, (log, input_name, settings), found)
+    model = model_of(_content(learned, (log, input_name, settings), windows, run.bases), log, found)
     return Calibration(
         model,
         learned.verdict,
@@ -106,12 +111,35 @@ def refuse_empty(windows: WindowSet, log: Log) -> None:
     )
 
 
-def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learned:
+def model_of(content: schema.ModelFile, log: Log, found: tuple[Contradiction, ...]) -> Model:
+    """Make the model of a log, of which `found` is what contradicts itself.
+
+    Raises:
+        LogError: no model has such parameters; such a log may lead to them.
+    """
+    try:
+        return Model(content)
+    except ModelError as problem:
+        raise LogError(
+            f"no robot explains this log: {'; '.join(each.sentence for each in found) or problem.what}",
+            where=", ".join(source.path for source in log.sources[:3]),
+            advice=" ".join(text for each in found for text in each.advice)
+            or "check that poses and inputs are of one drive, in m, rad, m/s and rad/s",
+        ) from problem
+
+
+def _judged(
+    run: LearningRun,
+    windows: WindowSet,
+    given: tuple[Log, str, Settings],
+    found: tuple[Contradiction, ...],
+) -> _Learned:
     """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
 
     The predictions are those that `evaluate` makes of the same method, so that one error stands in the
     verdict, the model file, the report and the scores.
     """
+    log, input_name, settings = given
     shape = settings.filter_settings().noise.shape
     forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
@@ -123,11 +151,15 @@ def _judged(run: LearningRun, windows: WindowSet, settings: Settings) -> _Learne
     chosen = enough[-1] if enough else 0
     plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
     judgement = judge(predictions[chosen], plain)
-    verdict = give_verdict(judgement, belief, wheels_logged=has_wheels(windows.drive))
+    shortage = shortage_advice(log, input_name, sets[0], settings) if judgement.too_short else ()
+    wheels_advice = log.advice.get("wheel", "")
+    known = identified(belief, wheels_logged=has_wheels(windows.drive), wheels_advice=wheels_advice)
+    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
     search = run.limits()
     if search is None:
         return _Learned(belief, tails, judgement, verdict)
-    verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(search)))
+    if not any(each.spoils for each in found):
+        verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(search)))
     limits = None if belief.limited is None else limits_section(search)
     return _Learned(belief, tails, judgement, verdict, limits)
 
@@ -172,6 +204,8 @@ def _content(
                 for pair in learned.verdict.look_alikes
             ],
             timing=learned.verdict.timing,
+            reservations=list(learned.verdict.reservations),
+            contradictions=list(learned.verdict.contradictions),
             held_out=learned.judgement.held_out,
         ),
     )

@@ -51,6 +51,7 @@ class WindowSet:
     segments: tuple[_core.Segment, ...]
     known_since: Floats  # s; the input has no gap between it and the start
     usable: tuple[Ints, ...]  # of each run: indices of the poses that are not late
+    unknown_after: float  # s; an input is unknown once it is older than this
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
@@ -66,7 +67,7 @@ class WindowSet:
         distances = np.empty(len(self))
         for k, run in enumerate(self.drive):
             at = self.position == k
-            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy))
+            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy), self.unknown_after)
             distances[at] = driven.between(self.start[at], self.end[at])
         return distances
 
@@ -180,7 +181,7 @@ def input_track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
 
 def choose_input(log: Log) -> str:
     """Return "command" where the log has commands, otherwise "wheel"."""
-    return "command" if any(run.commands is not None for run in log.runs) else "wheel"
+    return next(iter(_input_names(log)), "wheel")
 
 
 def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRules) -> WindowSet:
@@ -201,6 +202,7 @@ def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRul
         segments=tuple(segments),
         known_since=np.concatenate([cut.known_since for cut in cuts]),
         usable=tuple(cut.usable for cut in cuts),
+        unknown_after=rules.unknown_after,
         left_out=_merged([item for cut in cuts for item in cut.left_out]),
     )
 
@@ -222,14 +224,32 @@ def _nothing_to_use(log: Log, input_name: str) -> str:
             if still
             else "the log has no poses"
         )
+    if not _input_names(log):
+        return "the log has no commands and no wheel speeds"
     return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
 
 
 def _advice(log: Log, input_name: str) -> str:
+    """Say what to do; another input is proposed only where the log has it."""
     if all(len(run.poses) < 2 for run in log.runs):
         return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
-    other = "command" if input_name == "wheel" else "wheel"
-    return f"use --input {other}, or name the topic or the columns (see `slipwise inspect`)"
+    if input_name in log.advice:
+        return log.advice[input_name]
+    name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"
+    others = [other for other in _input_names(log) if other != input_name]
+    if others:
+        return f"use --input {others[0]}, or {name}"
+    if not _input_names(log):
+        return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"
+    return f"record poses in the runs that have {input_name}s"
+
+
+def _input_names(log: Log) -> tuple[str, ...]:
+    """Return the kinds of input that the log has."""
+    found = {"command": [run.commands for run in log.runs], "wheel": [run.wheels for run in log.runs]}
+    return tuple(
+        name for name, series in found.items() if any(inputs is not None and len(inputs) for inputs in series)
+    )
 
 
 def _where(log: Log) -> str:

@@ -63,8 +63,13 @@ def advice_for_pairs(pairs: tuple[LookAlike, ...]) -> tuple[str, ...]:
     return tuple(advice)
 
 
-def timing_words(motion: _core.MotionModel, unknown: tuple[str, ...], *, wheels_logged: bool) -> str:
-    """Say which delay is which, and which offset of clocks it holds; empty where no time is learned."""
+def timing_words(
+    motion: _core.MotionModel, unknown: tuple[str, ...], *, wheels_logged: bool, wheels_advice: str = ""
+) -> str:
+    """Say which delay is which, and which offset of clocks it holds; empty where no time is learned.
+
+    `wheels_advice` says how wheel speeds of the log could be read, where they are not.
+    """
     sentences = []
     if motion.dynamics and motion.clock_offset:
         sentences.append(
@@ -76,7 +81,8 @@ def timing_words(motion: _core.MotionModel, unknown: tuple[str, ...], *, wheels_
             "the clocks, which commands and poses alone cannot tell apart."
         )
         if not wheels_logged:
-            sentences.append("Wheel speeds in the log would tell them apart.")
+            how = f"; {wheels_advice}" if wheels_advice else ""
+            sentences.append(f"Wheel speeds in the log would tell them apart{how}.")
     if motion.clock_offset:
         sentences.append(
             "clock_offset is how much later poses are stamped than the wheel speeds of the same moment."

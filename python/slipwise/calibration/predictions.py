@@ -37,6 +37,9 @@ class Predictions:
     def __len__(self) -> int:
         return len(self.t_start)
 
+    def __repr__(self) -> str:
+        return f"<Predictions: {len(self)} over {self.horizon:g} s by {self.method}>"
+
     @property
     def at_measured_start(self) -> Predictions:
         """The same model's predictions from the measured pose, where every baseline starts."""

@@ -4,15 +4,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from slipwise.calibration.identifiability import LookAlike
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
+from slipwise.frames import data_frame
 from slipwise.logs.log import LeftOut
 from slipwise.models.model import Model
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +34,8 @@ class Verdict:
     advice: tuple[str, ...] = ()  # what would determine them, and tell look-alikes apart
     look_alikes: tuple[LookAlike, ...] = ()  # pairs of parameters that the log can hardly tell apart
     timing: str = ""  # which delay and which clock offset is which
+    reservations: tuple[str, ...] = ()  # sentences of a good verdict that qualify it: it is not plainly good
+    contradictions: tuple[str, ...] = ()  # between poses and inputs: what was learned is no slip
 
     def __str__(self) -> str:
         return " ".join((self.sentence, *self.advice))
@@ -52,6 +59,28 @@ class History:
     structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
     structure_weight: Floats | None = None  # [W, S] their weights after the window
 
+    def __repr__(self) -> str:
+        return f"<History: {len(self.t)} windows of {len(self.names)} parameters, {self.alarm.sum()} alarms>"
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return one row a window: run, t, each parameter with its std, nis, weight, change and weights.
+
+        Parameters are as the filter has them, lags and delays as logarithms. Weights of bases stand under
+        `basis:NAME`, those of ways to learn from commands under `structure:NAME`.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        columns: dict[str, ArrayLike] = {"run": self.run, "t": self.t}
+        for k, name in enumerate(self.names):
+            columns |= {name: self.mean[:, k], f"std({name})": self.std[:, k]}
+        columns |= {"nis": self.nis, "weight": self.weight, "change": self.change, "alarm": self.alarm}
+        columns |= {f"basis:{name}": self.basis_weight[:, k] for k, name in enumerate(self.bases)}
+        if self.structure_weight is not None:
+            weights = self.structure_weight
+            columns |= {f"structure:{name}": weights[:, k] for k, name in enumerate(self.structures)}
+        return data_frame(columns)
+
     def alarms(self) -> tuple[tuple[int, float], ...]:
         """Return (run, time [s]) of every alarm: the end of the window that raised it."""
         at = np.flatnonzero(self.alarm)
@@ -68,6 +97,22 @@ class Calibration:
     left_out: tuple[LeftOut, ...]  # of the log and of the segmentation
     notes: tuple[str, ...]
     smoothed: SmoothedCourse | None = None  # where it was asked for
+
+    def __repr__(self) -> str:
+        state = "good" if self.verdict.good else "not good enough"
+        return f"<Calibration: {state}. {self.model!r}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the model with its verdict."""
+        return self.model._repr_html_()
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the model's parameters in physical units as a pandas data frame, one a row.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        return self.model.to_dataframe()
 
     @property
     def method(self) -> str:

@@ -11,12 +11,21 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
+from slipwise.calibration.log_table import LogTable
 from slipwise.errors import SettingsError
+from slipwise.files import read_whole
+from slipwise.logs.options import LogOptions
 from slipwise.segments import WindowRules
+from slipwise.validation_text import first_problem
 
+MAX_BYTES = 1024 * 1024  # of a settings file
+_SEE = "docs/settings.md lists the keys and what they take"
 FARTHEST_SENSOR = 50.0  # m from base_link; more is a wrong unit
-Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
+LEAST, LARGEST = 1e-9, 1e6  # of a setting in SI units; beyond them the mathematics loses its digits
+Positive = Annotated[float, Field(ge=LEAST, le=LARGEST)]
+NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST)]
+Ratio = Annotated[float, Field(ge=LEAST, le=100.0)]  # of one thing to another, or of a logarithm
+Seconds = Annotated[float, Field(ge=1e-6, le=100.0)]  # of a time constant or delay of a drive
 Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
 AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
@@ -46,16 +55,16 @@ class BasisTerms(_Section):
 class PriorTable(_Section):
     """Standard deviations before any data."""
 
-    slip_fraction: Positive = _PRIOR.slip_fraction
-    clock_offset_std: Positive = _PRIOR.clock_offset_std
-    lag: Positive = _PRIOR.lag
-    delay: Positive = _PRIOR.delay
-    log_std: Positive = _PRIOR.log_std
-    gain_std: Positive = _PRIOR.gain_std
-    slow_share_std: Positive = _PRIOR.slow_share_std
-    slow_lag: Positive = _PRIOR.slow_lag
+    slip_fraction: Annotated[float, Field(ge=LEAST, le=10.0)] = _PRIOR.slip_fraction
+    clock_offset_std: Seconds = _PRIOR.clock_offset_std
+    lag: Seconds = _PRIOR.lag
+    delay: Seconds = _PRIOR.delay
+    log_std: Annotated[float, Field(ge=1e-3, le=5.0)] = _PRIOR.log_std
+    gain_std: Ratio = _PRIOR.gain_std
+    slow_share_std: Ratio = _PRIOR.slow_share_std
+    slow_lag: Seconds = _PRIOR.slow_lag
     lever_std: Positive = _PRIOR.lever_std
-    sensor_yaw_std: Positive = _PRIOR.sensor_yaw_std
+    sensor_yaw_std: Ratio = _PRIOR.sensor_yaw_std
 
 
 class FilterTable(_Section):
@@ -112,7 +121,7 @@ class SmoothingTable(_Section):
 class GradientDescentTable(_Section):
     """The thesis's gradient descent (6.12)."""
 
-    learning_rate: Positive = _ESTIMATORS.gradient_descent.learning_rate
+    learning_rate: Annotated[float, Field(ge=LEAST, le=1.0)] = _ESTIMATORS.gradient_descent.learning_rate
     damping: Positive = _ESTIMATORS.gradient_descent.damping
     jacobian: Jacobian = _name(_ESTIMATORS.gradient_descent.jacobian)
 
@@ -128,7 +137,7 @@ class AutoTable(_Section):
     """Averaging of bases by how well they predict."""
 
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
-    learning_rate: Positive = _AVERAGE.weighing.learning_rate
+    learning_rate: Ratio = _AVERAGE.weighing.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.weighing.share
     richest: Annotated[float, Field(gt=0.0, lt=1.0)] = _AVERAGE.richest
     cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
@@ -144,7 +153,7 @@ class ColouredTable(_Section):
     fractions: list[Positive] = Field(list(_COLOURED.fractions), min_length=1)
     time_constants: list[Positive] = Field(list(_COLOURED.time_constants), min_length=1)
     white: Annotated[float, Field(gt=0.0, lt=1.0)] = _COLOURED.white
-    learning_rate: Positive = _COLOURED.weighing.learning_rate
+    learning_rate: Ratio = _COLOURED.weighing.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
 
 
@@ -154,7 +163,7 @@ class StartTable(_Section):
     learn: bool = True
     memories: list[Positive] = Field(list(_START.memories), min_length=1)
     measured: Annotated[float, Field(gt=0.0, lt=1.0)] = _START.measured
-    learning_rate: Positive = _START.weighing.learning_rate
+    learning_rate: Ratio = _START.weighing.learning_rate
     share: Annotated[float, Field(ge=0.0, lt=1.0)] = _START.weighing.share
 
 
@@ -180,7 +189,9 @@ class WindowTable(_Section):
 class VehicleTable(_Section):
     """What the log does not say of the robot; the methods with slip ratios alone need it."""
 
-    track: Positive = _core.NOMINAL_TRACK  # m, between the left and the right wheels
+    track: Annotated[float, Field(ge=0.01, le=100.0)] = (
+        _core.NOMINAL_TRACK
+    )  # m, between the left and the right wheels
 
 
 class MountTable(_Section):
@@ -217,6 +228,11 @@ class Settings(_Section):
     ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
     mount: MountTable = MountTable()
+    log: LogTable = LogTable()
+
+    def __repr__(self) -> str:
+        changed = self.model_dump(exclude_defaults=True)
+        return f"Settings({', '.join(f'{name}={value!r}' for name, value in changed.items())})"
 
     def window_length(self, input_name: str) -> float:
         """Return the length of the windows to learn from [s]."""
@@ -232,6 +248,10 @@ class Settings(_Section):
             table.still_speed,
             sensor=self.mount.pose,
         )
+
+    def log_options(self, **given: Any) -> LogOptions:
+        """Return the options for `open_log`: those of [log], and `given` ones before them."""
+        return self.log.options(self.window.unknown_after, given)
 
     def filter_settings(self) -> _core.CausalFilterSettings:
         """Return the core's settings of one causal filter."""
@@ -323,11 +343,7 @@ def load_settings(path: Path) -> Settings:
         SettingsError: the file is missing, not TOML, or has an unknown key or a wrong value.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except OSError as problem:
-        raise SettingsError(
-            f"cannot read: {problem.strerror}", where=str(path), advice="check the path"
-        ) from problem
+        content = tomllib.loads(read_whole(path, most=MAX_BYTES, error=SettingsError).decode("utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
         raise SettingsError(
             f"not a TOML file: {problem}", where=str(path), advice='write lines like basis = "auto"'
@@ -344,11 +360,7 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
     try:
         return Settings.model_validate(content)
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise SettingsError(
-            f"{key}: {first['msg']}", where=where, advice="see `slipwise calibrate --help`"
-        ) from problem
+        raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
 
 
 def _weighing(table: AutoTable | ColouredTable | StartTable) -> _core.WeighingSettings:

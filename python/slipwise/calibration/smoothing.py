@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,10 @@ from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.learner import Belief
 from slipwise.calibration.settings import Settings
 from slipwise.files import write_text_whole
+from slipwise.frames import data_frame
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +34,9 @@ class SmoothedCourse:
     mean: Floats  # [W, P] parameters during the window
     std: Floats  # [W, P] their standard deviations
 
+    def __repr__(self) -> str:
+        return f"<SmoothedCourse: {len(self.end)} windows of {', '.join(self.names)}>"
+
     @property
     def t(self) -> Floats:
         """When each window was half over, [W] s."""
@@ -40,14 +48,26 @@ class SmoothedCourse:
         Raises:
             OutputError: the file cannot be written.
         """
-        columns = [column for name in self.names for column in (name, f"std({name})")]
-        lines = [",".join(("run", "t_start", "t_end", *columns))]
-        for i in range(len(self.end)):
-            values = np.column_stack((self.mean[i], self.std[i])).ravel()
-            numbers = (self.start[i], self.end[i], *values)
-            lines.append(",".join((str(self.run[i]), *(repr(float(number)) for number in numbers))))
+        columns = self._columns()
+        lines = [",".join(columns)]
+        for run, *numbers in zip(*columns.values(), strict=True):
+            lines.append(",".join((str(run), *(repr(float(number)) for number in numbers))))
         write_text_whole(path, "\n".join(lines) + "\n")
         return path
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the columns that `save` writes as a pandas data frame.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        return data_frame(self._columns())
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        columns: dict[str, NDArray[Any]] = {"run": self.run, "t_start": self.start, "t_end": self.end}
+        for k, name in enumerate(self.names):
+            columns |= {name: self.mean[:, k], f"std({name})": self.std[:, k]}
+        return columns
 
 
 def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCourse:

@@ -1,129 +1,159 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict: does the model beat doing nothing, what is not determined, and which drive would help."""
+"""The verdict in words, of calibrations and evaluations: may the model be used, why not, and what to do."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from slipwise.calibration.identifiability import (
+    LookAlike,
     advice_for_pairs,
     drives_for,
     look_alikes,
     timing_words,
     undetermined,
 )
+from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement
 from slipwise.calibration.learner import Belief
-from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Verdict
-from slipwise.calibration.statistics import held_out_half, ratio_of_means
+from slipwise.logs.contradiction import Contradiction
 from slipwise.models.schema import HeldOut
 
-FEWEST_WINDOWS = 4  # held-out windows; fewer cannot be judged
-WORSE = 1.02  # ratio to the plain model beyond which an error counts as worse
+_REFUSED = "Do not use this model:"
+_BY_START = "It gains by averaging the last poses, not by what it learned."
+_FOLLOWED = {"command": "commands", "wheel": "wheels"}
+FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 
 @dataclass(frozen=True)
-class Judgement:
-    """The held-out comparison with the plain model."""
+class Identified:
+    """What is known of a model's parameters."""
 
-    held_out: HeldOut  # as `evaluate` shows them
-    position_ratio: tuple[float, float, float]  # from the same measured start, which is not the model's merit
-    heading_ratio: tuple[float, float, float]
-
-    @property
-    def beats_plain(self) -> bool:
-        """Better on the whole, one of position and heading beyond chance, and neither clearly worse."""
-        position, heading = _or_one(self.position_ratio), _or_one(self.heading_ratio)
-        clearly_worse = position[1] > WORSE or heading[1] > WORSE
-        clearly_better = position[2] < 1.0 or heading[2] < 1.0
-        return position[0] * heading[0] < 1.0 and clearly_better and not clearly_worse
-
-    @property
-    def gains_by_start(self) -> bool:
-        """Whether the errors shown are smaller than the plain model's by where they start alone."""
-        h = self.held_out
-        better = h.position * h.heading < h.plain_position * h.plain_heading
-        return better and not self.beats_plain and self.position_ratio[0] * self.heading_ratio[0] >= 1.0
+    parameters: int
+    undetermined: tuple[str, ...]
+    advice: tuple[str, ...] = ()
+    look_alikes: tuple[LookAlike, ...] = ()
+    timing: str = ""
+    from_log: str = "the log"  # that the parameters were learned from
 
 
-def judge(learned: Predictions, plain: Predictions) -> Judgement:
-    """Compare a method with the plain model on the second half of the windows.
+@dataclass(frozen=True)
+class LogFacts:
+    """What the log itself says about a verdict."""
 
-    Errors are those of the predictions as they were made. Ratios are between predictions that start at the
-    measured pose, both: where the last poses are averaged, that helps whatever was learned.
-    """
-    half, alike = held_out_half(len(learned)), learned.at_measured_start
-    held_out = HeldOut(
-        horizon=learned.horizon,
-        windows=half.stop - half.start,
-        position=_mean(learned.position_error[half]),
-        heading=_mean(learned.heading_error[half]),
-        plain_position=_mean(plain.position_error[half]),
-        plain_heading=_mean(plain.heading_error[half]),
-    )
-    if held_out.windows == 0:
-        return Judgement(held_out, (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan))
-    return Judgement(
-        held_out,
-        ratio_of_means(alike.position_error[half], plain.position_error[half]),
-        ratio_of_means(alike.heading_error[half], plain.heading_error[half]),
-    )
+    contradictions: tuple[Contradiction, ...] = ()
+    shortage: tuple[str, ...] = ()  # why there are so few segments, and what to do, where they are too few
+    input_name: str = "command"
 
 
-def give_verdict(judgement: Judgement, belief: Belief, *, wheels_logged: bool) -> Verdict:
-    """Put the judgement, what is not determined and what looks alike into words."""
+def identified(belief: Belief, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
+    """Say what a belief knows of its parameters, and which driving would tell the rest."""
     unknown, pairs = undetermined(belief), look_alikes(belief)
-    good, sentence = _sentence(judgement, len(unknown), len(belief.mean))
-    longer = ("Record a longer drive.",) if _too_short(judgement) else ()
+    advice = (*drives_for(unknown), *advice_for_pairs(pairs))
+    timing = timing_words(belief.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
+    return Identified(len(belief.mean), unknown, advice, pairs, timing)
+
+
+def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Verdict:
+    """Put a judgement into words: the fault that weighs most, the figures, and what to do."""
+    contradicted = tuple(each for each in facts.contradictions if each.spoils)
+    fault = (
+        _contradicted(contradicted) or _not_judged(judgement) or _not_better(judgement) or _untrue(judgement)
+    )
+    reservations = _reservations(judgement, facts)
+    sentences = [fault]
+    if not contradicted and not judgement.too_short:
+        start = _BY_START if fault and judgement.gains_by_start else ""
+        sentences += [_figures(judgement.held_out), start, *reservations, "" if fault else _unknown(known)]
+    advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
     return Verdict(
-        good,
-        sentence,
-        unknown,
-        (*longer, *drives_for(unknown), *advice_for_pairs(pairs)),
-        pairs,
-        timing_words(belief.motion, unknown, wheels_logged=wheels_logged),
+        not fault,
+        " ".join(sentence for sentence in sentences if sentence),
+        known.undetermined,
+        tuple(dict.fromkeys(advice)),
+        known.look_alikes,
+        "" if contradicted else known.timing,
+        () if fault else reservations,
+        tuple(each.sentence for each in contradicted),
     )
 
 
-def _too_short(judgement: Judgement) -> bool:
-    return judgement.held_out.windows < FEWEST_WINDOWS
+def _contradicted(contradictions: tuple[Contradiction, ...]) -> str:
+    return f"{_REFUSED} {'; '.join(each.sentence for each in contradictions)}." if contradictions else ""
 
 
-def _sentence(judgement: Judgement, unknown: int, parameters: int) -> tuple[bool, str]:
-    held_out = judgement.held_out
-    if _too_short(judgement):
-        return False, (
-            f"Too little driving to judge: {held_out.windows} held-out windows of {held_out.horizon:g} s, "
-            f"at least {FEWEST_WINDOWS} are needed."
-        )
-    figures = (
-        f"{held_out.position:.3g} m and {held_out.heading:.3g} rad after {held_out.horizon:g} s, "
-        f"where the plain model misses by {held_out.plain_position:.3g} m "
-        f"and {held_out.plain_heading:.3g} rad "
-        f"({held_out.windows} held-out windows)"
+def _not_judged(judgement: Judgement) -> str:
+    if not judgement.too_short:
+        return ""
+    return (
+        f"Too little driving to judge: {judgement.held_out.windows} held-out segments of "
+        f"{judgement.held_out.horizon:g} s, at least {FEWEST_WINDOWS} are needed."
     )
-    if not judgement.beats_plain:
-        start = (
-            " It gains by averaging the last poses, not by what it learned."
-            if judgement.gains_by_start
-            else ""
+
+
+def _not_better(judgement: Judgement) -> str:
+    fault = judgement.fault()
+    return f"{_REFUSED} it does not beat the kinematic baseline: {fault}." if fault else ""
+
+
+def _untrue(judgement: Judgement) -> str:
+    if judgement.consistency is None or not judgement.consistency.untrue:
+        return ""
+    return f"{_REFUSED} it beats the kinematic baseline, but what it says of its own errors is not true."
+
+
+def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
+    """What is to be known of a model beside its figures, even where it is good; sentences."""
+    partly = [
+        f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
+    ]
+    honest = "" if judgement.consistency is None else judgement.consistency.sentence()
+    return tuple(sentence for sentence in (honest, *partly) if sentence)
+
+
+def _figures(held_out: HeldOut) -> str:
+    return (
+        f"The learned model's mean error after {held_out.horizon:g} s is {held_out.position:.3g} m and "
+        f"{held_out.heading:.3g} rad, the kinematic baseline's {held_out.plain_position:.3g} m and "
+        f"{held_out.plain_heading:.3g} rad ({held_out.windows} held-out segments)."
+    )
+
+
+def _unknown(known: Identified) -> str:
+    count = len(known.undetermined)
+    if count == 0:
+        return ""
+    return f"{count} of {known.parameters} parameters stay about where they were before {known.from_log}."
+
+
+def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
+    """What to do about the faults and the reservations."""
+    advice = [text for each in facts.contradictions for text in each.advice]
+    if any(each.spoils for each in facts.contradictions):
+        return tuple(advice)
+    if judgement.too_short:
+        return (*facts.shortage, *advice)
+    if judgement.much_worse:
+        advice.append(
+            "Look at the report for late poses, pose jumps or a wrong topic; until then use the kinematic "
+            "baseline."
         )
+    elif not judgement.beats_baseline:
+        advice.append(_more_or_none(judgement.held_out, facts.input_name))
+    if judgement.consistency is not None:
+        advice += judgement.consistency.advice()
+    return tuple(advice)
+
+
+def _more_or_none(held_out: HeldOut, input_name: str) -> str:
+    """What to do where the gain may be chance."""
+    if held_out.windows < FEW:
+        minutes = 2.0 * FEW * held_out.horizon / 60.0
         return (
-            False,
-            f"Do not use this model: it does not beat the plain model. It misses by {figures}.{start}",
+            f"Record a longer drive: {held_out.windows} held-out segments of {held_out.horizon:g} s tell "
+            f"little; {FEW} take {minutes:.2g} minutes of driving."
         )
-    tail = (
-        f" {unknown} of {parameters} parameters stay about where they were before the log." if unknown else ""
+    return (
+        f"This robot follows its {_FOLLOWED[input_name]} as they are: use the kinematic baseline, or record "
+        "driving that is faster or turns more."
     )
-    return True, f"The learned model misses by {figures}.{tail}"
-
-
-def _mean(values: np.ndarray) -> float:
-    return float(values.mean()) if len(values) else 0.0
-
-
-def _or_one(ratio: tuple[float, float, float]) -> tuple[float, float, float]:
-    """A ratio that is not defined, since the plain model is never wrong, counts as a tie."""
-    return (1.0, 1.0, 1.0) if np.isnan(ratio[0]) else ratio

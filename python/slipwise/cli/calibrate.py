@@ -23,7 +23,7 @@ from slipwise.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from slipwise.calibration import Calibration, Settings
+    from slipwise.calibration import Calibration
     from slipwise.cli.output import Output
     from slipwise.logs import Log, LogOptions
 
@@ -67,6 +67,7 @@ def calibrate(
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.calibration import calibrate as learn
+    from slipwise.cli.command_line import command_line
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -74,16 +75,17 @@ def calibrate(
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.files import write_text_whole
     from slipwise.logs import open_log
+    from slipwise.reporting.session import report_calibration
 
     out = Output(json)
     chosen = chosen_settings(settings, basis, estimator)
-    refuse_unwritable(output, report, out.written_file, inputs=(*logs, settings))
+    refuse_unwritable(output, report, out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "calibrate") as folder:
             calibration = learn(
                 log,
-                input_name=input_name and input_name.value,
+                input=input_name and input_name.value,
                 settings=chosen,
                 smooth=smooth,
                 progress=lambda share: update("learning", share),
@@ -97,7 +99,9 @@ def calibrate(
             if not no_report:
                 files["report"] = report or folder / "report.html"
                 update("writing the report", 1.0)
-                _write_report(files["report"], log, calibration, chosen)
+                calibration = report_calibration(
+                    files["report"], log, calibration, chosen, command=command_line()
+                )
             if output is not None:
                 files["model"] = calibration.model.save(output)
             document = _document(log, calibration, files)
@@ -143,7 +147,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     learned, summary = content.provenance, summarise(calibration.model)
     out.line(
         f"Learned {content.slip.basis} from {content.input}s: "
-        f"{learned.learned_windows} windows, {learned.learned_seconds:.0f} s of driving."
+        f"{learned.learned_windows} segments, {learned.learned_seconds:.0f} s of driving."
     )
     show_summary(out, summary)
     show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))
@@ -154,25 +158,3 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
         show_alarms(out, calibration.history)
     show_look_alikes(out, calibration.verdict.look_alikes)
     show_parameters(out, summary.parameters)
-
-
-def _write_report(path: Path, log: Log, calibration: Calibration, settings: Settings) -> None:
-    """Judge what was learned beside doing nothing and edd-2, and write the page."""
-    from slipwise.cli.command_line import command_line
-    from slipwise.evaluation import EvaluationOptions, evaluate
-    from slipwise.reporting import write_report
-
-    learned = [calibration.method]
-    if calibration.history is None:
-        learned.append(settings.estimator)
-    methods = tuple(dict.fromkeys(("none", "edd-2", *learned)))
-    evaluation = evaluate(
-        log,
-        input_name=calibration.model.content.input,
-        settings=settings,
-        options=EvaluationOptions(methods=methods),
-    )
-    title = ", ".join(run.name for run in log.runs[:3])
-    write_report(
-        path, log=log, calibration=calibration, evaluation=evaluation, title=title, command=command_line()
-    )

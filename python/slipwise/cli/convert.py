@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Json, Logs, takes_log_options
+from slipwise.cli.options import Json, Logs, SettingsFile, takes_log_options
 
 if TYPE_CHECKING:
     from slipwise.logs import LogOptions
@@ -22,6 +22,7 @@ def convert(
         Path,
         typer.Option("-o", "--output", metavar="FILE", help="The new log: .csv, .csv.gz, .parquet or .mcap."),
     ],
+    settings: SettingsFile = None,
     json: Json = None,
 ) -> int:
     """Write one or several logs as one tidy table, or as MCAP; says what was guessed and what was left out.
@@ -31,6 +32,7 @@ def convert(
       slipwise convert drive.mcap -o drive.csv
       slipwise convert monday.bag tuesday.db3 -o both.parquet --pose-topic /rtk/odom
       slipwise convert wheels.csv -o drive.mcap --wheel-radius 0.165 --track 0.555
+      slipwise convert run.mcap -o run.csv --poses lidar_tum.txt --pose-clock-offset auto
     """  # noqa: D301
     from slipwise.cli.document import head, log_part
     from slipwise.cli.output import Output
@@ -41,7 +43,7 @@ def convert(
 
     out = Output(json)
     refuse_unknown_log_format(output)
-    refuse_unwritable(output, out.written_file, inputs=logs)
+    refuse_unwritable(output, out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("writing", 0.5)

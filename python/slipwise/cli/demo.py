@@ -101,7 +101,7 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
         cells = [number_text(error) for error in errors]
         rows.append((names[method], *cells))
     windows = ", ".join(f"{evaluation.score('none', h).windows} of {h:g} s" for h in horizons)
-    caption = f"Mean errors over held-out windows ({windows}), learned only from what came before each."
+    caption = f"Mean errors over held-out segments ({windows}), learned only from what came before each."
     out.table("How far predictions from commands alone miss", columns, rows, caption=caption)
     show_summary(out, summarise(result.calibration.model))
     verdict = result.calibration.verdict

@@ -22,6 +22,8 @@ from slipwise.cli.options import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from slipwise.calibration import Calibration, Settings, Verdict
     from slipwise.cli.output import Output
     from slipwise.evaluation import Evaluation
@@ -33,7 +35,10 @@ if TYPE_CHECKING:
 def evaluate(
     logs: Logs,
     log_options: LogOptions,
-    model: Annotated[Path | None, optional("MODEL.yaml", "Judge this model file too, as it is.")] = None,
+    model: Annotated[
+        list[Path] | None,
+        optional("MODEL.yaml", "Judge this model file too, as it is; give it again for several."),
+    ] = None,
     input_name: Input = None,
     horizons: Annotated[
         str, typer.Option(metavar="SECONDS", help="How far ahead, separated by commas.")
@@ -62,13 +67,15 @@ def evaluate(
 ) -> int:
     """Compare methods on logs: each window is predicted from what was known before it.
 
-    The exit code is 1 where the learned method (`model` if given, else `auto`, else the first that learns)
-    does not beat doing nothing at the longest horizon. Settings and result go into a new folder below `runs`.
+    The exit code is 1 where the learned method (the first model given, else `auto`, else the first that
+    learns) does not beat doing nothing at the longest horizon. Settings and result go into a new folder
+    below `runs`.
 
     \b
     Examples:
       slipwise evaluate drive.mcap
       slipwise evaluate drive.mcap --model model.yaml --horizons 2,5
+      slipwise evaluate drive.mcap --model monday.yaml --model tuesday.yaml --methods monday.yaml,tuesday.yaml
       slipwise evaluate drive.csv --input wheel --methods none,edd-2,odd-even-10,auto
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
@@ -88,14 +95,15 @@ def evaluate(
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
-    options = _options(horizons, methods, vendor_track_multiplier, model)
-    refuse_unwritable(predictions, report, out.written_file, inputs=(*logs, model, settings))
+    options, models = _options(horizons, methods, vendor_track_multiplier, model or []), model or []
+    read = (*logs, log_options.poses, *models, settings)
+    refuse_unwritable(predictions, report, out.written_file, inputs=read)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:
             evaluation = judge_methods(
                 log,
-                input_name=input_name and input_name.value,
+                input=input_name and input_name.value,
                 settings=chosen,
                 options=options,
                 progress=lambda name, share: update(f"method {name}", share),
@@ -109,19 +117,21 @@ def evaluate(
                 update("writing the report", 1.0)
                 _write_report(report, log, evaluation, calibration)
                 files["report"] = report
-            verdict = verdict_on(evaluation, options.model or calibration)
+            judged = next(iter(options.models.values()), None)
+            verdict = verdict_on(evaluation, judged or calibration)
             _write_result(out, folder, (log, evaluation, verdict), files)
-    _show(out, evaluation, verdict, files | {"run folder": folder})
+    steps = _next_step(evaluation, verdict, model or [])
+    _show(out, evaluation, verdict, files | {"run folder": folder}, steps)
     show_killed_runs(out, runs)
     return 0 if verdict is None or verdict.good else 1
 
 
 def _options(
-    horizons: str, methods: str | None, multiplier: float | None, model: Path | None
+    horizons: str, methods: str | None, multiplier: float | None, models: Sequence[Path]
 ) -> EvaluationOptions:
+    from slipwise.cli.model_names import named_models
     from slipwise.errors import SettingsError
     from slipwise.evaluation import EvaluationOptions
-    from slipwise.models import load_model
 
     try:
         seconds = tuple(float(part) for part in horizons.split(",") if part.strip())
@@ -132,19 +142,39 @@ def _options(
     names = None
     if methods is not None:
         names = tuple(dict.fromkeys(["none", *(part.strip() for part in methods.split(",") if part.strip())]))
-    return EvaluationOptions(seconds, names, multiplier, load_model(model) if model is not None else None)
+    return EvaluationOptions(seconds, names, multiplier, named_models(models))
 
 
-def _show(out: Output, evaluation: Evaluation, verdict: Verdict | None, files: dict[str, Path]) -> None:
+def _next_step(evaluation: Evaluation, verdict: Verdict | None, models: Sequence[Path]) -> tuple[str, ...]:
+    """What to do with a model file that was judged on a log it had not learned from."""
+    from slipwise.cli.next_step import after_checking
+
+    if verdict is None or not models or evaluation.models[0] not in evaluation.methods:
+        return ()
+    causal = evaluation.score(evaluation.models[0], max(evaluation.horizons)).causal
+    return after_checking(verdict, models[0]) if causal else ()
+
+
+def _show(
+    out: Output,
+    evaluation: Evaluation,
+    verdict: Verdict | None,
+    files: dict[str, Path],
+    steps: Sequence[str],
+) -> None:
+    from slipwise.cli.compare import comparison_sentences
     from slipwise.cli.tables import show_files, show_left_out, show_notes, show_scores, show_verdict
 
     show_notes(out, evaluation.notes)
     show_left_out(out, evaluation.left_out)
     show_scores(out, evaluation)
+    if len(evaluation.models) > 1:
+        for sentence in comparison_sentences(evaluation):
+            out.line(sentence)
     if verdict is None:
         out.line("No method that learns was asked for, so there is no verdict.")
     else:
-        show_verdict(out, verdict)
+        show_verdict(out, verdict, steps)
     show_files(out, files)
 
 
@@ -177,14 +207,14 @@ def _learned(log: Log, evaluation: Evaluation, settings: Settings) -> Calibratio
     from slipwise.calibration.settings import AVERAGE
     from slipwise.cli.evaluation_verdict import judged_method
 
-    method = judged_method(evaluation.methods)
+    method = judged_method(evaluation.methods, evaluation.models)
     if method is None:
         return None
     if method in _core.estimator_names():
         settings = settings.model_copy(update={"estimator": method})
-    elif method != "model":
+    elif method not in evaluation.models:
         settings = settings.model_copy(update={"basis": method, "estimator": AVERAGE})
-    return calibrate(log, input_name=evaluation.input, settings=settings)
+    return calibrate(log, input=evaluation.input, settings=settings)
 
 
 def _write_report(path: Path, log: Log, evaluation: Evaluation, calibration: Calibration | None) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict on an evaluation: does the learned method beat doing nothing, and what is not determined."""
+"""The verdict on an evaluation: the learned method against the baseline, and simpler ones against it."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from slipwise.calibration import Calibration, Verdict
+    from slipwise.calibration.verdict import Identified
     from slipwise.evaluation import Evaluation
     from slipwise.models import Model
 
-#: What learns nothing, or nothing causally, and rivals that no model file can hold.
+#: What learns nothing, or nothing causally, and baselines that no model file can hold.
 _NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo")
 
 
-def judged_method(methods: tuple[str, ...]) -> str | None:
-    """Return the method that is judged: `model`, else `auto`, else the first that learns a model; or None."""
+def judged_method(methods: tuple[str, ...], models: tuple[str, ...] = ()) -> str | None:
+    """Return the method judged: the first model file, else `auto`, else the first that learns; or None."""
     names = [name for name in methods if name not in _NOT_JUDGED]
-    return next((name for name in ("model", "auto") if name in names), names[0] if names else None)
+    return next((name for name in (*models, "model", "auto") if name in names), names[0] if names else None)
 
 
 def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Verdict | None:
@@ -26,31 +27,44 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
 
     Args:
         evaluation: with `none` among its methods.
-        source: what says which parameters are not determined: the calibration, or the model judged.
+        source: what says which parameters are not identifiable: the calibration, or the model judged.
     """
-    from slipwise.calibration import Calibration, Settings
-    from slipwise.calibration.plain import plain_forecaster
-    from slipwise.calibration.verdict import give_verdict, judge
-    from slipwise.models.parameter_table import physical_name
+    from slipwise.calibration.judgement import judge
+    from slipwise.calibration.verdict import LogFacts, give_verdict
 
-    method = judged_method(evaluation.methods)
-    longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
+    method = judged_method(evaluation.methods, evaluation.models)
     if method is None or source is None:
         return None
-    nothing_learned = plain_forecaster(Settings()).belief(0)
-    verdict = give_verdict(judge(longest[method], longest["none"]), nothing_learned, wheels_logged=False)
-    known = source.verdict if isinstance(source, Calibration) else source.content.verdict
-    advice = (*verdict.advice, *known.advice)
+    longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
+    facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input)
+    verdict = give_verdict(judge(longest[method], longest["none"]), _identified(source), facts)
+    return replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *_more_advice(evaluation, method)))))
+
+
+_SHORTAGE = ("Evaluate on a longer drive, or with shorter --horizons: these segments are too few.",)
+
+
+def _identified(source: Calibration | Model) -> Identified:
+    from slipwise.calibration import Calibration
+    from slipwise.calibration.verdict import Identified
+
+    calibrated = isinstance(source, Calibration)
+    content = source.model.content if isinstance(source, Calibration) else source.content
+    return Identified(
+        len(content.parameters),
+        tuple(content.verdict.undetermined),
+        tuple(content.verdict.advice),
+        timing=content.verdict.timing,
+        from_log="the log" if calibrated else "the log that they were learned from",
+    )
+
+
+def _more_advice(evaluation: Evaluation, method: str) -> tuple[str, ...]:
+    from slipwise.evaluation import simpler_method
+
+    contradicted = any(each.spoils for each in evaluation.contradictions)
+    simpler = None if contradicted else simpler_method(evaluation, method)
+    advice = () if simpler is None else (simpler.advice(),)
     if not evaluation.score(method, max(evaluation.horizons)).causal:
         advice = (*advice, "The model was learned from this very log: judge it on another drive.")
-    undetermined = tuple(known.undetermined)
-    sentence = verdict.sentence
-    if undetermined:
-        sentence += f" Not determined: {', '.join(map(physical_name, undetermined))}."
-    return replace(
-        verdict,
-        sentence=sentence,
-        undetermined=undetermined,
-        advice=tuple(dict.fromkeys(advice)),
-        timing=known.timing,
-    )
+    return advice

@@ -19,7 +19,7 @@ from slipwise.number_text import number_text
 if TYPE_CHECKING:
     from slipwise.cli.output import Output
     from slipwise.inspection import Inspection, Learnability, Stream, Timing
-    from slipwise.logs import LogOptions
+    from slipwise.logs import LogOptions, Survey
 
 
 @takes_log_options
@@ -32,8 +32,9 @@ def inspect(
 ) -> int:
     """Say what is in one or several logs and what could be learned from them.
 
-    Shows streams with rates and gaps, what had to be left out, how late the poses are, which speeds and yaw
-    rates were driven, and which parameters the log determines. A log that can be read is never an error here.
+    Shows every topic or column and what it is used as, streams with rates and gaps, what had to be left out,
+    how late the poses are, which speeds and yaw rates were driven, and which parameters the log determines. A
+    log that can be read is never an error here: what is missing or unclear is said, with the option to add.
 
     \b
     Examples:
@@ -44,16 +45,13 @@ def inspect(
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.writable import refuse_unwritable
-    from slipwise.inspection import inspect_log
-    from slipwise.logs import open_log
+    from slipwise.inspection import inspect_files
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
-    refuse_unwritable(out.written_file, inputs=(*logs, settings))
+    refuse_unwritable(out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
-        log = open_log(*logs, options=log_options)
-        update("learning", 0.5)
-        inspection = inspect_log(log, chosen)
+        inspection = inspect_files(logs, log_options, chosen, progress=update)
     out.document(_document(inspection))
     _show(out, inspection)
     return 0
@@ -72,7 +70,8 @@ def _document(inspection: Inspection) -> dict[str, object]:
     ]
     return (
         head("inspect")
-        | {"exit_code": 0, "runs": [run.name for run in log.runs]}
+        | {"exit_code": 0, "runs": [run.name for run in log.runs], "problem": inspection.problem}
+        | {"files": [asdict(survey) for survey in inspection.surveys]}
         | {"streams": [asdict(stream) for stream in inspection.streams]}
         | {"timing": [asdict(timing) for timing in inspection.timing]}
         | {"learnable": learnable, "maps": inspection.maps}
@@ -84,8 +83,11 @@ def _show(out: Output, inspection: Inspection) -> None:
     from slipwise.cli.tables import show_left_out, show_notes
 
     log = inspection.log
-    for source in log.sources:
-        out.line(f"{source.path}: {source.format}, {source.rows} rows or messages")
+    for survey in inspection.surveys:
+        _show_survey(out, survey)
+    if inspection.problem:
+        out.line(f"Nothing can be learned from this yet: {inspection.problem}")
+        return
     show_notes(out, log.notes)
     _show_streams(out, inspection.streams)
     show_left_out(out, log.left_out)
@@ -98,6 +100,35 @@ def _show(out: Output, inspection: Inspection) -> None:
         out.line()
     for item in inspection.learned:
         _show_learnability(out, item)
+
+
+def _show_survey(out: Output, survey: Survey) -> None:
+    """Show every topic or column; the reasons stand below, where they are not cut into pieces."""
+    from slipwise.cli.output import Column
+
+    rows: list[tuple[str, ...]]
+    if all(part.type == "column" for part in survey.parts):
+        columns = [Column("column", whole=True), Column("cells", True), Column("used as")]
+        rows = [(p.name, str(p.count), p.used_as or "-") for p in survey.parts]
+    else:
+        heads = (("messages", True), ("rate [Hz]", True), ("used as", False))
+        columns = [Column("topic", whole=True), Column("type"), *(Column(*head) for head in heads)]
+        rows = [
+            (p.name, p.type.split("/")[-1], str(p.count), number_text(p.rate), p.used_as or "-")
+            for p in survey.parts
+        ]
+    out.line(f"{survey.path}: {survey.format}")
+    out.table("Topics" if "topic" in columns[0].head else "Columns", columns, rows)
+    for part in survey.parts:
+        if part.used_as and part.why:
+            out.line(f"  {part.name} is the {part.used_as}: {part.why}")
+    reasons: dict[str, list[str]] = {}
+    for part in survey.parts:
+        if not part.used_as:
+            reasons.setdefault(part.why, []).append(part.name)
+    for why, names in reasons.items():
+        out.line(f"  Not used: {', '.join(names)} ({why})")
+    out.line()
 
 
 def _show_streams(out: Output, streams: Sequence[Stream]) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from slipwise.cli.options import Json, ModelFile, optional
+from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
     from slipwise.planning import CurvatureMap
@@ -25,7 +26,9 @@ def lattice(
     turns: Annotated[int, typer.Option(metavar="N", help="Headings a primitive turns by at most.")] = 3,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
     curvature: Annotated[float | None, optional("1/M", "Largest of commands; by the model's range.")] = None,
-    picture: Annotated[bool, typer.Option(help="Draw the curvature map, which needs Matplotlib.")] = True,
+    picture: Annotated[
+        bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Use a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
@@ -54,8 +57,10 @@ def lattice(
     from slipwise.reporting.curvature_picture import write_curvature_picture
 
     out = Output(json)
+    left_out = missing_picture(picture)
+    drawn = picture is not False and not left_out
     names = {"lattice": "lattice.json", "curvature": "curvature.csv", "picture": "curvature.png"}
-    files = {kind: output / name for kind, name in names.items() if picture or kind != "picture"}
+    files = {kind: output / name for kind, name in names.items() if drawn or kind != "picture"}
     refuse_unwritable(*files.values(), out.written_file, inputs=[model])
     learned = load_model(model)
     if not learned.content.verdict.good and not force:
@@ -65,16 +70,20 @@ def lattice(
     limits = limits_of(learned)
     limits = limits if curvature is None else replace(limits, curvature=curvature)
     held = curvature_map(learned, limits=limits)
-    if picture:
+    if drawn:
         write_curvature_picture(files["picture"], held, model.name)
     _write_table(files["curvature"], held)
     text = write_lattice(files["lattice"], learned, options=options, limits=limits).read_text(
         encoding="utf-8"
     )
     metadata = loads(text)["lattice_metadata"]
-    out.document(head("lattice") | {"exit_code": 0, "files": files, "lattice_metadata": metadata})
+    notes = [left_out] if left_out else []
+    content = {"exit_code": 0, "files": files, "notes": notes, "lattice_metadata": metadata}
+    out.document(head("lattice") | content)
     out.line(f"{metadata['number_of_trajectories']} primitives over {headings} headings at {speed:g} m/s.")
     out.line(f"Slip leaves a turning radius of {metadata['turning_radius']:.2f} m at this speed.")
+    for note in notes:
+        out.line(note)
     show_files(out, files)
     return 0
 

@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from slipwise.cli.calibrate import calibrate
+from slipwise.cli.compare import compare
 from slipwise.cli.convert import convert
 from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
@@ -37,6 +38,7 @@ _COMMANDS = (
     (calibrate, "Learn a motion model from logs."),
     (evaluate, "Compare methods on logs, honestly."),
     (show, "Say what a model has learned."),
+    (compare, "Say what differs between two models."),
     (export, "Write a model into files for other tools."),
     (plan, "Plan a route through a map with a learned model."),
     (lattice, "Write primitives that the robot can drive, for Nav2."),

@@ -76,8 +76,16 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
         "TOPIC",
         "Measured pose: Odometry, Pose[WithCovariance]Stamped, NavSatFix, TFMessage.",
     ),
-    "command_topic": (str, "TOPIC", "Commands: Twist, TwistStamped, AckermannDriveStamped."),
-    "wheel_topic": (str, "TOPIC", "Wheel odometry: Odometry (its twist) or JointState."),
+    "command_topic": (
+        str,
+        "TOPIC",
+        "Commands: Twist, TwistStamped, AckermannDriveStamped; none: do not read any.",
+    ),
+    "wheel_topic": (
+        str,
+        "TOPIC",
+        "Wheel odometry: Odometry (its twist) or JointState; none: do not read any.",
+    ),
     "imu_topic": (str, "TOPIC", "Imu that gives the heading beside a NavSatFix."),
     "pose_frame": (str, "FRAME", "TF: the fixed frame, such as map."),
     "child_frame": (str, "FRAME", "TF: the robot's frame, such as base_link."),
@@ -86,7 +94,29 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
     "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+    "command_scale": (
+        str,
+        "V,OMEGA",
+        "Factors of the commanded speed and yaw rate: 0.15,1 for rad/s of 0.15 m wheels; -1,1 for a sign.",
+    ),
+    "wheel_scale": (str, "V,OMEGA", "The same factors for the speed and yaw rate of the wheels."),
+    "pose_yaw_offset": (
+        float,
+        "RADIANS",
+        "Added to the heading of every pose: 3.1416 if the pose sensor looks backwards.",
+    ),
+    "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
+    "poses": (Path, "FILE", "Measured poses in a file beside the log: TUM, CSV, Parquet or RTKLIB .pos."),
+    "pose_clock_offset": (
+        str,
+        "SECONDS",
+        "Added to the stamps of --poses; `auto` finds it from the motion that log and poses share.",
+    ),
+    "start": (float, "SECONDS", "Leave out what is before, counted from the log's start."),
+    "end": (float, "SECONDS", "Leave out what is after, counted from the log's start."),
+    "columns": (str, "NAMES", "Columns of a table under other names, such as t=time,cmd_v=vx."),
 }
+_FACTORS = ("command_scale", "wheel_scale")
 
 
 def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
@@ -98,7 +128,7 @@ def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
 
     @functools.wraps(command)
     def wrapper(**given: Any) -> int:
-        options = _log_options({name: given.pop(name) for name in _LOG_OPTIONS})
+        options = _log_options({name: given.pop(name) for name in _LOG_OPTIONS}, given.get("settings"))
         return command(log_options=options, **given)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (*own, *added)]
@@ -129,9 +159,44 @@ def _parameter(name: str, kind: type, metavar: str, text: str) -> inspect.Parame
     )
 
 
-def _log_options(given: dict[str, Any]) -> LogOptions:
+def _log_options(given: dict[str, Any], settings: Path | None) -> LogOptions:
+    """Return the options of the command line, and for the others those of the settings file."""
     from slipwise.logs import LogOptions
+    from slipwise.logs.column_names import parse_columns
 
-    joints = ("left_joints", "right_joints")
-    split = {name: tuple(part for part in (given[name] or "").split(",") if part) for name in joints}
-    return LogOptions(**(given | split))
+    chosen: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    for name in ("left_joints", "right_joints"):
+        if name in chosen:
+            chosen[name] = tuple(part for part in chosen[name].split(",") if part)
+    if "columns" in chosen:
+        chosen["columns"] = parse_columns(chosen["columns"])
+    if "pose_clock_offset" in chosen:
+        chosen["pose_clock_offset"] = _seconds_or_auto(chosen["pose_clock_offset"])
+    for name in _FACTORS:
+        if name in chosen:
+            chosen[name] = _factors(name, chosen[name])
+    if settings is None:
+        return LogOptions(**chosen)
+    from slipwise.calibration import load_settings
+
+    return load_settings(settings).log_options(**chosen)
+
+
+def _factors(name: str, text: str) -> tuple[float, ...]:
+    from slipwise.errors import SettingsError
+
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise SettingsError(
+            f"'{text}' is no two factors, of speed and yaw rate",
+            where=f"--{name.replace('_', '-')}",
+            advice="such as 0.15,1 or -1,1",
+        ) from None
+
+
+def _seconds_or_auto(text: str) -> float | str:
+    try:
+        return float(text)
+    except ValueError:
+        return text  # LogOptions knows what else it may be

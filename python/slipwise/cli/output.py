@@ -18,8 +18,10 @@ from slipwise.errors import OutputError
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
 
 STDOUT = "-"
+UNWRAPPED = 10_000  # characters; no table is wider
 WIDTH_OF_A_PIPE = 160  # characters; nothing is cut where a file or a pipe takes the tables
 
 
@@ -28,8 +30,9 @@ class Column:
     """A column of a table."""
 
     head: str
-    right: bool = False  # numbers are aligned to the right
+    right: bool = False  # numbers are aligned to the right, and never wrapped
     whole: bool = False  # never wrapped
+    spare: int = 0  # a table that is too wide goes without its columns of the highest number first; 0: never
 
 
 @dataclass
@@ -73,27 +76,24 @@ class Output:
     def table(
         self, title: str, columns: Sequence[Column], rows: Sequence[Sequence[str]], *, caption: str = ""
     ) -> None:
-        """Print a table."""
+        """Print a table, without spare columns where it would be too wide."""
         if not self.for_people:
             return
-        from rich import box
-        from rich.table import Table
-
-        table = Table(
-            title=title,
-            caption=caption or None,
-            box=box.SIMPLE_HEAD,
-            title_justify="left",
-            caption_justify="left",
-        )
-        for column in columns:
-            justify: Literal["left", "right"] = "right" if column.right else "left"
-            table.add_column(printable(column.head), justify=justify, no_wrap=column.whole, overflow="fold")
-        for row in rows:
-            table.add_row(*(printable(cell) for cell in row))
         console = self._out()
+        shown = list(range(len(columns)))
+        made = _table(columns, rows, shown, narrow=False)
+        while _width(console, made) > console.width:
+            made = _table(columns, rows, shown, narrow=True)
+            most = max(columns[k].spare for k in shown)
+            if _width(console, made) <= console.width or most == 0:
+                break
+            shown = [k for k in shown if columns[k].spare < most]
+        missing = dict.fromkeys(column.head for k, column in enumerate(columns) if k not in shown)
+        if missing:
+            caption += f" Too narrow for {', '.join(missing)}: a wider terminal or --json has them."
+        made.title, made.caption = title, caption.strip() or None
         with console.capture() as captured:  # rich itself would end the process on a closed pipe
-            console.print(table)
+            console.print(made)
         _print(captured.get())
 
     def document(self, content: Mapping[str, Any]) -> None:
@@ -128,6 +128,34 @@ class Output:
             )
             self._console = Console(width=width, markup=False, emoji=False, highlight=False)
         return self._console
+
+
+def _table(
+    columns: Sequence[Column], rows: Sequence[Sequence[str]], shown: Sequence[int], *, narrow: bool
+) -> Table:
+    """Return the table of the columns that are shown, with less space between them where it is narrow."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(box=box.SIMPLE_HEAD, title_justify="left", caption_justify="left", collapse_padding=narrow)
+    for k in shown:
+        column, cells = columns[k], [printable(row[k]) for row in rows]
+        justify: Literal["left", "right"] = "right" if column.right else "left"
+        table.add_column(
+            printable(column.head),
+            justify=justify,
+            no_wrap=column.whole,
+            overflow="fold",
+            min_width=max(map(len, cells), default=0) if column.right else None,
+        )
+    for row in rows:
+        table.add_row(*(printable(row[k]) for k in shown))
+    return table
+
+
+def _width(console: Console, table: Table) -> int:
+    """How wide the table is where nothing is wrapped."""
+    return int(console.measure(table, options=console.options.update(max_width=UNWRAPPED)).maximum)
 
 
 def wrapped_text(text: str, width: int) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from slipwise.cli.options import Json, optional
+from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
     from slipwise.reporting.plan_drawing import Plan
@@ -27,8 +28,16 @@ def plan(
     radius: Annotated[float, typer.Option(metavar="METRES", help="Of a disc that covers the robot.")] = 0.5,
     cruise: Annotated[float | None, optional("M/S", "Speed; 0.7 of the model's range by default.")] = None,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
-    picture: Annotated[bool, typer.Option(help="Draw the PNG, which needs Matplotlib.")] = True,
+    picture: Annotated[
+        bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
+    ] = None,
     seed: Annotated[int, typer.Option(metavar="N", help="Of the search round obstacles.")] = 1,
+    most_cells: Annotated[
+        int,
+        typer.Option(
+            metavar="N", min=1, max=10**9, help="Larger maps are refused; each cell takes 40 bytes."
+        ),
+    ] = 25_000_000,
     json: Json = None,
 ) -> int:
     """Plan commands from one pose to another through a map, as the learned model says that the robot drives.
@@ -51,8 +60,9 @@ def plan(
     from slipwise.reporting.plan_page import summary
 
     out = Output(json)
-    learned, grid = load_model(model), load_map(map_file)
-    kinds = ("png", "html", "csv") if picture else ("html", "csv")
+    left_out = missing_picture(picture)
+    learned, grid = load_model(model), load_map(map_file, most_cells=most_cells)
+    kinds = ("png", "html", "csv") if picture is not False and not left_out else ("html", "csv")
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in kinds}
     refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
     begin, end = _pose(start, "--from"), _pose(goal, "--to")
@@ -64,8 +74,9 @@ def plan(
     )
     drawn = Plan(planner.route(begin, end), grid, radius, begin, end, f"{model.name} on {map_file.name}")
     _write(files, drawn)
-    out.document(head("plan") | {"exit_code": 0, "files": files} | _figures(drawn))
-    for sentence in summary(drawn):
+    notes = [left_out] if left_out else []
+    out.document(head("plan") | {"exit_code": 0, "files": files, "notes": notes} | _figures(drawn))
+    for sentence in (*summary(drawn), *notes):
         out.line(sentence)
     show_files(out, files)
     return 0

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from slipwise.cli.options import Folder, Json, Runs, optional
+from slipwise.cli.pictures import missing_picture
 
 if TYPE_CHECKING:
     from slipwise.reproduction import ChapterResult
@@ -41,8 +42,9 @@ def reproduce(
 ) -> int:
     """Make every figure and table of the thesis again, each with what agrees, what differs and why.
 
-    Writes index.html, and markdown/README.md with its pictures. Without a real log, what is made from it is
-    left out and counted. The same seed and logs give the same files, but for times that are measured.
+    Writes index.html and, where Matplotlib is installed, markdown/README.md with its pictures. Without a real
+    log, what is made from it is left out and counted. The same seed and logs give the same files, but for
+    times that are measured.
 
     \b
     Examples:
@@ -70,7 +72,11 @@ def reproduce(
         with place as folder:
             made = make_again(BenchPlan(seed, data), chapters=chapters, progress=update)
             files = write_reproduction(folder, made)
-            out.document(_document(made, files, seed))
+            left_out = missing_picture(None, "The Markdown with its pictures")
+            notes = [left_out] if left_out else []
+            out.document(_document(made, files, seed) | {"notes": notes})
+    for note in notes:
+        out.line(note)
     _show(out, made, files)
     show_killed_runs(out, runs)
     return 0

@@ -72,7 +72,9 @@ def show_verdict(output: Output, verdict: Verdict | VerdictSection, next_step: S
 
 
 def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:
-    """Return what a verdict says in two words, and its colour."""
+    """Return what a verdict says in a few words, and its colour."""
+    if verdict.good and verdict.reservations:
+        return "GOOD, WITH RESERVATIONS.", "yellow"
     return ("GOOD.", "green") if verdict.good else ("NOT GOOD ENOUGH.", "red")
 
 
@@ -122,30 +124,30 @@ def show_scores(output: Output, evaluation: Evaluation) -> None:
     """Show one table per horizon: errors, ratios, the in-sample residual and how honest the covariance is."""
     for horizon in evaluation.horizons:
         scores = [score for score in evaluation.scores if score.horizon == horizon]
-        title = f"After {horizon:g} s, from {evaluation.input}s ({scores[0].windows} held-out windows)"
+        title = f"After {horizon:g} s, from {evaluation.input}s ({scores[0].windows} held-out segments)"
         output.table(title, _SCORE_COLUMNS, [_score_row(score) for score in scores])
     output.line(_LEGEND)
     if any(not score.causal for score in evaluation.scores):
-        output.line("† not causal: it has learned from the very windows it is judged on.")
+        output.line("† not causal: it has learned from the very segments it is judged on.")
 
 
 _SCORE_COLUMNS = (
-    Column("method", whole=True),
+    Column("method"),
     Column("position [m]", True),
     Column("/none", True),
-    Column("/rival", True),
-    Column("in-sample*", True),
+    Column("/rival", True, spare=3),
+    Column("in-sample*", True, spare=4),
     Column("heading [deg]", True),
     Column("/none", True),
-    Column("/rival", True),
-    Column("in-sample*", True),
-    Column("NIS", True),
-    Column("50/90/95 %", True),
+    Column("/rival", True, spare=3),
+    Column("in-sample*", True, spare=4),
+    Column("NIS", True, spare=1),
+    Column("50/90/95 %", True, spare=2),
 )
 _LEGEND = (
     "Mean errors with 95 % intervals; /none and /rival: relative to doing nothing and to the best other one. "
     "NIS is 3 and the shares are 50/90/95 % where the predicted covariance is true. "
-    "* too optimistic: the error after the window itself was learned, as in the thesis."
+    "* too optimistic: the error after the segment itself was learned, as in the thesis."
 )
 
 

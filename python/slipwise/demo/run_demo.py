@@ -70,11 +70,11 @@ def run_demo(
     progress("reading the bag", 0.7)
     log = open_log(bag)
     progress("learning", 0.75)
-    calibration = calibrate(log, input_name=INPUT)
+    calibration = calibrate(log, input=INPUT)
     model = calibration.model.save(folder / "model.yaml")
     evaluation = evaluate(
         log,
-        input_name=INPUT,
+        input=INPUT,
         settings=Settings(),
         options=EvaluationOptions(HORIZONS, METHODS, VENDOR_TRACK_MULTIPLIER),
         progress=lambda name, share: progress(f"judging {name}", 0.8 + 0.1 * share),

@@ -4,5 +4,14 @@
 from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
 from slipwise.evaluation.prediction_file import write_predictions
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.evaluation.simpler import proposing, simpler_method
 
-__all__ = ["Evaluation", "EvaluationOptions", "Score", "evaluate", "write_predictions"]
+__all__ = [
+    "Evaluation",
+    "EvaluationOptions",
+    "Score",
+    "evaluate",
+    "proposing",
+    "simpler_method",
+    "write_predictions",
+]

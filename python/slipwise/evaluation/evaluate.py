@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,12 +22,14 @@ from slipwise.calibration.statistics import (
     summarise,
 )
 from slipwise.errors import LogError, SettingsError
-from slipwise.evaluation.methods import Contest, method_info, method_names
+from slipwise.evaluation.methods import Contest, method_info, method_names, refuse_names_of_methods
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models.model import Model
 
 DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
+SHORTEST_HORIZON = 0.5  # s; what is driven in less is hardly more than the noise of the poses
 Report = Callable[[str, float], None]
 
 
@@ -38,13 +40,20 @@ class EvaluationOptions:
     horizons: tuple[float, ...] = DEFAULT_HORIZONS  # s
     methods: tuple[str, ...] | None = None  # None: all that apply
     vendor_track_multiplier: float | None = None
-    model: Model | None = None
+    model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """The model files by the names of their methods."""
+        if self.model is None:
+            return {}
+        return {"model": self.model} if isinstance(self.model, Model) else dict(self.model)
 
 
 def evaluate(
     log: Log,
     *,
-    input_name: str | None = None,
+    input: str | None = None,
     settings: Settings | None = None,
     options: EvaluationOptions | None = None,
     progress: Report | None = None,
@@ -56,17 +65,18 @@ def evaluate(
         SettingsError: a method, a basis or a horizon is wrong.
     """
     settings, options = settings or Settings(), options or EvaluationOptions()
-    input_name = _input_name(log, input_name, options.model)
+    input_name, models = _input_name(log, input, options.models), options.models
+    refuse_names_of_methods(models)
     contest, notes = _contest(log, input_name, settings, options)
     methods = options.methods or method_names(contest)
     for name in methods:
-        method_info(name)
+        method_info(name, models)
     predictions: list[Predictions] = []
     for done, name in enumerate(methods):
         if progress is not None:
             progress(name, done / len(methods))
-        forecaster = method_info(name).make(name, contest)
-        if name == "model" and _learned_from(log, options.model):
+        forecaster = method_info(name, models).make(name, contest)
+        if name in models and _learned_from(log, models[name]):
             forecaster = replace(forecaster, causal=False)
         predictions += forecast_all(forecaster, contest.windows, contest.targets)
     return Evaluation(
@@ -78,17 +88,24 @@ def evaluate(
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
+        contradictions=contradictions(
+            log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw
+        ),
+        models=tuple(models),
     )
 
 
-def _input_name(log: Log, input_name: str | None, model: Model | None) -> str:
-    if model is not None and input_name is not None and model.content.input != input_name:
-        raise SettingsError(
-            f"the model was learned from {model.content.input} input, not {input_name}",
-            where="--input",
-            advice=f"use --input {model.content.input}",
-        )
-    return input_name or (model.content.input if model is not None else choose_input(log))
+def _input_name(log: Log, input_name: str | None, models: Mapping[str, Model]) -> str:
+    for name, model in models.items():
+        learned = model.content.input
+        if input_name is not None and learned != input_name:
+            raise SettingsError(
+                f"{name} was learned from {learned} input, not {input_name}",
+                where="--input",
+                advice=f"use --input {learned}, and models that were learned from the same input",
+            )
+        input_name = learned
+    return input_name or choose_input(log)
 
 
 def _contest(
@@ -110,17 +127,25 @@ def _contest(
         raise LogError(
             "the log has no two windows of any horizon asked for",
             where=", ".join(source.path for source in log.sources[:3]),
-            advice="ask for shorter --horizons, or record a longer drive",
+            advice=_more_windows(sets),
         )
     return Contest(
-        input_name, settings, windows, targets, options.vendor_track_multiplier, options.model
+        input_name, settings, windows, targets, options.vendor_track_multiplier, options.models
     ), notes
 
 
-def _learned_from(log: Log, model: Model | None) -> bool:
+def _more_windows(sets: Sequence[WindowSet]) -> str:
+    """What would give windows: shorter horizons where these are long, else what was rejected."""
+    rejected = "; ".join(f"{item.count} x {item.reason}" for item in sets[0].left_out)
+    if sets[0].length > SHORTEST_HORIZON:
+        return (
+            f"ask for shorter --horizons, such as {SHORTEST_HORIZON:g}{f' ({rejected})' if rejected else ''}"
+        )
+    return rejected or f"it needs poses and inputs together for {4.0 * sets[0].length:g} s at least"
+
+
+def _learned_from(log: Log, model: Model) -> bool:
     """Whether the model file was learned from one of these very logs; then it does not count as causal."""
-    if model is None:
-        return False
     hashes = {reference.sha256 for reference in model.content.provenance.logs}
     return any(source.sha256 in hashes for source in log.sources)
 

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field, replace
 
 from slipwise import _core
 from slipwise.calibration.drive import WindowSet
@@ -27,7 +27,7 @@ class Contest:
     windows: WindowSet  # to learn from
     targets: tuple[WindowSet, ...]  # to predict, one set per horizon
     vendor_track_multiplier: float | None = None
-    model: Model | None = None
+    models: Mapping[str, Model] = field(default_factory=dict)  # model files as they are, by method
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,7 @@ def method_names(contest: Contest) -> tuple[str, ...]:
     if contest.vendor_track_multiplier is not None:
         names.append("vendor")
     names += [*_core.basis_names(), "batch"]
-    if contest.model is not None:
-        names.append("model")
+    names += contest.models
     if contest.settings.basis == "custom":
         names.append("custom")
     if contest.settings.estimator not in (AVERAGE, *names):
@@ -53,8 +52,8 @@ def method_names(contest: Contest) -> tuple[str, ...]:
     return (*names, "auto")
 
 
-def method_info(name: str) -> MethodInfo:
-    """Return how the method is made.
+def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
+    """Return how the method is made; `models` are the names of model files among the methods.
 
     Raises:
         SettingsError: there is no such method.
@@ -79,6 +78,8 @@ def method_info(name: str) -> MethodInfo:
         "surface-bayesian": MethodInfo(_surface, "slip surface by Bayesian linear regression (thesis 5.13)"),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
+    if name in models:
+        return special["model"]
     if name in special:
         return special[name]
     if name in _core.basis_names():
@@ -89,6 +90,18 @@ def method_info(name: str) -> MethodInfo:
         return MethodInfo(_estimator, f"the estimator {name} with the basis of the settings{about}")
     known = ", ".join([*special, *_core.basis_names(), *_core.estimator_names()])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
+
+
+def refuse_names_of_methods(models: Collection[str]) -> None:
+    """Raise SettingsError where a model file has the name of another method."""
+    for name in set(models) - {"model"}:
+        try:
+            method_info(name)
+        except SettingsError:
+            continue
+        raise SettingsError(
+            f"a model has the name of the method {name}", where="model", advice="name it by its file"
+        )
 
 
 def _learned(name: str, contest: Contest) -> Forecaster:
@@ -124,8 +137,8 @@ def _vendor(name: str, contest: Contest) -> Forecaster:
 
 
 def _model(name: str, contest: Contest) -> Forecaster:
-    if contest.model is None:
+    if name not in contest.models:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
-    return model_forecaster(contest.model, contest.windows.drive)
+    return replace(model_forecaster(contest.models[name], contest.windows.drive), method=name)

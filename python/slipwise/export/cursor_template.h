@@ -18,9 +18,10 @@ static inline int slipwise_count_until(const slipwise_commands *commands, slipwi
   return low;
 }
 
-static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, slipwise_real delay,
-                                                 slipwise_real start, slipwise_real known_until) {
+static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, const slipwise_start *at,
+                                                 slipwise_real delay, slipwise_real start, slipwise_real known_until) {
   slipwise_cursor cursor;
+  (void)at;
   cursor.commands = commands;
   cursor.delay = delay;
   cursor.next = slipwise_count_until(commands, start - delay);
@@ -40,6 +41,9 @@ static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) {
   }
   return held;
 }
+
+/* Whether some command acts already. */
+static inline int slipwise_acts(const slipwise_cursor *cursor) { return cursor->next > 0; }
 
 /* When the channel changes next, or `never`. */
 static inline slipwise_real slipwise_change(const slipwise_cursor *cursor, slipwise_real never) {

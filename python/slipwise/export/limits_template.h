@@ -35,6 +35,14 @@ static inline slipwise_real slipwise_ramp_seconds(const slipwise_lane *lane, sli
   return SLIPWISE_MATH(fabs)(to - from) / slipwise_ramp_rate(lane, from, to);
 }
 
+/* On its way to `target` it has come as far as `state`, if it was not yet so far. */
+static inline void slipwise_ramp_reach(slipwise_ramp *ramp, slipwise_real state, slipwise_real target) {
+  const slipwise_real done = state - ramp->state, whole = target - ramp->state;
+  if (done * whole > 0) {
+    ramp->state = SLIPWISE_MATH(fabs)(done) < SLIPWISE_MATH(fabs)(whole) ? state : target;
+  }
+}
+
 /* Follows the target for some seconds; returns the integral. */
 static inline slipwise_real slipwise_ramp_follow(const slipwise_lane *lane, slipwise_ramp *ramp,
                                                  slipwise_real seconds) {
@@ -82,10 +90,11 @@ static inline slipwise_drive slipwise_from_sides(const slipwise_real sides[2]) {
   return twist;
 }
 
-/* The commands of one channel as the drive sees them: limited, piece by piece, and delayed. The drive is at rest before
- * the oldest command. */
+/* The commands of one channel as the drive sees them: limited, piece by piece, and delayed. */
 typedef struct {
   const slipwise_commands *commands;
+  slipwise_start at;
+  int v_reached, omega_reached; /* whether the ramps have been moved to where the measured drive is */
   slipwise_real delay, known_until;
   slipwise_ramp speed, yaw_rate, side[2];
   slipwise_drive told, held;
@@ -138,6 +147,45 @@ static inline slipwise_real slipwise_seconds_left(const slipwise_cursor *cursor)
   return left;
 }
 
+/* What the commands of a measured drive are, in front of the sides' limits. */
+static inline slipwise_drive slipwise_asked(const slipwise_cursor *cursor) {
+  slipwise_drive asked = cursor->at.keeping;
+#if SLIPWISE_LIMITS_SIDES
+  asked.v /= SLIPWISE_LIMITS_GAIN_V;
+  asked.omega /= SLIPWISE_LIMITS_GAIN_OMEGA;
+#endif
+  return asked;
+}
+
+/* Before the piece that ends at `end`: the drive was measured, and ramps have come at least as far as that. */
+static inline void slipwise_reach(slipwise_cursor *cursor, slipwise_real end) {
+  const slipwise_drive asked = slipwise_asked(cursor);
+  const int v = !cursor->v_reached && end > cursor->at.v_until;
+  const int omega = !cursor->omega_reached && end > cursor->at.omega_until;
+  slipwise_drive goal;
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+  if (v) {
+    slipwise_ramp_reach(&cursor->speed, asked.v, goal.v);
+    cursor->v_reached = 1;
+  }
+  if (omega) {
+    slipwise_ramp_reach(&cursor->yaw_rate, asked.omega, goal.omega);
+    cursor->omega_reached = 1;
+  }
+#if SLIPWISE_LIMITS_SIDES
+  if (v || omega) {
+    slipwise_real sides[2], goals[2];
+    int i;
+    slipwise_to_sides(asked, sides);
+    slipwise_to_sides(goal, goals);
+    for (i = 0; i < 2; ++i) {
+      slipwise_ramp_reach(&cursor->side[i], sides[i], slipwise_limited(&slipwise_lanes[2], goals[i]));
+    }
+  }
+#endif
+}
+
 static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwise_real taken) {
   slipwise_drive mean;
   mean.v = slipwise_ramp_mean(&slipwise_lanes[0], &cursor->speed, cursor->told.v, cursor->piece, taken);
@@ -184,13 +232,16 @@ static inline void slipwise_next_piece(slipwise_cursor *cursor) {
   left = slipwise_told_next(cursor) - cursor->change;
   if (slipwise_seconds_left(cursor) > 0 && cursor->pieces <= SLIPWISE_RAMP_PIECES) {
     const slipwise_real taken = cursor->piece < left ? cursor->piece : left;
-    cursor->held = slipwise_piece_mean(cursor, taken);
-    cursor->change += taken;
-    ++cursor->pieces;
-  } else {
-    cursor->held = slipwise_goal(cursor);
-    cursor->change = slipwise_told_next(cursor);
+    slipwise_reach(cursor, cursor->change + taken);
+    if (slipwise_seconds_left(cursor) > 0) {
+      cursor->held = slipwise_piece_mean(cursor, taken);
+      cursor->change += taken;
+      ++cursor->pieces;
+      return;
+    }
   }
+  cursor->held = slipwise_goal(cursor);
+  cursor->change = slipwise_told_next(cursor);
 }
 
 static inline slipwise_drive slipwise_held(const slipwise_cursor *cursor) { return cursor->held; }
@@ -207,16 +258,39 @@ static inline void slipwise_catch_up(slipwise_cursor *cursor, slipwise_real t) {
   }
 }
 
-static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, slipwise_real delay,
-                                                 slipwise_real start, slipwise_real known_until) {
-  const slipwise_ramp rest = {0, 0};
-  const slipwise_drive nothing = {0, 0};
+/* Whether some command acts already. */
+static inline int slipwise_acts(const slipwise_cursor *cursor) { return cursor->next > 0; }
+
+/* Before the oldest command, sent at `first`: at rest, or where it does not act by the time at which the drive was
+ * measured, what keeps that. */
+static inline void slipwise_begin(slipwise_cursor *cursor, slipwise_real first) {
+  const slipwise_drive asked = slipwise_asked(cursor);
+  slipwise_drive before = {0, 0};
+  slipwise_real sides[2];
+  cursor->v_reached = !cursor->at.measured || first > cursor->at.v_until;
+  cursor->omega_reached = !cursor->at.measured || first > cursor->at.omega_until;
+  if (cursor->at.measured && cursor->v_reached) {
+    before.v = asked.v;
+  }
+  if (cursor->at.measured && cursor->omega_reached) {
+    before.omega = asked.omega;
+  }
+  slipwise_to_sides(before, sides);
+  cursor->speed.state = cursor->speed.target = before.v;
+  cursor->yaw_rate.state = cursor->yaw_rate.target = before.omega;
+  cursor->side[0].state = cursor->side[0].target = sides[0];
+  cursor->side[1].state = cursor->side[1].target = sides[1];
+  cursor->told = cursor->held = before;
+}
+
+static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, const slipwise_start *at,
+                                                 slipwise_real delay, slipwise_real start, slipwise_real known_until) {
   slipwise_cursor cursor;
   cursor.commands = commands;
   cursor.delay = delay;
   cursor.known_until = known_until;
-  cursor.speed = cursor.yaw_rate = cursor.side[0] = cursor.side[1] = rest;
-  cursor.told = cursor.held = nothing;
+  cursor.at = *at;
+  slipwise_begin(&cursor, slipwise_command_at(commands, 0)->t);
   cursor.piece = SLIPWISE_RAMP_PIECE;
   cursor.next = cursor.pieces = 0;
   cursor.change = slipwise_told_next(&cursor);

@@ -60,7 +60,8 @@ typedef struct {
 } slipwise_command;
 
 /* A ring of commands in order of time, in memory of the caller. It must reach back by the delay, and by eight lags
- * where no drive is given; commands that are planned for later may be in it too. */
+ * where no drive is given or a channel has two lags; commands that are planned for later may be in it too. Before the
+ * oldest one the drive is at rest or, where it is given and that command does not act yet, goes on as it does. */
 typedef struct {
   slipwise_command *slots;
   int capacity, first, count;
@@ -72,7 +73,7 @@ typedef struct {
 
 typedef struct {
   slipwise_real start, end;    /* [s] */
-  const slipwise_drive *drive; /* at the start, where measured or predicted; NULL: it follows from the commands */
+  const slipwise_drive *drive; /* at the start, where measured or predicted; NULL: from rest, by the commands */
   slipwise_real gx, gy;        /* gravity in the robot's frame [m/s^2]: g sin(pitch), -g cos(pitch) sin(roll) */
 } slipwise_window;
 
@@ -157,6 +158,13 @@ static inline void slipwise_slip(const slipwise_model *model, slipwise_drive dri
 @SLIP@
 }
 
+/* A drive that was measured: which input keeps it, and until when commands act by then, by their stamps. */
+typedef struct {
+  int measured;
+  slipwise_drive keeping;
+  slipwise_real v_until, omega_until;
+} slipwise_start;
+
 @CURSOR@
 /* Moves a lag's output over a step under a held input, exactly; returns the integral of the output. */
 static inline slipwise_real slipwise_lag_step(slipwise_real *output, slipwise_real input, slipwise_real lag,
@@ -183,14 +191,33 @@ static inline slipwise_channel slipwise_settled(const slipwise_response *respons
   return channel;
 }
 
-/* The whole was measured: what the fast part does not explain is the slow part's. */
+static inline slipwise_real slipwise_lesser(slipwise_real a, slipwise_real b) { return a < b ? a : b; }
+static inline slipwise_real slipwise_greater(slipwise_real a, slipwise_real b) { return a > b ? a : b; }
+
+/* The whole was measured while `input` acts, or before any does: then the channel is settled. The slow part is what the
+ * fast one does not explain, within the range of what it would be by the inputs alone, where it settles, and the value
+ * without what the fast one settles at: so a constant input carries the drive to its own speed, and not beyond. */
 static inline void slipwise_measured(slipwise_channel *channel, const slipwise_response *response,
-                                     slipwise_real value) {
-  if (response->slow_lag > 0) {
-    channel->slow = value - channel->fast;
-  } else {
+                                     slipwise_real value, slipwise_real input, int acts) {
+  const slipwise_real fast_share = slipwise_fast_share(response);
+  if (!(response->slow_lag > 0)) {
     channel->fast = value;
+  } else if (!acts) {
+    channel->fast = fast_share * value;
+    channel->slow = (1 - fast_share) * value;
+  } else {
+    const slipwise_channel settled = slipwise_settled(response, input);
+    const slipwise_real left = value - channel->fast, carried = value - settled.fast;
+    const slipwise_real low = slipwise_lesser(channel->slow, slipwise_lesser(settled.slow, carried));
+    const slipwise_real high = slipwise_greater(channel->slow, slipwise_greater(settled.slow, carried));
+    channel->slow = slipwise_lesser(slipwise_greater(left, low), high);
+    channel->fast = value - channel->slow;
   }
+}
+
+/* The input that keeps a channel as it is. */
+static inline slipwise_real slipwise_keeping(const slipwise_response *response, slipwise_real value) {
+  return response->gain < 0 || response->gain > 0 ? value / response->gain : SLIPWISE_R(0);
 }
 
 /* Moves a channel over a step; returns its integral. */
@@ -268,8 +295,14 @@ static inline void slipwise_advance(slipwise_walk *walk, slipwise_drive mean, sl
 static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, int moves) {
   const slipwise_real speed = slipwise_held(&walk->speed_input).v, yaw = slipwise_held(&walk->yaw_input).omega;
   slipwise_drive mean;
-  mean.v = slipwise_channel_step(&walk->speed, &walk->model->speed, speed, duration) / duration;
-  mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
+  mean.v = walk->speed.fast + walk->speed.slow;
+  mean.omega = walk->yaw_rate.fast + walk->yaw_rate.slow;
+  if (!walk->window->drive || slipwise_acts(&walk->speed_input)) {
+    mean.v = slipwise_channel_step(&walk->speed, &walk->model->speed, speed, duration) / duration;
+  }
+  if (!walk->window->drive || slipwise_acts(&walk->yaw_input)) {
+    mean.omega = slipwise_channel_step(&walk->yaw_rate, &walk->model->yaw, yaw, duration) / duration;
+  }
   if (moves) {
     slipwise_advance(walk, mean, duration);
   }
@@ -298,13 +331,23 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
   }
 }
 
-/* The time constant that a channel's drive at the start hangs on: where it was measured, only that of a fast part beside
- * a slow one. */
+/* The time constant that a channel's drive at the start hangs on: where it was measured, only those of two lags. */
 static inline slipwise_real slipwise_start_lag(const slipwise_response *response, int measured) {
-  if (measured) {
-    return response->slow_lag > 0 ? response->lag : SLIPWISE_R(0);
+  if (measured && !(response->slow_lag > 0)) {
+    return SLIPWISE_R(0);
   }
   return response->slow_lag > response->lag ? response->slow_lag : response->lag;
+}
+
+static inline slipwise_start slipwise_start_of(const slipwise_model *model, const slipwise_drive *drive,
+                                               slipwise_real known) {
+  slipwise_start start;
+  start.measured = drive != 0;
+  start.keeping.v = drive ? slipwise_keeping(&model->speed, drive->v) : SLIPWISE_R(0);
+  start.keeping.omega = drive ? slipwise_keeping(&model->yaw, drive->omega) : SLIPWISE_R(0);
+  start.v_until = known - model->delay_v;
+  start.omega_until = known - model->delay_omega;
+  return start;
 }
 
 static inline int slipwise_is_bad(const slipwise_window *window) {
@@ -321,6 +364,7 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
   const slipwise_real yaw_lag = slipwise_start_lag(&model->yaw, window->drive != 0);
   slipwise_real start = window->start - model->clock_offset, known = start, early;
   const slipwise_real end = window->end - model->clock_offset;
+  slipwise_start at;
   if (slipwise_is_bad(window)) {
     return SLIPWISE_BAD_WINDOW;
   }
@@ -335,14 +379,17 @@ static inline int slipwise_run(const slipwise_model *model, const slipwise_comma
   walk->path = nowhere;
   walk->model = model;
   walk->noise = noise;
-  walk->speed_input = slipwise_cursor_at(commands, model->delay_v, early, window->end);
-  walk->yaw_input = slipwise_cursor_at(commands, model->delay_omega, early, window->end);
+  at = slipwise_start_of(model, window->drive, known);
+  walk->speed_input = slipwise_cursor_at(commands, &at, model->delay_v, early, window->end);
+  walk->yaw_input = slipwise_cursor_at(commands, &at, model->delay_omega, early, window->end);
   walk->speed = slipwise_settled(&model->speed, slipwise_held(&walk->speed_input).v);
   walk->yaw_rate = slipwise_settled(&model->yaw, slipwise_held(&walk->yaw_input).omega);
   slipwise_cover(walk, early, known, 0);
   if (window->drive) {
-    slipwise_measured(&walk->speed, &model->speed, window->drive->v);
-    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega);
+    slipwise_measured(&walk->speed, &model->speed, window->drive->v, slipwise_held(&walk->speed_input).v,
+                      slipwise_acts(&walk->speed_input));
+    slipwise_measured(&walk->yaw_rate, &model->yaw, window->drive->omega, slipwise_held(&walk->yaw_input).omega,
+                      slipwise_acts(&walk->yaw_input));
   }
   if (start < known) { /* poses are stamped late: what the robot did meanwhile was measured */
     const slipwise_real until = known < end ? known : end;

@@ -2,7 +2,7 @@
 """What is in a log, and what could be learned from it."""
 
 from slipwise.inspection.coverage_map import coverage_map
-from slipwise.inspection.inspect_log import Inspection, inspect_log
+from slipwise.inspection.inspect_log import Inspection, inspect_files, inspect_log
 from slipwise.inspection.learnability import Learnability, LearnableParameter
 from slipwise.inspection.streams import Stream
 from slipwise.inspection.timing import Timing
@@ -14,5 +14,6 @@ __all__ = [
     "Stream",
     "Timing",
     "coverage_map",
+    "inspect_files",
     "inspect_log",
 ]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.logs import Inputs
-from slipwise.segments import WindowRules
+from slipwise.logs.held import UNKNOWN_AFTER, held_for
 
 SHADES = " ░▒▓█"  # each but the first stands for ten times as long as the one before
 LONGEST_SHADE = 10.0  # [s] from here on a cell is full
@@ -27,12 +27,15 @@ class MapSize:
     rows: int = 13
 
 
-def coverage_map(inputs: Sequence[Inputs], *, size: MapSize = MapSize()) -> tuple[str, ...]:
+def coverage_map(
+    inputs: Sequence[Inputs], *, size: MapSize = MapSize(), unknown_after: float = UNKNOWN_AFTER
+) -> tuple[str, ...]:
     """Draw how long the inputs were held at each speed (to the right) and yaw rate (upwards).
 
     Args:
         inputs: of all runs; may be empty.
         size: cells of the map.
+        unknown_after: an input is unknown once it is older than this [s].
 
     Returns:
         Lines of text: the map with its axes, and what the shades mean.
@@ -41,7 +44,7 @@ def coverage_map(inputs: Sequence[Inputs], *, size: MapSize = MapSize()) -> tupl
     if not used:
         return ("There are no inputs to draw.",)
     v, omega = (np.concatenate([getattr(series, name) for series in used]) for name in ("v", "omega"))
-    held = np.concatenate([held_for(series) for series in used])
+    held = np.concatenate([held_for(series, unknown_after) for series in used])
     (v_low, v_high), (omega_low, omega_high) = _range(v), _range(omega)
     seconds, _, _ = np.histogram2d(
         omega,
@@ -63,11 +66,6 @@ def coverage_map(inputs: Sequence[Inputs], *, size: MapSize = MapSize()) -> tupl
     )
     lines.append(f"{'':<{_MARGIN}}{marks} in a cell; {held.sum():.0f} s in all")
     return tuple(lines)
-
-
-def held_for(inputs: Inputs) -> Floats:
-    """Return how long each input was held and known, [N] s."""
-    return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), WindowRules().unknown_after)
 
 
 def _shade(seconds: float) -> str:

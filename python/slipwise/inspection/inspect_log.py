@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 from slipwise.calibration import Settings
+from slipwise.errors import LogError
 from slipwise.inspection.coverage_map import coverage_map
 from slipwise.inspection.learnability import Learnability, learnability_of
 from slipwise.inspection.streams import Stream, streams_of
 from slipwise.inspection.timing import Timing, timing_of
-from slipwise.logs import Log
+from slipwise.logs import Log, LogOptions, Survey, open_log, survey_log
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,36 @@ class Inspection:
     learned: tuple[Learnability, ...]  # one for each kind of input, commands first
     timing: tuple[Timing, ...]
     maps: dict[str, tuple[str, ...]]  # lines of the coverage map, by kind of input
+    surveys: tuple[Survey, ...] = ()  # of each file: its topics or columns, and what they are used as
+    problem: str = ""  # why the files make no log as they are; then the rest is empty
+
+
+def inspect_files(
+    paths: Sequence[str | Path],
+    options: LogOptions,
+    settings: Settings | None = None,
+    *,
+    progress: Callable[[str, float], None] | None = None,
+) -> Inspection:
+    """Look at files that should make a log; what is merely unclear or missing in them is no error.
+
+    Args:
+        paths: as for `open_log`.
+        options: as for `open_log`.
+        settings: as for `inspect_log`.
+        progress: called with what is done now, and how much of all is done.
+
+    Raises:
+        LogError: a file is missing, damaged or of an unknown kind.
+    """
+    surveys = tuple(survey_log(path, options) for path in paths)
+    try:
+        log = open_log(*paths, options=options)
+    except LogError as unusable:
+        return Inspection(Log(runs=()), (), (), (), {}, surveys, str(unusable))
+    if progress is not None:
+        progress("learning", 0.5)
+    return replace(inspect_log(log, settings), surveys=surveys)
 
 
 def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
@@ -43,5 +76,7 @@ def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
         streams=streams_of(log, settings.rules()),
         learned=learned,
         timing=tuple(timing for item in learned for timing in timing_of(item)),
-        maps={name: coverage_map(inputs[name]) for name in present},
+        maps={
+            name: coverage_map(inputs[name], unknown_after=settings.window.unknown_after) for name in present
+        },
     )

@@ -5,16 +5,20 @@ from slipwise.logs.log import Inputs, LeftOut, Log, Poses, Run, Source, empty_po
 from slipwise.logs.open_log import open_log
 from slipwise.logs.options import LogOptions
 from slipwise.logs.save_log import save_log
+from slipwise.logs.survey import Part, Survey, survey_log
 
 __all__ = [
     "Inputs",
     "LeftOut",
     "Log",
     "LogOptions",
+    "Part",
     "Poses",
     "Run",
     "Source",
+    "Survey",
     "empty_poses",
     "open_log",
     "save_log",
+    "survey_log",
 ]

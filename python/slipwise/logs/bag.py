@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -20,9 +20,9 @@ from slipwise.logs.bag_streams import (
     pose_stream,
     wheel_stream,
 )
-from slipwise.logs.joints import SideSpeeds
+from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Ints, Log, Run, Source
+from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
 from slipwise.logs.messages import (
     COMMAND_VALUES,
     IMU_VALUES,
@@ -36,10 +36,18 @@ from slipwise.logs.messages import (
     Samples,
 )
 from slipwise.logs.options import LogOptions
+from slipwise.logs.role_choice import Topic
 from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, to_inputs, to_poses
-from slipwise.logs.topics import Roles, Topic, choose_topics
-from slipwise.logs.transforms import TransformCollector, chain_poses, choose_frames
+from slipwise.logs.topics import Roles, choose_topics, transforms_matter
+from slipwise.logs.transforms import (
+    TransformCollector,
+    TransformSource,
+    chain_poses,
+    choose_frames,
+    describe_transforms,
+    known_edges,
+)
 
 RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
 RUN_TYPE = "std_msgs/msg/String"
@@ -70,15 +78,50 @@ def read_bag(path: Path, options: LogOptions) -> Log:
     files = bag_files(path)
     with BagFile(path, files, tally) as bag:
         try:
-            roles = choose_topics(bag.topics, options)
-            collected = _collect(bag, roles, options)
-            notes = list(roles.guessed)
-            runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False), notes)
+            transforms = collect_transforms(bag, options)
+            source = transform_source(bag, transforms, options)
+            roles = choose_topics(bag.topics, options, source)
+            collected = _collect(bag, roles, transforms, options)
+            advice = {role: _with_joints(bag, text, options) for role, text in roles.advice.items()}
+            notes = [*roles.guessed, *advice.values()]
+            runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False, notes))
         except LogError as error:
             raise _told_of_bag(error, path, bag.topics, tally) from error
         count = sum(topic.count for topic in bag.topics)
-        source = Source(str(path), files_sha256(files), bag.format, count)
-    return Log(runs, (source,), tally.result(), tuple(notes))
+        file = Source(str(path), files_sha256(files), bag.format, count)
+    return Log(runs, (file,), tally.result(), tuple(notes), advice)
+
+
+def collect_transforms(bag: BagFile, options: LogOptions) -> TransformCollector:
+    """Read all transforms of a bag where the choice of the pose depends on them."""
+    transforms = TransformCollector()
+    if not transforms_matter(bag.topics, options):
+        return transforms
+    names = {topic.name for topic in bag.topics if topic.type == TF}
+    for message in bag.messages(names):
+        decoded = bag.decode(message)
+        if decoded is not None:
+            static = message.topic.endswith("static")
+            transforms.add(decoded, message.received_ns, static=static)
+    return transforms
+
+
+def transform_source(
+    bag: BagFile, transforms: TransformCollector, options: LogOptions
+) -> TransformSource | None:
+    """Say what the transforms know of the robot; None where they were not read."""
+    edges = transforms.edges()
+    if not edges:
+        return None
+    name = next((t.name for t in bag.topics if t.type == TF and not t.name.endswith("static")), "TF")
+    return describe_transforms(name, edges, options.pose_frame, options.child_frame)
+
+
+def _with_joints(bag: BagFile, advice: str, options: LogOptions) -> str:
+    """Add to the advice which joints of the first joint state look like wheels."""
+    topics = {topic.name for topic in bag.topics if topic.type == JOINT_STATE}
+    first = next((state for message in bag.messages(topics) if (state := bag.decode(message))), None)
+    return advice if first is None else f"{advice} ({sides_text(tuple(first.name), options)})"
 
 
 def _told_of_bag(error: LogError, path: Path, topics: Sequence[Topic], tally: Tally) -> LogError:
@@ -89,20 +132,15 @@ def _told_of_bag(error: LogError, path: Path, topics: Sequence[Topic], tally: Ta
     return error if error.where else LogError(error.what, where=str(path), advice=error.advice)
 
 
-def _collect(bag: BagFile, roles: Roles, options: LogOptions) -> _Collected:
+def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options: LogOptions) -> _Collected:
     """Decode the messages of the chosen topics, each once."""
     consumers: dict[str, list[Consumer]] = {}
     collectors: dict[str, SampleCollector] = {}
-    transforms = TransformCollector()
     starts: list[tuple[int, str]] = []
     for role, topic, values in _extractors(roles, options):
         collector = SampleCollector(topic.name, values, has_header=topic.type != TWIST)
         collectors[role] = collector
         consumers.setdefault(topic.name, []).append(collector.add)
-    if roles.pose.type == TF:
-        for topic in bag.topics:
-            if topic.type == TF:
-                consumers.setdefault(topic.name, []).append(_transform_consumer(transforms, topic.name))
     if any(topic.name == RUN_TOPIC and topic.type == RUN_TYPE for topic in bag.topics):
         consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, message.data))]
     for message in bag.messages(set(consumers)):
@@ -127,46 +165,39 @@ def _extractors(
     if roles.wheel is not None:
         joints = roles.wheel.type == JOINT_STATE
         found.append(
-            ("wheel", roles.wheel, SideSpeeds(options) if joints else WHEEL_VALUES[roles.wheel.type])
+            ("wheel", roles.wheel, SideMotion(options) if joints else WHEEL_VALUES[roles.wheel.type])
         )
-    if roles.pose.type != TF:
+    if roles.pose is not None and roles.pose.type != TF:
         found.append(("pose", roles.pose, POSE_VALUES[roles.pose.type]))
     if roles.imu is not None:
         found.append(("imu", roles.imu, IMU_VALUES[roles.imu.type]))
     return found
 
 
-def _transform_consumer(transforms: TransformCollector, topic: str) -> Consumer:
-    static = topic.endswith("static")
-    return lambda message, received_ns: transforms.add(message, received_ns, static=static)
-
-
-def _runs(
-    path: Path, roles: Roles, collected: _Collected, context: BagContext, notes: list[str]
-) -> tuple[Run, ...]:
-    samples = dict(collected.samples)
-    if roles.pose.type == TF:
-        samples["pose"] = _transform_samples(roles, collected.transforms, context.options, notes)
+def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) -> tuple[Run, ...]:
+    samples, notes = dict(collected.samples), context.notes
+    if roles.pose is not None and roles.pose.type == TF:
+        samples["pose"] = _transform_samples(roles.pose, collected.transforms, context)
     if needs_receipt(list(samples.values())):
         notes.append(
             "header stamps are on another clock than the bag: everything is dated by the time of receipt"
         )
-        context = BagContext(context.file, context.options, context.tally, True)
+        context = replace(context, by_receipt=True)
     elif roles.command is not None and roles.command.type == TWIST:
         notes.append(f"{roles.command.name} has no header: its commands are dated by the time of receipt")
-    commands = wheels = None
-    if len(samples["pose"].values) == 0:
-        raise LogError(f"no pose could be read from {roles.pose.name}", advice="set pose_topic")
+    commands = wheels = poses = None
+    if roles.pose is not None and len(samples["pose"].values) == 0:
+        raise LogError(f"no pose could be read from {roles.pose.name}", advice="give --pose-topic")
     if roles.command is not None and len(samples["command"].values):
         commands = command_stream(context, samples["command"], roles.command.type)
     if roles.wheel is not None and len(samples["wheel"].values):
         wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
-    if roles.pose.type == NAV_SAT_FIX:
+    if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
         inputs = next(
             (to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None
         )
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
-    else:
+    elif roles.pose is not None:
         poses = pose_stream(context, samples["pose"])
     return _split(path, collected.runs, (commands, wheels, poses), context.tally)
 
@@ -174,7 +205,7 @@ def _runs(
 def _split(
     path: Path,
     starts: tuple[tuple[int, str], ...],
-    streams: tuple[RawStream | None, RawStream | None, RawStream],
+    streams: tuple[RawStream | None, RawStream | None, RawStream | None],
     tally: Tally,
 ) -> tuple[Run, ...]:
     """Cut the streams into runs where the bag says so; otherwise a bag is one run."""
@@ -186,27 +217,24 @@ def _split(
             stream and stream.select(np.searchsorted(edges, stream.t, side="right") == number)
             for stream in streams
         )
-        assert poses is not None
         runs.append(
             Run(
                 name=name,
                 commands=to_inputs(commands, tally) if commands else None,
                 wheels=to_inputs(wheels, tally) if wheels else None,
-                poses=to_poses(poses, tally),
+                poses=to_poses(poses, tally) if poses else empty_poses(),
             )
         )
     return tuple(runs)
 
 
-def _transform_samples(
-    roles: Roles, transforms: TransformCollector, options: LogOptions, notes: list[str]
-) -> Samples:
-    edges = transforms.edges()
+def _transform_samples(pose: Topic, transforms: TransformCollector, context: BagContext) -> Samples:
+    edges, options = transforms.edges(), context.options
     frames = choose_frames(edges, options.pose_frame, options.child_frame)
     if frames is None:
-        known = ", ".join(f"{a} -> {b}" for a, b in sorted(edges)[:8])
-        raise LogError("no usual frames in TF", advice=f"set pose_frame and child_frame; it has {known}")
+        advice = f"give --pose-frame and --child-frame; it has {known_edges(edges)}"
+        raise LogError("no usual frames in TF", advice=advice)
     stamps, values = chain_poses(edges, *frames)
-    notes.append(f"poses are the transform {frames[0]} -> {frames[1]}")
+    context.notes.append(f"poses are the transform {frames[0]} -> {frames[1]}")
     frame: Ints = np.zeros(len(stamps), np.int64)
-    return Samples(roles.pose.name, stamps, stamps, values, ("",), frame, has_header=True)
+    return Samples(pose.name, stamps, stamps, values, ("",), frame, has_header=True)

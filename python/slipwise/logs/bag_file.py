@@ -4,8 +4,11 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import logging
+import mmap
+import shutil
 import struct
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -14,9 +17,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import LogError
+from slipwise.files import refuse_irregular
 from slipwise.logs.left_out import Tally
-from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
-from slipwise.logs.topics import Topic
+from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION, TF, TF_DEFINITION
+from slipwise.logs.role_choice import Topic
+from slipwise.logs.stamps import LATEST
+from slipwise.logs.unpacking import bound_bag_readers, unpack_zstd
 
 if TYPE_CHECKING:
     from rosbags.interfaces import Connection
@@ -26,6 +32,7 @@ MCAP_MAGIC = b"\x89MCAP0\r\n"
 SQLITE_MAGIC = b"SQLite format 3\0"
 ROSBAG1_MAGIC = b"#ROSBAG V2.0\n"
 _ENDINGS = {MCAP_MAGIC: ".mcap", SQLITE_MAGIC: ".db3", ROSBAG1_MAGIC: ".bag"}
+_LATEST_NS = int(LATEST * 1e9)
 _MCAP_END = struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQQQI", 0x02, 20, 0, 0, 0) + MCAP_MAGIC
 
 _log = logging.getLogger(__name__)
@@ -49,6 +56,9 @@ class BagFile:
         self.format = ""
         self._stack = contextlib.ExitStack()
         self._sources: list[tuple[Any, Sequence[Connection]]] = []  # readers with their connections
+        self._packed = False  # each message is compressed by itself
+        bound_bag_readers()
+        self._seconds = 0.0
         try:
             if not (path.is_dir() and self._open_folder(path, files)):
                 for file in files:
@@ -75,7 +85,13 @@ class BagFile:
             try:
                 for connection, received_ns, data in _all_messages(reader, wanted):
                     seen += 1
-                    yield RawMessage(connection.topic, connection.msgtype, received_ns, data)
+                    if connection.topic not in names:  # a damaged index leads anywhere
+                        reason = "messages that the bag's index takes for those of another topic"
+                        where = f"{self._path.name}, {connection.topic}"
+                        self._tally.add("bad-message", reason, count=1, where=where)
+                    elif self._is_time(received_ns, connection.topic):
+                        content = unpack_zstd(data) if self._packed else data
+                        yield RawMessage(connection.topic, connection.msgtype, received_ns, content)
             except (LogError, GeneratorExit):
                 raise
             except Exception as error:  # what a reader raises on damaged bytes has no bounds
@@ -87,9 +103,18 @@ class BagFile:
                     where=f"{self._path.name}, message {seen + 1} of the topics that are used",
                 )
 
+    def _is_time(self, received_ns: int, topic: str) -> bool:
+        """Say whether a message was received at a possible time; count it where it was not."""
+        if 0 <= received_ns <= _LATEST_NS:
+            return True
+        reason = f"messages of {topic} received at an impossible time"
+        where = f"{self._path.name}, received at {received_ns} ns"
+        self._tally.add("bad-stamp", reason, count=1, where=where)
+        return False
+
     def decode(self, message: RawMessage) -> Any:
         """Return the message as an object; None, and counted, if it does not fit its type."""
-        store = self._store = self._store or self._typestore()
+        store = self._store = self._store or _typestore(self.format == "rosbag1")
         read = store.deserialize_ros1 if self.format == "rosbag1" else store.deserialize_cdr
         try:
             return read(message.data, message.type)
@@ -107,12 +132,18 @@ class BagFile:
         from rosbags.rosbag2 import Reader
 
         try:
-            reader = self._stack.enter_context(Reader(path))
+            mode = _compression_mode(path / "metadata.yaml")
+            if mode == "file":  # the reader would unpack whole files, of any size, into a temporary folder
+                return False
+            reader: Any = self._stack.enter_context(Reader(path))
+            self._packed = mode == "message"  # the reader would unpack these to any size, its storages do not
+            opened = reader.storage.storages if self._packed else [reader]
+            for one in opened:
+                self._add(one, reader.duration / len(opened))
         except Exception:  # what a reader raises on damaged bytes has no bounds
             _log.debug("the metadata of %s cannot be used", path, exc_info=True)
             return False
         self.format = "mcap" if any(file.suffix == ".mcap" for file in files) else "rosbag2-sqlite3"
-        self._sources.append((reader, reader.connections))
         return True
 
     def _open(self, file: Path) -> None:
@@ -127,16 +158,16 @@ class BagFile:
                 from rosbags.rosbag1 import Reader as Reader1
 
                 reader1 = self._stack.enter_context(Reader1(named))
-                self._sources.append((reader1, reader1.connections))
+                self._add(reader1, reader1.duration)
             elif magic == MCAP_MAGIC and not _ends_with(file, MCAP_MAGIC):
                 self._open_cut_off(file)
             else:
                 from rosbags.rosbag2 import Reader as Reader2
 
                 reader2 = self._stack.enter_context(Reader2(named))
-                self._sources.append((reader2, reader2.connections))
-        except LogError:
-            raise
+                self._add(reader2, reader2.duration)
+        except LogError as error:
+            raise LogError(error.what, where=error.where or str(file), advice=error.advice) from error
         except Exception as error:  # what a reader raises on damaged bytes has no bounds
             raise LogError(
                 f"the bag cannot be read: {_first_line(error)}",
@@ -145,22 +176,31 @@ class BagFile:
                 " or `ros2 bag reindex`",
             ) from error
 
+    def _add(self, reader: Any, duration_ns: float) -> None:
+        self._sources.append((reader, reader.connections))
+        self._seconds += max(duration_ns, 0) / 1e9
+
     def _open_cut_off(self, file: Path) -> None:
         """Open an MCAP file without an end by giving its whole records one, in a temporary copy."""
         from rosbags.rosbag2.storage_mcap import McapReader
 
         copy = Path(self._stack.enter_context(tempfile.TemporaryDirectory())) / "whole.mcap"
-        content = file.read_bytes()
-        whole = _whole_records(content)
-        copy.write_bytes(content[:whole] + _MCAP_END)
+        size = file.stat().st_size
+        with file.open("rb") as stream, copy.open("wb") as target:
+            with mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as content:
+                whole = _whole_records(content)
+            shutil.copyfileobj(stream, target)
+            target.truncate(whole)
+            target.seek(whole)
+            target.write(_MCAP_END)
         reader = McapReader(copy)
         reader.open()
         self._stack.callback(reader.close)
-        self._sources.append((reader, reader.connections))
+        self._add(reader, reader.metadata.duration)
         self._tally.add(
             "damaged-bag",
             "bytes after the last whole record of a cut-off MCAP file",
-            count=max(len(content) - whole, 1),
+            count=max(size - whole, 1),
             where=f"{file.name}, byte {whole}",
         )
 
@@ -178,16 +218,10 @@ class BagFile:
             for connection in connections:
                 key = (connection.topic, connection.msgtype)
                 counts[key] = counts.get(key, 0) + connection.msgcount
-        return tuple(Topic(name, kind, count) for (name, kind), count in counts.items())
-
-    def _typestore(self) -> Typestore:
-        """Return the standard types; definitions in the bag are not needed for them."""
-        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-        store = get_typestore(Stores.ROS1_NOETIC if self.format == "rosbag1" else Stores.ROS2_HUMBLE)
-        if ACKERMANN not in store.fielddefs:
-            store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
-        return store
+        return tuple(
+            Topic(name, kind, count, count / self._seconds if self._seconds > 0.0 else float("nan"))
+            for (name, kind), count in counts.items()
+        )
 
 
 def bag_files(path: Path) -> list[Path]:
@@ -205,6 +239,8 @@ def bag_files(path: Path) -> list[Path]:
             "decompress its .zstd files first" if packed else "name a folder with .mcap, .db3 or .bag files"
         )
         raise LogError("the folder holds no bag", where=str(path), advice=advice)
+    for file in files:
+        refuse_irregular(file, error=LogError)
     return sorted(files, key=_split_number)
 
 
@@ -227,12 +263,32 @@ def _all_messages(reader: Any, wanted: Sequence[Connection]) -> Iterator[tuple[C
     from rosbags.rosbag2.storage_mcap import McapReader
 
     if isinstance(reader, McapReader):
-        return reader.messages_scan(wanted)
+        return reader.messages_scan(wanted, 0, 1 << 64)  # its own end leaves out late stamps in silence
     found: Iterator[tuple[Connection, int, bytes]] = reader.messages(connections=wanted)
     return found
 
 
-def _whole_records(content: bytes) -> int:
+@functools.cache
+def _typestore(ros1: bool) -> Typestore:
+    """Return the standard types; definitions in the bag are not needed for them."""
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
+    for kind, definition in ((ACKERMANN, ACKERMANN_DEFINITION), (TF, TF_DEFINITION)):
+        if kind not in store.fielddefs:
+            store.register(get_types_from_msg(definition, kind))
+    return store
+
+
+def _compression_mode(metadata: Path) -> str:
+    """Return how a rosbag2 folder is compressed: "file", "message", or neither."""
+    from slipwise.models.yaml_file import read_yaml
+
+    information = read_yaml(metadata, error=LogError)["rosbag2_bagfile_information"]
+    return str(information.get("compression_mode", "")).lower()
+
+
+def _whole_records(content: bytes | mmap.mmap) -> int:
     """Return the length of the part of an MCAP file that consists of whole records of the data section."""
     position = len(MCAP_MAGIC)
     while position + 9 <= len(content):

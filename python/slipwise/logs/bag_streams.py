@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.joints import speeds_from_angles
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
@@ -29,6 +30,7 @@ class BagContext:
     options: LogOptions
     tally: Tally
     by_receipt: bool  # date everything by when it was received
+    notes: list[str]  # sentences about what was worked out
 
     def seconds(self, samples: Samples, role: str) -> Floats:
         """Return the stamps [N] in s: of the headers where there are any, else of receipt."""
@@ -85,7 +87,7 @@ def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStrea
         return context.stream("commands", samples, {"v": v, "vy": vy, "omega": omega})
     if context.options.wheelbase is None:
         raise LogError(
-            "steering commands need the wheelbase", where=samples.topic, advice="set wheelbase in metres"
+            "steering commands need the wheelbase", where=samples.topic, advice="give --wheelbase in metres"
         )
     v, steer = samples.values.T
     omega = omega_from_steering(v, steer, wheelbase=context.options.wheelbase)
@@ -93,10 +95,10 @@ def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStrea
 
 
 def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
-    """Make the wheel stream of an odometry's twist, or of wheel speeds.
+    """Make the wheel stream of an odometry's twist, or of the speeds of wheels.
 
     Raises:
-        LogError: wheel speeds came without radius and track.
+        LogError: speeds of wheels came without their radius and distance.
     """
     if kind != JOINT_STATE:
         v, vy, omega = samples.values.T
@@ -104,13 +106,25 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     radius, track = context.options.wheel_radius, context.options.track
     if radius is None or track is None:
         raise LogError(
-            "wheel speeds need the wheel radius and the track",
+            "wheel speeds need the wheels' radius and the distance between left and right wheels",
             where=samples.topic,
-            advice="set wheel_radius and track",
+            advice="give --wheel-radius and --track in metres",
         )
-    left, right = samples.values.T
+    left, right = _side_speeds(context, samples)
     v, omega = twist_from_wheels(left, right, wheel_radius=radius, track=track)
     return context.stream("wheels", samples, {"v": v, "omega": omega})
+
+
+def _side_speeds(context: BagContext, samples: Samples) -> Floats:
+    """Return the speeds [2, N] of the left and right wheels; of their angles where no speed is measured."""
+    speeds, angles = samples.values[:, :2], samples.values[:, 2:]
+    known = angles[np.isfinite(angles).all(axis=1)]
+    turned = bool((known != known[:1]).any())
+    measured = np.isfinite(speeds).all(axis=1) & (speeds != 0.0).any(axis=1)
+    if turned and not measured.any():  # drivers without speeds leave them out, or send zeros
+        context.notes.append(f"{samples.topic} has no wheel speeds: they are differences of its positions")
+        speeds = speeds_from_angles(context.seconds(samples, "wheels"), angles)
+    return np.asarray(speeds.T)
 
 
 def pose_stream(context: BagContext, samples: Samples) -> RawStream:
@@ -152,8 +166,11 @@ def fix_stream(
         if upright.any():
             yaw, known = heading_from_imu(t, context.seconds(imu, "imu")[upright], angles_of(q[upright])[2])
         _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
-    if not known.any():
+    if known.any():
+        context.notes.append("headings are those of the IMU")
+    else:
         yaw[good], known[good] = heading_from_track(t[good], x[good], y[good], inputs)
+        context.notes.append(f"{samples.topic} has no headings: they are the direction of the track")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
     columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": _deviation(values[:, 4:6])}
     return context.stream("poses", samples, columns, good & known)

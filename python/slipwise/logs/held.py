@@ -9,7 +9,12 @@ import numpy as np
 
 from slipwise.logs.log import Floats, Inputs
 
-MAX_HOLD = 0.5  # [s] an input is unknown once it is older than this
+UNKNOWN_AFTER = 0.5  # [s] an input is unknown once it is older than this, unless a setting says otherwise
+
+
+def held_for(inputs: Inputs, unknown_after: float) -> Floats:
+    """Return how long each input was held and known, [N] s; the last one for no time."""
+    return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), unknown_after)
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,9 +26,9 @@ class HeldSum:
     _known: Floats  # [K] s
 
     @classmethod
-    def of(cls, inputs: Inputs, values: Floats) -> HeldSum:
-        """Integrate `values` [N], held from each stamp to the next, at most for `MAX_HOLD`."""
-        hold = np.minimum(np.diff(inputs.t, append=np.inf), MAX_HOLD)
+    def of(cls, inputs: Inputs, values: Floats, unknown_after: float) -> HeldSum:
+        """Integrate `values` [N], held from each stamp to the next, at most for `unknown_after` [s]."""
+        hold = np.minimum(np.diff(inputs.t, append=np.inf), unknown_after)
         knots = np.stack([inputs.t, inputs.t + hold], axis=1).ravel()
         total, known = np.cumsum(values * hold), np.cumsum(hold)
         return cls(knots, _steps(total), _steps(known))

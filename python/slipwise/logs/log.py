@@ -36,6 +36,9 @@ class Inputs:
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
 
+    def __repr__(self) -> str:
+        return f"<Inputs: {len(self)} samples over {_duration(self.t):.1f} s>"
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -62,6 +65,9 @@ class Poses:
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "x", "y", "yaw"))
 
+    def __repr__(self) -> str:
+        return f"<Poses: {len(self)} over {_duration(self.t):.1f} s>"
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -79,6 +85,28 @@ class Run:
     wheels: Inputs | None
     poses: Poses
     extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
+
+    def __repr__(self) -> str:
+        return f"<Run {self.name!r}: {', '.join(self._parts())}>"
+
+    def _parts(self) -> list[str]:
+        """What was recorded, with the number of samples."""
+        counted = {"commands": self.commands, "wheel speeds": self.wheels, "poses": self.poses}
+        return [f"{len(part)} {name}" for name, part in counted.items() if part is not None and len(part)]
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last stamp of poses, commands and wheels [s], zeros where there are none."""
+        times = [
+            part.t for part in (self.poses, self.commands, self.wheels) if part is not None and len(part)
+        ]
+        if not times:
+            return 0.0, 0.0
+        return float(min(t[0] for t in times)), float(max(t[-1] for t in times))
+
+    def place(self, t: float) -> str:
+        """Say where a time [s] is: counted from the run's start, and as it stands in the file."""
+        return f"run {self.name}, {t - self.span[0]:.1f} s from its start (t = {t:.3f} s)"
 
 
 @dataclass(frozen=True)
@@ -105,19 +133,36 @@ class Source:
 class Log:
     """Everything read from one or several files.
 
-    `notes` say what was guessed or worked out, `left_out` what was wrong with the data.
+    `notes` say what was guessed or worked out, `left_out` what was wrong with the data, `advice` what would
+    give an input that the log could have and has not, by the input's name.
     """
 
     runs: tuple[Run, ...]
     sources: tuple[Source, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
     notes: tuple[str, ...] = ()
+    advice: Mapping[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        seconds = sum(_duration(run.poses.t) for run in self.runs)
+        has = {
+            "commands": any(run.commands is not None for run in self.runs),
+            "wheel speeds": any(run.wheels is not None for run in self.runs),
+            f"{sum(len(run.poses) for run in self.runs)} poses": True,
+        }
+        runs = "1 run" if len(self.runs) == 1 else f"{len(self.runs)} runs"
+        return f"<Log: {runs}, {seconds:.0f} s; {', '.join(name for name, there in has.items() if there)}>"
 
 
 def empty_poses() -> Poses:
     """Return no poses at all."""
     none = np.empty(0)
     return Poses(t=none, x=none, y=none, yaw=none, frame=np.empty(0, np.int64))
+
+
+def _duration(t: Floats) -> float:
+    """How long a series lasts [s]."""
+    return float(t[-1] - t[0]) if len(t) else 0.0
 
 
 def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:

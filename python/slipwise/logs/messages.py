@@ -29,6 +29,7 @@ COMMAND_TYPES = (TWIST, TWIST_STAMPED, ACKERMANN)
 POSE_TYPES = (ODOMETRY, POSE_STAMPED, POSE_WITH_COVARIANCE, NAV_SAT_FIX, TF)
 WHEEL_TYPES = (ODOMETRY, JOINT_STATE)
 
+TF_DEFINITION = "geometry_msgs/TransformStamped[] transforms\n"
 ACKERMANN_DEFINITION = """std_msgs/Header header
 ackermann_msgs/AckermannDrive drive
 ================================================================================

@@ -20,6 +20,8 @@ _KNOWN_PART = 0.9  # of a window's time, inputs must be known
 class MotionWindows:
     """Poses against inputs in N windows."""
 
+    run: Floats  # [N] number of the pair of inputs and poses
+    start: Floats  # [N] s, stamp of the first pose
     duration: Floats  # [N] s
     distance: Floats  # [N] m, between the first and the last pose
     course: Floats  # [N] rad, direction of that line
@@ -34,9 +36,14 @@ class MotionWindows:
         return len(self.duration)
 
 
-def motion_windows(pairs: Sequence[tuple[Inputs, Poses]]) -> MotionWindows:
-    """Cut all runs into windows of about 1.5 s inside one frame and with known inputs."""
-    parts = [_windows(inputs, poses) for inputs, poses in pairs if len(poses) > 1]
+def motion_windows(pairs: Sequence[tuple[Inputs, Poses]], unknown_after: float) -> MotionWindows:
+    """Cut all runs into windows of about 1.5 s inside one frame and with known inputs.
+
+    An input is unknown once it is older than `unknown_after` [s].
+    """
+    parts = [
+        _windows(k, inputs, poses, unknown_after) for k, (inputs, poses) in enumerate(pairs) if len(poses) > 1
+    ]
     names = [column.name for column in fields(MotionWindows)]
     columns = {
         name: np.concatenate([np.empty(0), *(getattr(part, name) for part in parts)]) for name in names
@@ -49,14 +56,16 @@ def wrapped(angle: Floats, turn: float = 2.0 * np.pi) -> Floats:
     return np.asarray((angle + 0.5 * turn) % turn - 0.5 * turn)
 
 
-def _windows(inputs: Inputs, poses: Poses) -> MotionWindows:
+def _windows(number: int, inputs: Inputs, poses: Poses, unknown_after: float) -> MotionWindows:
     new_frame = np.flatnonzero(np.diff(poses.frame, prepend=-1))
     start_time = poses.t[new_frame][np.searchsorted(new_frame, np.arange(len(poses)), side="right") - 1]
     slot = np.floor((poses.t - start_time) / _LENGTH)
     first = np.flatnonzero((np.diff(slot, prepend=-1.0) != 0.0) | (np.diff(poses.frame, prepend=-1) != 0))
     i, j = first[:-1], first[1:]
     duration = poses.t[j] - poses.t[i]
-    v, vy, omega = (HeldSum.of(inputs, values) for values in (inputs.v, inputs.vy, inputs.omega))
+    v, vy, omega = (
+        HeldSum.of(inputs, values, unknown_after) for values in (inputs.v, inputs.vy, inputs.omega)
+    )
     good = (poses.frame[i] == poses.frame[j]) & (duration < _LONGEST)
     good &= v.known(poses.t[i], poses.t[j]) > _KNOWN_PART * duration
     i, j = i[good], j[good]
@@ -64,6 +73,8 @@ def _windows(inputs: Inputs, poses: Poses) -> MotionWindows:
     followed, followed_degrees = np.cumsum(wrapped(step)), np.cumsum(wrapped(step, 360.0))
     dx, dy = poses.x[j] - poses.x[i], poses.y[j] - poses.y[i]
     return MotionWindows(
+        run=np.full(len(i), float(number)),
+        start=poses.t[i],
         duration=duration[good],
         distance=np.hypot(dx, dy),
         course=np.arctan2(dy, dx),

@@ -3,16 +3,21 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from slipwise.errors import LogError
+from slipwise.errors import LogError, SettingsError
+from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
+from slipwise.logs.piped import regular_file
 from slipwise.logs.quality import checked
 from slipwise.logs.run_name import run_name
+from slipwise.logs.time_span import cut_to_span
+from slipwise.logs.unpacking import unpacking_at_most
 
 _KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
 
@@ -31,38 +36,87 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     """
     if not paths:
         raise LogError("no log was given", advice=_KNOWN)
+    if len(paths) > 1 and options.poses is not None:
+        advice = "read the logs one by one, each with its own poses"
+        raise SettingsError("one file of poses goes with one log", where="--poses", advice=advice)
     return _joined([_open_one(Path(path), options) for path in paths])
 
 
-def _open_one(path: Path, options: LogOptions) -> Log:
-    if not path.exists():
-        raise LogError("no such file", where=str(path), advice="check the path")
-    try:
-        return checked(_reader(path)(path, options))
-    except PermissionError as error:
-        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+def readable(path: Path) -> tuple[Path, bool]:
+    """Return the file to read, which is a copy where the log comes through a pipe, and whether it is a bag.
 
-
-def _reader(path: Path) -> Callable[[Path, LogOptions], Log]:
-    """Choose the reader by what the file holds; the readers are loaded only when they are needed."""
+    Raises:
+        LogError: there is no such file, or it is of an unknown kind.
+    """
     from slipwise.logs.bag_file import is_bag
 
-    if path.is_dir() or is_bag(path):
-        from slipwise.logs.bag import read_bag
-
-        return read_bag
-    if path.stat().st_size == 0:
+    if "\0" in str(path) or not path.exists():
+        raise LogError("no such file", where=str(path), advice="check the path")
+    try:
+        file = regular_file(path)
+        if file.is_dir() or is_bag(file):
+            return file, True
+        with file.open("rb") as stream:
+            start = stream.read(4)
+    except PermissionError as error:
+        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+    if not start:
         raise LogError("the file is empty", where=str(path), advice="record or copy it again")
     if path.suffix in (".mcap", ".db3", ".bag"):
         advice = f"a {path.suffix} file starts otherwise; copy it again from the robot"
         raise LogError("not a bag: wrong magic bytes", where=str(path), advice=advice)
-    from slipwise.logs.tidy import read_parquet_log, read_tidy
-
-    with path.open("rb") as file:
-        parquet = file.read(4) == b"PAR1"
-    if path.suffix == ".parquet" and not parquet:
+    if path.suffix == ".parquet" and start != b"PAR1":
         raise LogError("not a Parquet file: wrong magic bytes", where=str(path), advice="write it again")
-    return read_parquet_log if parquet else read_tidy
+    return file, False
+
+
+def _open_one(path: Path, options: LogOptions) -> Log:
+    file, bag = readable(path)
+    with named_in_errors(path, file), unpacking_at_most(options.most_unpacked):
+        log = _completed(_read(file, options, bag=bag), options)
+        return _named(checked(log, options.unknown_after), file, path)
+
+
+@contextlib.contextmanager
+def named_in_errors(path: Path, file: Path) -> Iterator[None]:
+    """Name the path that was given in errors, not the copy of what came through it."""
+    try:
+        yield
+    except PermissionError as error:
+        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+    except LogError as error:
+        if file == path:
+            raise
+        where = error.where.replace(str(file), str(path))
+        raise LogError(error.what, where=where, advice=error.advice) from error
+
+
+def _read(file: Path, options: LogOptions, *, bag: bool) -> Log:
+    """Call the reader for the file; the readers are loaded only when they are needed."""
+    if bag:
+        from slipwise.logs.bag import read_bag
+
+        return read_bag(file, options)
+    from slipwise.logs.tidy import read_tidy
+
+    return read_tidy(file, options)
+
+
+def _completed(log: Log, options: LogOptions) -> Log:
+    """Scale inputs, take poses of a file beside the log, turn them, cut the log: what is asked for."""
+    log = scaled_inputs(log, options)
+    if options.poses is not None:
+        from slipwise.logs.poses_beside import with_poses
+
+        log = with_poses(log, options.poses, options)
+    return cut_to_span(turned_poses(log, options), options.start, options.end)
+
+
+def _named(log: Log, file: Path, path: Path) -> Log:
+    """Name the path that was given, not the copy of what came through it."""
+    if file == path:
+        return log
+    return replace(log, sources=tuple(replace(source, path=str(path)) for source in log.sources))
 
 
 def _joined(logs: list[Log]) -> Log:
@@ -78,6 +132,7 @@ def _joined(logs: list[Log]) -> Log:
         sources=tuple(source for log in logs for source in log.sources),
         left_out=tuple(entry for log in logs for entry in log.left_out),
         notes=tuple(note for log in logs for note in log.notes),
+        advice={name: text for log in reversed(logs) for name, text in log.advice.items()},
     )
 
 

@@ -4,9 +4,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
 
 from slipwise.errors import SettingsError
+from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
+
+AUTO = "auto"
 
 
 @dataclass(frozen=True)
@@ -14,7 +20,7 @@ class LogOptions:
     """How to read a log; whatever is None is guessed, and the guess is noted in the log.
 
     Raises:
-        SettingsError: a length is not a positive number.
+        SettingsError: a length or a size is not positive, a time or an angle is no number, or a factor is 0.
     """
 
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
@@ -28,12 +34,60 @@ class LogOptions:
     wheel_radius: float | None = None  # [m]
     track: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
+    command_scale: tuple[float, float] = (1.0, 1.0)  # factors of the commanded speed and yaw rate
+    wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
+    pose_yaw_offset: float = 0.0  # [rad] added to the heading of every pose
+    most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
+    poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
+    pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
+    start: float | None = None  # [s] from the log's start; what is before is not used
+    end: float | None = None  # [s] from the log's start; what is after is not used
+    columns: Mapping[str, str] = field(default_factory=dict)  # tidy name -> name in the table
+    unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
 
     def __post_init__(self) -> None:
         for name in ("wheel_radius", "track", "wheelbase"):
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise SettingsError(
-                    f"{name} must be a positive number of metres, not {value}",
+                    f"{_option(name)} must be a positive number of metres, not {value}",
                     advice="measure it on the robot",
                 )
+        self._check_corrections()
+        if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
+            raise SettingsError(
+                f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
+                advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
+            )
+        for name in ("start", "end", "pose_clock_offset"):
+            given = getattr(self, name)
+            automatic = name == "pose_clock_offset"
+            if given is None or (automatic and given == AUTO):
+                continue
+            if not (isinstance(given, (int, float)) and math.isfinite(given)):
+                advice = f"such as 12.5{', or auto' if automatic else ''}"
+                raise SettingsError(
+                    f"{_option(name)} must be a number of seconds, not {given}", advice=advice
+                )
+        if self.start is not None and self.end is not None and self.end <= self.start:
+            raise SettingsError(
+                f"--end ({self.end:g} s) is not after --start ({self.start:g} s)", advice="exchange them"
+            )
+        if not self.unknown_after > 0.0:
+            raise SettingsError("unknown_after must be more than 0 s", advice="such as 0.5")
+
+    def _check_corrections(self) -> None:
+        for name in ("command_scale", "wheel_scale"):
+            factors: tuple[float, ...] = getattr(self, name)
+            if len(factors) != 2 or not all(math.isfinite(factor) and factor != 0.0 for factor in factors):
+                raise SettingsError(
+                    f"{_option(name)} must be two factors, of speed and yaw rate, neither of them 0",
+                    advice="such as 0.15,1 for wheels of 0.15 m whose speed is in rad/s, or -1,1 for a sign",
+                )
+        if not math.isfinite(self.pose_yaw_offset):
+            raise SettingsError("--pose-yaw-offset must be in radians", advice="3.1416 is half a turn")
+
+
+def _option(name: str) -> str:
+    """Return the option of the command line that sets a field."""
+    return f"--{name.replace('_', '-')}"

@@ -18,6 +18,9 @@ _SLIP = 1.1  # a robot may move this much further than its inputs say
 _UNKNOWN = 1.5  # and where there are no inputs, this much faster than it ever was told to go
 _DISTANCE = 0.5  # [m] on top of that, before it is called a jump
 _ANGLE = 0.8  # [rad]
+_WHOLE_TURNS = (
+    4.0 * np.pi
+)  # [rad] a heading is wrapped by one turn at most; a larger step is a fault in any case
 _NOISE = 8.0  # standard deviations of the poses' own noise
 _LONGEST_OUTLIER = 3  # poses
 _BEND_OF_NOISE = 1.652  # median of |second difference| for a standard deviation of 1: 0.6745 sqrt(1 + 4 + 1)
@@ -31,9 +34,12 @@ class Jumps:
     starts: Bools  # [M]
 
 
-def find_jumps(poses: Poses, inputs: Inputs) -> Jumps:
-    """Compare every step between poses of one frame with what the inputs allow, 1 s early or late."""
-    reach = _Reach(poses, inputs)
+def find_jumps(poses: Poses, inputs: Inputs, unknown_after: float) -> Jumps:
+    """Compare every step between poses of one frame with what the inputs allow, 1 s early or late.
+
+    An input is unknown once it is older than `unknown_after` [s].
+    """
+    reach = _Reach(poses, inputs, unknown_after)
     dropped, starts = np.zeros(len(poses), bool), np.zeros(len(poses), bool)
     i = np.arange(len(poses) - 1)
     for step in np.flatnonzero(reach.jumps(i, i + 1)).tolist():
@@ -76,10 +82,11 @@ def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
 class _Reach:
     """How far the robot can have come between two poses."""
 
-    def __init__(self, poses: Poses, inputs: Inputs) -> None:
+    def __init__(self, poses: Poses, inputs: Inputs, unknown_after: float) -> None:
         speed, rate = np.hypot(inputs.v, inputs.vy), np.abs(inputs.omega)
         self._poses = poses
-        self._path, self._turn = HeldSum.of(inputs, speed), HeldSum.of(inputs, rate)
+        self._path = HeldSum.of(inputs, speed, unknown_after)
+        self._turn = HeldSum.of(inputs, rate, unknown_after)
         self._top_speed, self._top_rate = float(speed.max()), float(rate.max())
         self._margin = max(_DISTANCE, _NOISE * _noise(poses))
 
@@ -92,7 +99,8 @@ class _Reach:
         path = _SLIP * self._path.between(start, stop) + self._top_speed * unknown
         turn = _SLIP * self._turn.between(start, stop) + self._top_rate * unknown
         far = np.hypot(p.x[j] - p.x[i], p.y[j] - p.y[i]) > path + self._margin
-        turned = np.abs(wrapped(p.yaw[j] - p.yaw[i])) > turn + _ANGLE
+        step = p.yaw[j] - p.yaw[i]
+        turned = (np.abs(wrapped(step)) > turn + _ANGLE) | (np.abs(step) > turn + _WHOLE_TURNS)
         return np.asarray((far | turned) & (p.frame[i] == p.frame[j]))
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Inputs, Log, Run
 from slipwise.logs.motion_windows import motion_windows
@@ -15,23 +16,25 @@ from slipwise.logs.plausibility import agreement, check_plausible
 from slipwise.logs.pose_jumps import find_jumps, without_jumps
 
 _TOO_MANY = 0.3  # part of all steps; more jumps than this are no accident
+_HARDLY = 10.0  # times as many poses out of order as in order
 _SLOWEST = 10.0  # [s] between poses
 _FEW = 20  # steps; with fewer no such judgement is made
 
 
-def checked(log: Log) -> Log:
-    """Return the log without pose jumps.
+def checked(log: Log, unknown_after: float = UNKNOWN_AFTER) -> Log:
+    """Return the log without pose jumps; an input is unknown once it is older than `unknown_after` [s].
 
     Raises:
         LogError: poses and inputs contradict each other.
     """
     where = log.sources[0].path if log.sources else ""
+    _check_forward(log, where)
     _check_seconds(log, where)
     for name in ("commands", "wheels"):
         pairs = [(inputs, run.poses) for run in log.runs if (inputs := _named(run, name)) is not None]
-        check_plausible(agreement(motion_windows(pairs)), name, where)
+        check_plausible(agreement(motion_windows(pairs, unknown_after)), name, where)
     tally = Tally()
-    runs = tuple(_smooth(run, tally) for run in log.runs)
+    runs = tuple(_smooth(run, unknown_after, tally) for run in log.runs)
     found = tally.result()
     steps = sum(max(len(run.poses) - 1, 0) for run in log.runs)
     if steps >= _FEW and sum(entry.count for entry in found) > _TOO_MANY * steps:
@@ -41,6 +44,22 @@ def checked(log: Log) -> Log:
             advice="check the units of poses (m, rad) and inputs (m/s, rad/s) and that their clocks agree",
         )
     return replace(log, runs=runs, left_out=log.left_out + found)
+
+
+def _check_forward(log: Log, where: str) -> None:
+    """Refuse a log in which hardly any pose is later than those before it: its stamps are no times."""
+    kept = sum(len(run.poses) for run in log.runs)
+    rejected = sum(
+        entry.count
+        for entry in log.left_out
+        if entry.kind in ("duplicate-stamp", "backward-stamp") and entry.reason.startswith("poses")
+    )
+    if rejected >= _FEW and rejected > _HARDLY * kept:
+        raise LogError(
+            f"stamps do not go forward in {rejected} of {kept + rejected} poses",
+            where=where,
+            advice="give each measurement its own time, in seconds",
+        )
 
 
 def _check_seconds(log: Log, where: str) -> None:
@@ -55,11 +74,11 @@ def _named(run: Run, name: str) -> Inputs | None:
     return run.commands if name == "commands" else run.wheels
 
 
-def _smooth(run: Run, tally: Tally) -> Run:
+def _smooth(run: Run, unknown_after: float, tally: Tally) -> Run:
     inputs = run.wheels if run.wheels is not None else run.commands
     if inputs is None or len(run.poses) < 2:
         return run
-    jumps = find_jumps(run.poses, inputs)
+    jumps = find_jumps(run.poses, inputs, unknown_after)
     if not (jumps.dropped.any() or jumps.starts.any()):
         return run
     for flags, kind, reason in (
@@ -67,5 +86,5 @@ def _smooth(run: Run, tally: Tally) -> Run:
         (jumps.starts, "pose-jump", "steps between poses that jump; poses after are in a frame of their own"),
     ):
         first = float(run.poses.t[np.argmax(flags)])
-        tally.add(kind, reason, count=int(flags.sum()), where=f"run {run.name}, t = {first:.3f} s")
+        tally.add(kind, reason, count=int(flags.sum()), where=run.place(first))
     return replace(run, poses=without_jumps(run.poses, jumps))

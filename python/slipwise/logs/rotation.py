@@ -14,12 +14,14 @@ def unit_quaternions(q: Floats) -> tuple[Floats, Bools]:
     """Normalise quaternions [N, 4].
 
     Returns:
-        The unit quaternions [N, 4], and whether each [N] was one to within 1e-2; the others are meaningless.
+        The unit quaternions [N, 4], and whether each [N] was one to within 1e-2; the others are no rotation.
     """
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged message can hold anything
         norm = np.linalg.norm(q, axis=1)
     good = np.abs(norm - 1.0) <= _NORM_TOLERANCE
-    return q / np.where(good, norm, 1.0)[:, None], np.asarray(good)
+    unit = np.tile([0.0, 0.0, 0.0, 1.0], (len(q), 1))
+    unit[good] = q[good] / norm[good, None]
+    return unit, np.asarray(good)
 
 
 def angles_of(q: Floats) -> tuple[Floats, Floats, Floats]:

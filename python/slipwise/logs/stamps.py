@@ -7,14 +7,16 @@ import numpy as np
 
 from slipwise.logs.log import Bools, Floats
 
+LATEST = float(2**32)  # s; what is later, in the year 2106, is no time in seconds
+_UNITS = ((1e-3, "milliseconds"), (1e-6, "microseconds"), (1e-9, "nanoseconds"))
 _SPIKE_FACTOR = 10.0  # a stamp this many usual steps ahead, taken back by the next one, is a fault of its own
 
 
 def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     """Sort the samples of a stream by what their stamps do.
 
-    A lone stamp far in the future would turn everything after it into the past, so such a spike is taken out
-    first; of the rest a sample is kept if it is later than all samples before it.
+    A lone stamp far in the future would turn everything after it into the past, so such a spike, at the start
+    too, is taken out first; of the rest a sample is kept if it is later than all samples before it.
 
     Args:
         t: stamps [N] in s, all finite, as they came.
@@ -34,10 +36,19 @@ def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     return keep, duplicate, ~keep & ~duplicate
 
 
+def unit_advice(stamp: float) -> str:
+    """Say what to do about a stamp that is no time in seconds; names the unit in which it is one."""
+    for factor, unit in _UNITS:
+        if stamp * factor < LATEST:
+            return f"stamps must be in seconds; these look like {unit}, so divide them by {1.0 / factor:.0e}"
+    return "stamps must be in seconds; these are no time in any unit, so record or convert the log again"
+
+
 def _spikes(t: Floats, step: Floats) -> Bools:
     usual = np.median(np.abs(step[step != 0.0])) if (step != 0.0).any() else 0.0
     spike = np.zeros(len(t), bool)
     if len(t) > 2:
         ahead = (step[:-1] > _SPIKE_FACTOR * usual) & (step[1:] < 0.0) & (t[2:] > t[:-2])
         spike[1:-1] = ahead
+        spike[0] = t[0] > max(t[1], t[2]) and t[2] > t[1] and -step[0] > _SPIKE_FACTOR * usual
     return spike

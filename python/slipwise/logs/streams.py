@@ -9,9 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.errors import LogError
+from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
-from slipwise.logs.stamps import forward_stamps
+from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
+
+_TOO_MANY_ABSURD = 0.1  # part of a stream; more absurd samples than this are no accident
+_STEEPEST = 2.0 * np.pi  # [rad] a roll or pitch beyond a whole turn is no angle
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +40,13 @@ class RawStream:
 
 
 def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
-    """Leave out, and count, samples that are not finite and stamps that do not go forward."""
-    finite = np.abs(stream.t) < ABSURD  # false for NaN
+    """Leave out, and count, samples that are not finite and stamps that are no times or do not go forward.
+
+    Raises:
+        LogError: most stamps are in another unit than seconds.
+    """
+    stream = _without_impossible_stamps(stream, tally)
+    finite = np.isfinite(stream.t)
     for name, values in stream.columns.items():
         if name not in stream.optional:
             finite &= np.abs(values) < ABSURD
@@ -50,8 +60,12 @@ def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
 
 
 def to_inputs(stream: RawStream, tally: Tally) -> Inputs | None:
-    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left."""
-    clean = clean_stream(stream, tally)
+    """Make inputs of the columns v, omega and, if there is one, vy; None if nothing is left.
+
+    Raises:
+        LogError: most speeds are absurd, so that their unit is wrong.
+    """
+    clean = _without_absurd_speeds(clean_stream(stream, tally), tally)
     if len(clean.t) == 0:
         return None
     vy = clean.columns.get("vy", np.zeros(len(clean.t)))
@@ -64,13 +78,40 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
     columns = clean.columns
     frame = order_codes(columns["frame"]) if "frame" in columns else np.zeros(len(clean.t), np.int64)
     others = {name: columns.get(name) for name in OPTIONAL_POSE_COLUMNS}
-    others = {name: v if v is None else np.where(np.abs(v) < ABSURD, v, np.nan) for name, v in others.items()}
+    largest = {"roll": _STEEPEST, "pitch": _STEEPEST}
+    others = {
+        name: v if v is None else np.where(np.abs(v) < largest.get(name, ABSURD), v, np.nan)
+        for name, v in others.items()
+    }
     for name in ("std_xy", "std_yaw"):  # 0 and less is how many programs write that it is not known
         deviation = others[name]
         if deviation is not None:
             others[name] = np.where(deviation > 0.0, deviation, np.nan)
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
     return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
+
+
+def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:
+    absurd = np.zeros(len(stream.t), bool)
+    for values in stream.columns.values():
+        absurd |= absurd_speeds(values)
+    count = int(absurd.sum())
+    if count > 3 and count > _TOO_MANY_ABSURD * len(absurd):
+        what = f"{count} of {len(absurd)} {stream.name} are faster than {FASTEST:g} m/s or rad/s"
+        where = stream.place(int(stream.rows[np.argmax(absurd)]))
+        raise LogError(what, where=where, advice="convert speeds to m/s and yaw rates to rad/s")
+    return _keep(stream, ~absurd, tally, "absurd-speed", "faster than any robot, all at once")
+
+
+def _without_impossible_stamps(stream: RawStream, tally: Tally) -> RawStream:
+    beyond = np.abs(stream.t) > LATEST  # false for NaN
+    if beyond.sum() > 0.5 * len(beyond):
+        usual = float(np.median(np.abs(stream.t[beyond])))
+        where = stream.place(int(stream.rows[np.argmax(beyond)]))
+        raise LogError(
+            f"stamps of {stream.name} are about {usual:.2g}", where=where, advice=unit_advice(usual)
+        )
+    return _keep(stream, ~beyond, tally, "bad-stamp", "whose stamp is no time in seconds")
 
 
 def order_codes(values: NDArray[np.float64] | Ints) -> Ints:

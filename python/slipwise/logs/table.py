@@ -3,10 +3,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import hashlib
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,13 +16,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import renamed
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
+from slipwise.logs.unpacking import most_bytes, too_large
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
+_BLOCK = 1 << 20  # bytes
+_LINE_END = re.compile(rb"\r\n|\n|\r")
 
 
 @dataclass(frozen=True)
@@ -54,11 +59,9 @@ class Table:
             LogError: the column holds something else.
         """
         column = self.arrow.column(name)
-        try:
-            values = np.asarray(column.cast("float64").to_numpy(), dtype=np.float64)
-        except (ValueError, NotImplementedError) as error:
-            advice = f"column {name} must hold numbers"
-            raise LogError(f"not a number in column {name}", where=str(self.path), advice=advice) from error
+        advice = f"column {name} must hold {'seconds as numbers' if name == 't' else 'numbers'}"
+        with _column_errors(f"not a number in column {name}", self.path, advice):
+            values = np.asarray(column.cast("float64", safe=False).to_numpy(), dtype=np.float64)
         finite = np.abs(values) < ABSURD  # false for NaN
         if finite.sum() < len(values) - column.null_count:
             wrong = np.asarray(column.is_valid().to_numpy(), dtype=bool) & ~finite
@@ -69,32 +72,41 @@ class Table:
 
     def codes(self, name: str) -> tuple[NDArray[np.int64], list[str]]:
         """Return a column of names as codes [N] and the names, numbered as they first appear."""
-        column = self.arrow.column(name).combine_chunks()
-        encoded = column if _is_dictionary(column) else column.dictionary_encode()
-        filled = encoded.indices.fill_null(-1)
-        codes = np.asarray(filled.to_numpy(zero_copy_only=False), dtype=np.int64)
-        names = ["" if value is None else str(value) for value in encoded.dictionary.to_pylist()]
+        with _column_errors(f"not names in column {name}", self.path, "write each as UTF-8 text or a number"):
+            column = self.arrow.column(name).combine_chunks()
+            encoded = column if _is_dictionary(column) else column.dictionary_encode()
+            filled = encoded.indices.fill_null(-1)
+            codes = np.asarray(filled.to_numpy(zero_copy_only=False), dtype=np.int64)
+            names = ["" if value is None else str(value) for value in encoded.dictionary.to_pylist()]
         if (codes < 0).any():
             codes, names = np.where(codes < 0, len(names), codes), [*names, ""]
         return codes, names
 
     def other(self, name: str) -> NDArray[Any]:
-        """Return any column as it is: numbers (NaN where empty), or objects for text."""
-        column = self.arrow.column(name).combine_chunks()
-        if _is_dictionary(column):
+        """Return any column as it is: numbers (NaN where empty), or objects for text.
+
+        Raises:
+            LogError: its values cannot be read.
+        """
+        with _column_errors(f"column {name} cannot be read", self.path, "leave it out, or write it as text"):
+            column = self.arrow.column(name).combine_chunks()
+            if not _is_dictionary(column):
+                return np.asarray(column.to_numpy(zero_copy_only=False))
             names = np.array([*column.dictionary.to_pylist(), None], dtype=object)
             indices = np.asarray(column.indices.fill_null(len(names) - 1).to_numpy(zero_copy_only=False))
             return np.asarray(names[indices])
-        return np.asarray(column.to_numpy(zero_copy_only=False))
 
 
-def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tally: Tally) -> Table:
+def read_csv(
+    path: Path, *, numeric: Collection[str], text: Collection[str], columns: Mapping[str, str], tally: Tally
+) -> Table:
     """Read a CSV file, compressed with gzip or not, by what its first bytes say.
 
     Args:
         path: the file.
         numeric: names of columns that must hold numbers, where they exist.
         text: names of columns to be read as text, where they exist.
+        columns: names that the table has, by the names to read them as.
         tally: counts the rows that cannot be read.
 
     Raises:
@@ -103,11 +115,13 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     import pyarrow as pa
     import pyarrow.csv as arrow_csv
 
-    raw = pa.memory_map(str(path)).read_buffer()
+    raw = _mapped(path)
     sha256 = hashlib.sha256(raw).hexdigest()
     packed = raw[:2].to_pybytes() == b"\x1f\x8b"
     content = _unpack(raw, path) if packed else raw
     header, skip = _header(content, path)
+    content = _as_utf8(content, tally, path.name)
+    header = renamed(header, columns, path)
     types: dict[str, Any] = {name: pa.float64() for name in header if name in numeric}
     types |= {name: pa.dictionary(pa.int32(), pa.string()) for name in header if name in text}
     broken: list[int] = []
@@ -125,8 +139,8 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
         arrow = arrow_csv.read_csv(
             pa.BufferReader(content), read_options=read, parse_options=parse, convert_options=convert
         )
-    except pa.ArrowInvalid as error:
-        advice = "every cell of a measurement must be a number or empty"
+    except pa.ArrowException as error:
+        advice = "every cell of a measurement must be a number or empty, and text UTF-8"
         raise LogError(
             f"not a tidy table: {_named_column(error, header)}", where=str(path), advice=advice
         ) from error
@@ -135,35 +149,94 @@ def read_csv(path: Path, *, numeric: Collection[str], text: Collection[str], tal
     return Table(path, "csv.gz" if packed else "csv", sha256, arrow.unify_dictionaries(), first_line=skip + 1)
 
 
-def read_parquet(path: Path) -> Table:
-    """Read a Parquet file.
+def read_parquet(path: Path, *, columns: Mapping[str, str]) -> Table:
+    """Read a Parquet file; `columns` are names that the table has, by the names to read them as.
 
     Raises:
-        LogError: the file is cut off or is not Parquet.
+        LogError: the file is cut off, is not Parquet, or unpacks to more than is allowed.
     """
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
-    raw = pa.memory_map(str(path)).read_buffer()
+    raw = _mapped(path)
     try:
-        arrow = parquet.read_table(pa.BufferReader(raw))
-    except (pa.ArrowInvalid, pa.ArrowException, OSError) as error:
+        file = parquet.ParquetFile(pa.BufferReader(raw))
+        _refuse_twice(file.schema_arrow.names, str(path))
+        groups = [file.metadata.row_group(i).total_byte_size for i in range(file.num_row_groups)]
+        left, batches = most_bytes(), []
+        if sum(groups) > left:
+            raise too_large("the table", str(path))
+        for batch in file.iter_batches(use_threads=False):
+            left -= batch.nbytes
+            if left < 0:
+                raise too_large("the table", str(path))
+            batches.append(batch)
+        arrow = pa.Table.from_batches(batches, schema=file.schema_arrow).unify_dictionaries()
+    except (pa.ArrowException, OSError, ValueError, TypeError) as error:
+        reason = " ".join(str(error).split())[:200]
         raise LogError(
-            f"not a readable Parquet file: {error}", where=str(path), advice="copy it again"
+            f"not a readable Parquet file: {reason}", where=str(path), advice="copy or write it again"
         ) from error
+    arrow = arrow.rename_columns(renamed(arrow.column_names, columns, path))
     return Table(path, "parquet", hashlib.sha256(raw).hexdigest(), arrow.unify_dictionaries(), first_line=1)
+
+
+def _mapped(path: Path) -> pa.Buffer:
+    import pyarrow as pa
+
+    return pa.memory_map(str(path)).read_buffer()
+
+
+def _as_utf8(content: pa.Buffer, tally: Tally, name: str) -> pa.Buffer:
+    """Return the content with a mark in place of each byte that is no UTF-8; Arrow skips such rows."""
+    import pyarrow as pa
+
+    view = memoryview(content)
+    blocks = (view[at : at + _BLOCK] for at in range(0, len(view), _BLOCK))
+    if all(bytes(block).isascii() for block in blocks):
+        return content
+    data = bytes(view)
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        text = data.decode("utf-8", errors="replace")
+        place = f"{name}, line {data[: error.start].count(10) + 1}"
+        tally.add("bad-text", "bytes that are not UTF-8", count=text.count("\ufffd"), where=place)
+        return pa.py_buffer(text.encode())
+    return content
 
 
 def _unpack(raw: pa.Buffer, path: Path) -> pa.Buffer:
     import pyarrow as pa
 
+    most = most_bytes()
     try:
         with pa.CompressedInputStream(pa.BufferReader(raw), "gzip") as stream:
-            return stream.read_buffer()
+            content = stream.read_buffer(most + 1)
     except OSError as error:
         raise LogError(
             "the gzip file is cut off or damaged", where=str(path), advice="copy it again"
         ) from error
+    if content.size > most:
+        raise too_large("the table", str(path))
+    return content
+
+
+@contextlib.contextmanager
+def _column_errors(what: str, path: Path, advice: str) -> Iterator[None]:
+    """Turn whatever Arrow raises about the values of a column into a LogError."""
+    import pyarrow as pa
+
+    try:
+        yield
+    except (pa.ArrowException, ValueError, TypeError, KeyError, NotImplementedError, OverflowError) as error:
+        raise LogError(what, where=str(path), advice=advice) from error
+
+
+def _refuse_twice(names: list[str], where: str) -> None:
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise LogError(f"column {twice[0]} is there twice", where=where, advice="rename one of them")
 
 
 def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
@@ -172,21 +245,17 @@ def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
     if b"\0" in start:
         raise LogError("not a text file", where=str(path), advice="give a CSV, Parquet or bag file")
     try:
-        line = start.split(b"\n", 1)[0].decode("utf-8-sig").strip()
-    except UnicodeDecodeError as error:
+        line = _LINE_END.split(start, maxsplit=1)[0].decode("utf-8-sig").strip()
+        names = [name.strip() for name in next(csv.reader([line]), [])]
+    except (UnicodeDecodeError, csv.Error) as error:
         raise LogError(
             "not a text file", where=str(path), advice="give a CSV, Parquet or bag file"
         ) from error
-    names = [name.strip() for name in next(csv.reader([line]), [])]
     if len(names) < 2 and (";" in line or "\t" in line):
         raise LogError(
             "the columns are not separated by commas", where=str(path), advice="save it as plain CSV"
         )
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise LogError(
-            f"column {twice[0]} is there twice", where=f"{path}, line 1", advice="rename one of them"
-        )
+    _refuse_twice(names, f"{path}, line 1")
     return names, 1
 
 

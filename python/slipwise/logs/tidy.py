@@ -12,18 +12,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import check_columns
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Log, Run, Source
+from slipwise.logs.log import (
+    OPTIONAL_POSE_COLUMNS,
+    Bools,
+    Floats,
+    Inputs,
+    Ints,
+    Log,
+    Run,
+    Source,
+    empty_poses,
+)
 from slipwise.logs.options import LogOptions
 from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, order_codes, to_inputs, to_poses
 from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
+    KNOWN,
     NUMERIC,
+    POSE_COLUMNS,
     TEXT,
     USED,
     InputColumns,
     command_columns,
+    missing_input,
     require_columns,
     wheel_columns,
 )
@@ -42,53 +56,75 @@ class _Rows:
 
 
 def read_tidy(path: Path, options: LogOptions) -> Log:
-    """Read a tidy CSV file, compressed with gzip or not.
+    """Read a tidy table: Parquet, or CSV compressed with gzip or not.
 
     Args:
         path: the file.
-        options: radius, track and wheelbase are used where the table needs them.
+        options: names of columns, and the sizes of the robot where the table needs them.
 
     Raises:
         LogError: the file cannot be read, or columns are missing.
     """
     tally = Tally()
-    return _log(read_csv(path, numeric=NUMERIC, text=TEXT, tally=tally), options, tally)
+    return _log(load_table(path, options, tally), options, tally)
 
 
-def read_parquet_log(path: Path, options: LogOptions) -> Log:
-    """Read a tidy Parquet file; see `read_tidy`.
+def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
+    """Read a table by what its first bytes say, its columns under the names of a tidy log.
 
     Raises:
-        LogError: the file cannot be read, or columns are missing.
+        LogError: the file cannot be read, or has no column of a name that was given.
+        SettingsError: `options.columns` names something that is no column of a tidy log.
     """
-    return _log(read_parquet(path), options, Tally())
+    check_columns(options.columns, KNOWN)
+    columns = options.columns
+    if options.poses is not None:  # names of pose columns are those of the other file
+        columns = {tidy: own for tidy, own in columns.items() if tidy not in POSE_COLUMNS}
+    with path.open("rb") as file:
+        parquet = file.read(4) == b"PAR1"
+    if parquet:
+        return read_parquet(path, columns=columns)
+    return read_csv(path, numeric=NUMERIC, text=TEXT, columns=columns, tally=tally)
 
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
     notes: list[str] = []
-    require_columns(table)
+    require_columns(table, poses=options.poses is None)
     if len(table) == 0:
         raise LogError("the table has no rows", where=str(table.path), advice="record the log again")
     rows = _rows(table, options, tally, notes)
     runs = tuple(_run(name, rows, index, table, tally) for name, index in _split_by_run(table))
     source = Source(str(table.path), table.sha256, table.format, len(table))
-    return Log(runs, (source,), tally.result(), tuple(notes))
+    return Log(runs, (source,), tally.result(), tuple(notes), missing_input(table, rows.wheels))
 
 
 def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
     names = table.names
-    pose = {name: table.numbers(name, tally) for name in ("x", "y", "yaw")}
-    pose |= {name: table.numbers(name, tally) for name in OPTIONAL_POSE_COLUMNS if name in names}
-    if "frame" in names:
+    wanted = ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS) if options.poses is None else ()
+    pose = {name: table.numbers(name, tally) for name in wanted if name in names}
+    if pose and "frame" in names:
         pose["frame"] = table.codes("frame")[0].astype(np.float64)
     return _Rows(
         t=table.numbers("t", tally),
         commands=command_columns(table, options, tally, notes),
         wheels=wheel_columns(table, options, tally, notes),
         pose=pose,
-        fresh=_fresh(table, pose, tally, notes),
-        extra={name: table.other(name) for name in names if name not in USED},
+        fresh=_fresh(table, pose, tally, notes) if pose else np.zeros(len(table), bool),
+        extra=_extra(table, notes),
     )
+
+
+def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
+    """Return the columns that are carried along; notes those that cannot be read."""
+    found = {}
+    for name in table.names:
+        if name in USED:
+            continue
+        try:
+            found[name] = table.other(name)
+        except LogError:
+            notes.append(f"{table.path.name}: column {name!r} cannot be read and is not carried along")
+    return found
 
 
 def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]) -> Bools:
@@ -145,7 +181,9 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
         name=name,
         commands=_inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None,
         wheels=_inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None,
-        poses=to_poses(stream("poses", rows.pose).select(rows.fresh[index]), tally),
+        poses=to_poses(stream("poses", rows.pose).select(rows.fresh[index]), tally)
+        if rows.pose
+        else empty_poses(),
         extra={"t": t, **extra} if extra else {},
     )
 

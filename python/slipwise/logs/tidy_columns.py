@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import NoReturn
 
@@ -23,6 +24,9 @@ NUMERIC = (
 USED = frozenset(
     ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
+KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
+POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
+_SIZES = "--wheel-radius and --track"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
@@ -41,14 +45,14 @@ class InputColumns:
         return twist if self.vy is None else {**twist, "vy": self.vy}
 
 
-def require_columns(table: Table) -> None:
-    """Check that the table has a time, a pose and some input.
+def require_columns(table: Table, *, poses: bool) -> None:
+    """Check that the table has a time, some input and, where `poses` come from it, a pose.
 
     Raises:
         LogError: it does not; the error names what is missing and what was found.
     """
     names = table.names
-    missing = [name for name in ("t", "x", "y", "yaw") if name not in names]
+    missing = [name for name in ("t", *(("x", "y", "yaw") if poses else ())) if name not in names]
     commands = "cmd_v" in names or "cmd_vx" in names
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     if not commands and not wheels:
@@ -59,7 +63,8 @@ def require_columns(table: Table) -> None:
         raise LogError(
             f"missing columns: {'; '.join(missing)}",
             where=str(table.path),
-            advice=f"found {found}; rename the columns of the table to the names of a tidy log",
+            advice=f"found {found}; say which is which, such as --columns t=time,cmd_v=vx"
+            + (", or give --poses FILE" if poses and "x" in missing else ""),
         )
 
 
@@ -109,12 +114,12 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
             )
             return InputColumns(v, None, omega)
         if "cmd_v" not in names and "cmd_vx" not in names:
-            advice = "give wheel_radius and track, or the columns odo_v and odo_omega"
+            advice = f"give {_SIZES}, or the columns odo_v and odo_omega"
             raise LogError(
                 "wheel speeds need the wheel radius and the track", where=str(table.path), advice=advice
             )
         notes.append(
-            f"{table.path.name}: wheel_left and wheel_right are not used without wheel_radius and track"
+            f"{table.path.name}: wheel_left and wheel_right have wheel speeds: give {_SIZES} to use them"
         )
         return None
     if "odo_v" in names:
@@ -122,6 +127,41 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
             _raise_no_omega(table, "odo_omega", steer=False)
         notes.append(f"{table.path.name}: odo_v has no odo_omega beside it and is not used")
     return None
+
+
+def missing_input(table: Table, wheels: InputColumns | None) -> dict[str, str]:
+    """Return what would give an input that the table could have, by the input's name."""
+    if wheels is not None or not {"wheel_left", "wheel_right"} <= set(table.names):
+        return {}
+    return {"wheel": f"wheel_left and wheel_right have wheel speeds: give {_SIZES} to use them"}
+
+
+def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tuple[str, str]:
+    """Return what a column is used as, nothing where it is not, and why."""
+    if name in ("t", "run"):
+        return {"t": "time", "run": "run"}[name], ""
+    if name in POSE_COLUMNS:
+        return ("pose", "") if options.poses is None else ("", "--poses gives the poses")
+    if name not in NUMERIC:
+        return "", "carried along; if slipwise knows it by another name, give --columns"
+    why = _unused_because(name, names, options)
+    return ("", why) if why else ("command" if name.startswith("cmd") else "wheel", "")
+
+
+def _unused_because(name: str, names: Collection[str], options: LogOptions) -> str:
+    sized = options.wheel_radius is not None and options.track is not None
+    beside = {"odo_v": "odo_omega", "odo_omega": "odo_v"}.get(name, name)
+    if beside not in names:
+        return f"there is no {beside} beside it"
+    if name == "cmd_vx" and "cmd_v" in names:
+        return "cmd_v is used"
+    if name == "cmd_steer" and options.wheelbase is None:
+        return "a steering angle needs --wheelbase"
+    if name in ("wheel_left", "wheel_right"):
+        if {"odo_v", "odo_omega"} <= set(names):
+            return "odo_v and odo_omega are used"
+        return "" if sized else f"wheel speeds need {_SIZES}"
+    return ""
 
 
 def _command_omega(
@@ -150,5 +190,5 @@ def _filled(omega: Floats | None, other: Floats, note: str, notes: list[str]) ->
 
 def _raise_no_omega(table: Table, missing: str, *, steer: bool) -> NoReturn:
     turns = f"add a column {missing} [rad/s]" + (" or cmd_curvature [1/m]" if missing == "cmd_omega" else "")
-    advice = "give the wheelbase, the table has cmd_steer" if steer else turns
+    advice = "give --wheelbase in metres, the table has cmd_steer" if steer else turns
     raise LogError(f"missing columns: {missing}", where=str(table.path), advice=advice)

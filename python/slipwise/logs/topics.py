@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from slipwise.errors import LogError
 from slipwise.logs.messages import (
@@ -14,176 +13,223 @@ from slipwise.logs.messages import (
     JOINT_STATE,
     NAV_SAT_FIX,
     ODOMETRY,
-    POSE_STAMPED,
     POSE_TYPES,
-    POSE_WITH_COVARIANCE,
     TF,
-    TWIST_STAMPED,
     WHEEL_TYPES,
 )
 from slipwise.logs.options import LogOptions
+from slipwise.logs.role_choice import NONE, Role, RoleChoice, Topic, choose, listing
+from slipwise.logs.topic_names import (
+    COMMAND_NAMES,
+    FUSED,
+    MEASURED_OUTSIDE,
+    POSE_NAMES,
+    SATELLITES,
+    WHEEL_NAMES,
+    WHEEL_ODOMETRY,
+    looks_like,
+    score_of,
+)
+from slipwise.logs.transforms import TransformSource
 
-# (pattern, score): the first pattern found in the lower-case topic name counts; a score below 0 excludes.
-_COMMAND_NAMES = (
-    (r"odom|measured|feedback|vrpn|mocap|gps|imu|wheel_vel|estimate|ground_truth|state", -1),
-    (r"cmd_vel_out$", 6),
-    (r"(^|/)cmd_vel$", 5),
-    (r"cmd_vel_(unstamped|stamped)$", 4),
-    (r"cmd_vel", 3),
-    (r"(^|[/_])(cmd|command|drive|ackermann\w*)($|[/_])", 2),
-)
-_BEST = r"ground_?truth|gazebo|model_pose"
-_CAMERAS = r"mocap|vicon|vrpn|optitrack|qualisys|natnet"
-_SCANS = r"lidar|slam|localization|amcl|visual|(^|[/_])(lio|loam|particle|pf|zed|vio)"
-_SATELLITES = r"gps|gnss|navsat|(^|[/_])(fix|ins)($|[/_])"
-_DRIVE = r"velocity_controller|diff_drive|base_controller|drive_controller"
-_FUSED = r"filtered|fused|(^|[/_])(ekf|ukf)"
-_POSE_NAMES = (
-    (r"goal|target|plan|setpoint|initialpose|command|cmd|waypoint", -1),
-    (_BEST, 10),
-    (_CAMERAS, 9),
-    (r"rtk", 8),
-    (r"icp", 7),
-    (_SCANS, 6),
-    (_SATELLITES, 5),
-    (rf"wheel|encoder|{_DRIVE}", -1),
-    (r"odom.*global|global.*odom", 4),
-    (_FUSED, 2),
-    (r"odom", -1),
-)
-_WHEEL_NAMES = (
-    (rf"{_BEST}|{_CAMERAS}|rtk|icp|{_SCANS}|{_SATELLITES}", -1),
-    (r"wheel|encoder", 6),
-    (_DRIVE, 5),
-    (rf"{_FUSED}|local|global", -1),
-    (r"odom", 4),
-    (r"joint_states?$", 2),
-)
-_TYPE_SCORE = {TWIST_STAMPED: 1, POSE_STAMPED: 1, ODOMETRY: 2, POSE_WITH_COVARIANCE: 3}
+_POSE = Role("pose", tuple(kind for kind in POSE_TYPES if kind != TF), POSE_NAMES)
+_ANY_POSE = Role("pose", POSE_TYPES, POSE_NAMES)
+_COMMAND = Role("command", COMMAND_TYPES, COMMAND_NAMES)
+_WHEEL = Role("wheel", WHEEL_TYPES, WHEEL_NAMES)
+_IMU = Role("imu", (IMU,), ((r"raw", -1, "its name says that it is raw, without an orientation"),))
+_MORE_POSES = 2  # TF is preferred where it has this many times the poses of the topic
+_RECORD = "record where the robot went by something other than its wheels (RTK, lidar, motion capture)"
+SIZES = "--wheel-radius and --track"
 
 
 @dataclass(frozen=True)
-class Topic:
-    """A topic of a bag."""
+class TopicRoles:
+    """The choice for each role; any may be a problem."""
 
-    name: str
-    type: str
-    count: int
+    pose: RoleChoice
+    command: RoleChoice
+    wheel: RoleChoice
+    imu: RoleChoice
+    problem: LogError | None  # why the bag cannot be read with these
+    guessed: tuple[str, ...]  # sentences about what was guessed
+    advice: Mapping[str, str]  # what would give an input that is not read, by the input's name
+
+    def named(self) -> tuple[tuple[str, RoleChoice], ...]:
+        """Return the choices with the names of their roles."""
+        return (("pose", self.pose), ("command", self.command), ("wheel", self.wheel), ("imu", self.imu))
+
+
+def transforms_matter(topics: Sequence[Topic], options: LogOptions) -> bool:
+    """Say whether TF has to be looked at before the pose can be chosen."""
+    if options.poses is not None or not any(topic.type == TF and topic.count for topic in topics):
+        return False
+    pose = weigh_topics(topics, options).pose.topic
+    return pose is None or pose.type == TF or not _measured_outside(pose)
 
 
 @dataclass(frozen=True)
 class Roles:
     """The chosen topics."""
 
-    pose: Topic
+    pose: Topic | None  # None where a file holds the poses
     command: Topic | None
     wheel: Topic | None
     imu: Topic | None
     guessed: tuple[str, ...]  # sentences about what was guessed
+    advice: Mapping[str, str]  # what would give an input that is not read, by the input's name
 
 
-def choose_topics(topics: Sequence[Topic], options: LogOptions) -> Roles:
+def choose_topics(
+    topics: Sequence[Topic], options: LogOptions, transforms: TransformSource | None = None
+) -> Roles:
     """Choose the topics by name and type, or take the ones given.
 
     Raises:
         LogError: a given topic is not there or has the wrong type, or the guess is unclear.
     """
+    found = weigh_topics(topics, options, transforms)
+    if found.problem is not None:
+        raise found.problem
+    command, wheel, imu = found.command.topic, found.wheel.topic, found.imu.topic
+    return Roles(found.pose.topic, command, wheel, imu, found.guessed, found.advice)
+
+
+def weigh_topics(
+    topics: Sequence[Topic], options: LogOptions, transforms: TransformSource | None = None
+) -> TopicRoles:
+    """Choose the topics as `choose_topics` does, but say what is unclear instead of raising it."""
     live = {topic.name: topic for topic in topics if topic.count > 0}
-    wheel = _choose(live, "wheel_topic", options.wheel_topic, WHEEL_TYPES, _WHEEL_NAMES)
-    if (
-        wheel is not None
-        and wheel.type == JOINT_STATE
-        and options.wheel_topic is None
-        and not _wheel_sizes(options)
-    ):
-        wheel = None
-    command = _choose(live, "command_topic", options.command_topic, COMMAND_TYPES, _COMMAND_NAMES)
-    pose = _choose_pose(live, options)
-    if pose is None:
-        raise LogError("no topic with a measured pose", advice=_pose_advice(live))
-    if command is None and wheel is None:
-        raise LogError(
-            "no topic with a command or with wheel speeds",
-            advice=f"set command_topic or wheel_topic; {_listing(live)}",
-        )
-    imu = _imu(live, options) if pose.type == NAV_SAT_FIX else None
-    guesses = (
-        ("pose", pose, options.pose_topic),
-        ("command", command, options.command_topic),
-        ("wheel", wheel, options.wheel_topic),
-        ("imu", imu, options.imu_topic),
-    )
-    notes = [
-        f"{role} topic: {t.name} ({t.type.replace('/msg/', '/')})"
-        for role, t, given in guesses
-        if t and not given
-    ]
-    if options.pose_topic is None and re.search(_FUSED, pose.name.lower()):
-        notes.append(f"{pose.name} is fused: it shows slip only if more than wheels and an IMU went into it")
-    return Roles(pose, command, wheel, imu, tuple(notes))
+    advice: dict[str, str] = {}
+    pose = _choose_pose(live, options, transforms)
+    wheel = _choose_wheel(live, options, advice)
+    command = choose(live, _COMMAND, options.command_topic)
+    shared = pose.topic is not None and pose.topic == wheel.topic
+    only_by_type = shared and options.wheel_topic is None and not _says_wheels(wheel.topic)
+    if only_by_type and command.topic is not None:
+        wheel = _without_wheels(wheel, "it is the pose, and its name does not say that it is wheel odometry")
+        shared = False
+    satellites = pose.topic is not None and pose.topic.type == NAV_SAT_FIX
+    imu = choose(live, _IMU, options.imu_topic) if satellites else RoleChoice()
+    if imu.problem is not None and options.imu_topic is None:  # any of several orientations will do
+        first = next(t for t in live.values() if t.type == IMU and t.name in imu.rejected)
+        imu = RoleChoice(first, "the first of several", imu.rejected)
+    found = TopicRoles(pose, command, wheel, imu, None, (), advice)
+    problem = _problem(live, found, options, shared=shared)
+    return replace(found, problem=problem, guessed=_notes(found, options, transforms))
 
 
-def _choose_pose(live: Mapping[str, Topic], options: LogOptions) -> Topic | None:
+def _choose_pose(
+    live: Mapping[str, Topic], options: LogOptions, transforms: TransformSource | None
+) -> RoleChoice:
+    if options.poses is not None:
+        beside = {t.name: "--poses gives the poses" for t in live.values() if t.type in POSE_TYPES}
+        return RoleChoice(rejected=beside)
     if options.pose_topic is not None:
-        return _given(live, "pose_topic", options.pose_topic, POSE_TYPES)
+        return choose(live, _ANY_POSE, options.pose_topic)
+    tf = next((t for t in live.values() if t.type == TF and not t.name.endswith("static")), None)
+    found = choose(live, _POSE, None)
     if options.pose_frame is not None or options.child_frame is not None:
-        return next((t for t in live.values() if t.type == TF and not t.name.endswith("static")), None)
-    kinds = tuple(kind for kind in POSE_TYPES if kind != TF)
-    pose = _choose(live, "pose_topic", None, kinds, _POSE_NAMES)
-    return pose or next((t for t in live.values() if t.type == TF and not t.name.endswith("static")), None)
+        frames = "--pose-frame or --child-frame asks for TF"
+        lost = dict.fromkeys([*found.rejected, *([found.topic.name] if found.topic else [])], frames)
+        return RoleChoice(tf, frames, lost)
+    if tf is None:
+        return found
+    if found.topic is None and found.problem is None:
+        return RoleChoice(tf, "no other topic has a measured pose", found.rejected)
+    if found.topic is not None and transforms is not None and _has_more(transforms, found.topic):
+        slow, counts = found.topic.name, f"{transforms.samples} to {found.topic.count}"
+        why = f"it has more poses than {slow} ({counts})"
+        return RoleChoice(tf, why, {**found.rejected, slow: f"{tf.name} has more poses ({counts})"})
+    return replace(found, rejected={**found.rejected, tf.name: _not_transforms(found.topic, transforms)})
 
 
-def _choose(
-    live: Mapping[str, Topic],
-    option: str,
-    given: str | None,
-    kinds: tuple[str, ...],
-    names: Sequence[tuple[str, int]],
-) -> Topic | None:
-    if given is not None:
-        return _given(live, option, given, kinds)
-    scored = [(_score(topic, names), topic) for topic in live.values() if topic.type in kinds]
-    scored = [(score, topic) for score, topic in scored if score >= 0]
-    if not scored:
-        return None
-    best = max(score for score, _ in scored)
-    winners = [topic for score, topic in scored if score == best]
-    if len(winners) > 1:
-        listing = ", ".join(f"{topic.name} ({topic.count} messages)" for topic in winners)
-        raise LogError(
-            f"several topics could be the {option.removesuffix('_topic')}",
-            advice=f"set {option} to one of {listing}",
+def _has_more(transforms: TransformSource, topic: Topic) -> bool:
+    """Say whether TF tells more than a localiser's topic; a sensor's own topic is never replaced."""
+    if transforms.problem or transforms.odometry_alone or _measured_outside(topic):
+        return False
+    return transforms.samples >= _MORE_POSES * topic.count
+
+
+def _measured_outside(topic: Topic) -> bool:
+    score, _ = score_of(topic.name, topic.type, POSE_NAMES)
+    return score >= MEASURED_OUTSIDE or topic.type == NAV_SAT_FIX or looks_like(topic.name, SATELLITES)
+
+
+def _not_transforms(topic: Topic | None, transforms: TransformSource | None) -> str:
+    if transforms is not None and transforms.problem:
+        return transforms.problem
+    if transforms is not None and transforms.odometry_alone:
+        return f"{transforms.name} moves by odometry alone"
+    return f"{topic.name} is preferred" if topic is not None else "topics are preferred"
+
+
+def _choose_wheel(live: Mapping[str, Topic], options: LogOptions, advice: dict[str, str]) -> RoleChoice:
+    """Choose the wheels; joint states only where the sizes of the robot are given."""
+    sized = options.wheel_radius is not None and options.track is not None
+    if options.wheel_topic is not None or sized:
+        return choose(live, _WHEEL, options.wheel_topic)
+    joints = [topic for topic in live.values() if topic.type == JOINT_STATE]
+    others = {name: topic for name, topic in live.items() if topic.type != JOINT_STATE}
+    found = choose(others, _WHEEL, None)
+    needs = f"its wheel speeds need {SIZES}"
+    if joints and found.topic is None and found.problem is None:
+        names = ", ".join(topic.name for topic in joints)
+        advice["wheel"] = f"{names} has joint states: give {SIZES} to read wheel speeds from it"
+    return replace(found, rejected={**found.rejected, **{topic.name: needs for topic in joints}})
+
+
+def _without_wheels(wheel: RoleChoice, why: str) -> RoleChoice:
+    assert wheel.topic is not None
+    return RoleChoice(rejected={**wheel.rejected, wheel.topic.name: why})
+
+
+def _says_wheels(topic: Topic | None) -> bool:
+    return topic is not None and looks_like(topic.name, WHEEL_ODOMETRY)
+
+
+def _problem(
+    live: Mapping[str, Topic], found: TopicRoles, options: LogOptions, *, shared: bool
+) -> LogError | None:
+    for choice in (found.wheel, found.command, found.pose, found.imu):
+        if choice.problem is not None:
+            return choice.problem
+    if found.pose.topic is None and options.poses is None:
+        return LogError("no topic with a measured pose", advice=_pose_advice(live))
+    if found.command.topic is None and found.wheel.topic is None:
+        what = "no topic with a command or with wheel speeds"
+        advice = f"give --command-topic or --wheel-topic; {listing(live)}"
+        return LogError(what, advice=found.advice.get("wheel", advice))
+    if shared and found.pose.topic is not None:
+        name = found.pose.topic.name
+        return LogError(
+            f"pose and wheel speeds both come from {name}, so the pose cannot show how the wheels slip",
+            advice=f"{_RECORD}; if the pose of {name} is such, give --wheel-topic {NONE}",
         )
-    return winners[0]
+    return None
 
 
-def _given(live: Mapping[str, Topic], option: str, name: str, kinds: tuple[str, ...]) -> Topic:
-    topic = live.get(name) or live.get(f"/{name}")
-    if topic is None:
-        raise LogError(f"{option} {name} is not in the bag, or empty", advice=_listing(live))
-    if topic.type not in kinds:
-        expected = ", ".join(kind.split("/")[-1] for kind in kinds)
-        raise LogError(f"{option} {name} is a {topic.type}", advice=f"it must be one of {expected}")
-    return topic
-
-
-def _score(topic: Topic, names: Sequence[tuple[str, int]]) -> int:
-    """Return 10 times the name's score, a little more for types that say more."""
-    for pattern, score in names:
-        if re.search(pattern, topic.name.lower()):
-            return 10 * score + _TYPE_SCORE.get(topic.type, 0) if score >= 0 else -1
-    return _TYPE_SCORE.get(topic.type, 0)
-
-
-def _wheel_sizes(options: LogOptions) -> bool:
-    return options.wheel_radius is not None and options.track is not None
-
-
-def _imu(live: Mapping[str, Topic], options: LogOptions) -> Topic | None:
-    if options.imu_topic is not None:
-        return _given(live, "imu_topic", options.imu_topic, (IMU,))
-    found = [topic for topic in live.values() if topic.type == IMU]
-    return next((topic for topic in found if "raw" not in topic.name), None)
+def _notes(found: TopicRoles, options: LogOptions, transforms: TransformSource | None) -> tuple[str, ...]:
+    given = {
+        "pose": options.pose_topic,
+        "command": options.command_topic,
+        "wheel": options.wheel_topic,
+        "imu": options.imu_topic,
+    }
+    notes = [
+        f"{role} topic: {choice.topic.name} ({choice.topic.type.replace('/msg/', '/')})"
+        + (f": {choice.why}" if choice.topic.type == TF else "")
+        for role, choice in found.named()
+        if choice.topic and not given[role]
+    ]
+    pose = found.pose.topic
+    if pose is not None and options.pose_topic is None and looks_like(pose.name, FUSED):
+        notes.append(f"{pose.name} is fused: it shows slip only if more than wheels and an IMU went into it")
+    excluded = pose is not None and score_of(pose.name, pose.type, POSE_NAMES)[1]
+    if pose is not None and excluded:
+        notes.append(f"{pose.name} is the pose as given, although {excluded}")
+    if pose is not None and pose.type == TF and transforms is not None and transforms.warning:
+        notes.append(transforms.warning)
+    return tuple(notes)
 
 
 def _pose_advice(live: Mapping[str, Topic]) -> str:
@@ -191,15 +237,6 @@ def _pose_advice(live: Mapping[str, Topic]) -> str:
     if odometry:
         return (
             f"{', '.join(odometry)} looks like wheel odometry, which cannot show its own slip; "
-            "set pose_topic if its pose is measured from outside"
+            "give --pose-topic if its pose is measured from outside, or --poses FILE"
         )
-    return f"set pose_topic; {_listing(live)}"
-
-
-def _listing(live: Mapping[str, Topic]) -> str:
-    if not live:
-        return "the bag has no messages"
-    shown = [
-        f"{topic.name} ({topic.type.split('/')[-1]})" for topic in sorted(live.values(), key=lambda t: t.name)
-    ]
-    return "the bag has " + ", ".join(shown[:15]) + (", ..." if len(shown) > 15 else "")
+    return f"give --pose-topic, or --poses FILE; {listing(live)}"

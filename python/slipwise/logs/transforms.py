@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,21 @@ from slipwise.logs.rotation import product, rotate
 
 _FIXED = ("map", "world", "mocap", "utm")
 _ROBOT = ("base_link", "base_footprint")
+_OFTEN = 0.5  # of all poses; a localiser that corrects less often leaves the rest to odometry
 
 Edge = tuple[str, str]  # parent, child
+
+
+@dataclass(frozen=True)
+class TransformSource:
+    """What TF knows of the robot's pose."""
+
+    name: str  # the topic
+    frames: tuple[str, str] | None  # fixed frame and robot, None where there are none
+    samples: int  # poses
+    odometry_alone: bool  # nothing above the odometry's frame ever moves
+    problem: str = ""  # why there are no poses
+    warning: str = ""  # what these poses do not show
 
 
 class TransformCollector:
@@ -47,6 +61,43 @@ class TransformCollector:
             order = np.argsort(stamps, kind="stable")
             sorted_edges[edge] = (stamps[order], rows[order])
         return sorted_edges
+
+
+def describe_transforms(
+    name: str, edges: Mapping[Edge, tuple[Ints, Floats]], fixed: str | None, robot: str | None
+) -> TransformSource:
+    """Say what the transforms of topic `name` know of the robot, between frames given or usual."""
+    frames = choose_frames(edges, fixed, robot)
+    if frames is None:
+        return TransformSource(name, None, 0, False, f"it has no usual frames, but {known_edges(edges)}")
+    try:
+        chain = _chain(edges, *frames)
+        samples = len(chain_poses(edges, *frames)[0])
+    except LogError as broken:
+        return TransformSource(name, frames, 0, False, f"{broken.what}; it has {known_edges(edges)}")
+    changes = {edge: _changes(edges[edge][1]) for edge in chain}
+    moving = [edge for edge in chain if changes[edge]]
+    alone = bool(moving) and all("odom" in parent for parent, _ in moving)
+    warning = ""
+    if alone:
+        warning = f"{name} moves by {' -> '.join(moving[0])} alone: odometry cannot show its own slip"
+    elif len(moving) > 1 and changes[moving[0]] < _OFTEN * samples:
+        warning = (
+            f"{' -> '.join(moving[0])} changes {changes[moving[0]]} times in {samples} poses; "
+            "between these the poses are odometry, which cannot show its own slip"
+        )
+    return TransformSource(name, frames, samples, alone, warning=warning)
+
+
+def known_edges(edges: Mapping[Edge, object]) -> str:
+    """Name the first transforms that there are."""
+    shown = ", ".join(f"{a} -> {b}" for a, b in sorted(edges)[:8])
+    return shown + (", ..." if len(edges) > 8 else "") or "no transforms"
+
+
+def _changes(rows: Floats) -> int:
+    """Count how often a transform [N, 7] differs from the one before."""
+    return int((rows[1:] != rows[:-1]).any(axis=1).sum())
 
 
 def choose_frames(
@@ -94,15 +145,14 @@ def _chain(edges: Mapping[Edge, object], fixed: str, robot: str) -> list[Edge]:
     while child != fixed:
         parent = parent_of.get(child)
         if parent is None or len(chain) > len(edges):
-            known = ", ".join(f"{a} -> {b}" for a, b in sorted(edges)[:8])
             raise LogError(
                 f"TF does not connect {fixed} to {robot}",
-                advice=f"set pose_frame and child_frame; it has {known}",
+                advice=f"give --pose-frame and --child-frame; it has {known_edges(edges)}",
             )
         chain.insert(0, (parent, child))
         child = parent
     if not chain:
-        raise LogError(f"the fixed frame and the robot's frame are both {fixed}", advice="set child_frame")
+        raise LogError(f"the fixed frame and the robot's frame are both {fixed}", advice="give --child-frame")
     return chain
 
 

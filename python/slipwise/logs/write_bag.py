@@ -24,6 +24,8 @@ WHEEL_TOPIC = "/odom"
 POSE_TOPIC = "/ground_truth/pose"
 
 _RUN_GAP_NS = 10_000_000_000  # between runs whose own times do not keep them apart
+_LATEST = 2**31 - 1  # s; a header's stamp holds no later second
+_LATEST_NS = _LATEST * 1_000_000_000
 _UNKNOWN_VARIANCE = 1e6  # of an odometry's pose that nobody measured
 
 Entry = tuple[int, str, bytes | memoryview]  # stamp [ns], topic, serialised message
@@ -36,7 +38,7 @@ def write_mcap(log: Log, path: Path) -> None:
 
     Raises:
         OutputError: the file cannot be written.
-        LogError: the log holds no sample at all.
+        LogError: the log holds no sample at all, or one too late for a bag.
     """
     from rosbags.typesys import Stores, get_typestore
 
@@ -46,6 +48,10 @@ def write_mcap(log: Log, path: Path) -> None:
     for run in log.runs:
         start, stop = _span(run)
         shift = max(0, -start) if end < 0 else max(0, end + _RUN_GAP_NS - start)
+        if stop + shift > _LATEST_NS:
+            last = (stop + shift) / 1e9
+            what = f"run {run.name} ends at {last:.10g} s, and stamps in a bag end at {_LATEST} s"
+            raise LogError(what, where=str(path), advice="write a table (.csv, .parquet) instead")
         entries.append((start + shift, RUN_TOPIC, _string(store, run.name)))
         entries.extend(_run_entries(run, shift, store))
         end = stop + shift

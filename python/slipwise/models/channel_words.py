@@ -21,9 +21,9 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     """Say delays and time constants, of speed and yaw rate together where these are alike."""
     if model.content.input != "command":
         return []
-    if not (model.content.dynamics or model.content.delays):
-        return ["Follows commands at once."]
     found = {p.name: p for p in parameters}
+    if not any(name.startswith(("lag_", "delay_")) for name in found):
+        return ["Follows commands at once."]
     channels = {"speed commands": _channel(found, "v"), "yaw-rate commands": _channel(found, "omega")}
     if _alike(found, channels):
         return [f"Follows commands {channels['speed commands']}."]
@@ -33,11 +33,10 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
 
 def _channel(found: Found, place: str) -> str:
     parts = []
-    delay, lagging = found[f"delay_{place}"], f"lag_{place}" in found
-    if delay.identified and (lagging or delay.value > SAME * delay.std):
-        parts.append(f"after {_seconds(delay)}")
-    elif delay.identified:
-        parts.append("at once")
+    delay, lagging = found.get(f"delay_{place}"), f"lag_{place}" in found
+    if delay is not None and delay.identified:
+        late = lagging or delay.value > SAME * delay.std
+        parts.append(f"after {_seconds(delay)}" if late else "at once")
     constants = _time_constants(found, place)
     if constants:
         parts.append(f"with {constants}")

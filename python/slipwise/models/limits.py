@@ -11,7 +11,9 @@ from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSectio
 LANES = ("speed", "yaw_rate", "side")
 KINDS = ("dead_band", "top", "acceleration", "braking")
 _LANE_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
-_CORE_LANES = dict(zip(LANES, (_core.Lane.Speed, _core.Lane.YawRate, _core.Lane.Side), strict=True))
+_CORE_LANES = dict(
+    zip(LANES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
+)
 _CORE_KINDS = dict(
     zip(
         KINDS,

@@ -3,9 +3,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import yaml
@@ -15,9 +17,16 @@ from pydantic import ValidationError
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
+from slipwise.frames import data_frame
 from slipwise.models.limits import core_limits
 from slipwise.models.schema import READ_VERSIONS, SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
+from slipwise.validation_text import first_problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from slipwise.models.parameter_table import PhysicalParameter
 
 MOUNT_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
@@ -66,6 +75,59 @@ class Model:
                 advice="calibrate again, or restore the file",
             )
 
+    def __repr__(self) -> str:
+        from slipwise.models.summary import summarise
+
+        content = self.content
+        head = f"{content.slip.basis} from {content.input}s, {len(content.parameters)} parameters"
+        return f"<Model: {head}. {summarise(self).sentences[0]}>"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the summary, and the parameters in physical units."""
+        from slipwise.models.summary_html import model_html
+
+        return model_html(self)
+
+    def __reduce__(self) -> tuple[type[Model], tuple[ModelFile]]:
+        """Pickle the content alone: what the core has made of it is made again."""
+        return Model, (self.content,)
+
+    def __getitem__(self, name: str) -> PhysicalParameter:
+        """Return a parameter or limit by its physical name, such as `delay_v`: `.value`, `.std`, `.unit`.
+
+        Raises:
+            ModelError: the model has no such parameter.
+        """
+        found = self.parameters.get(name)
+        if found is None:
+            raise ModelError(
+                f"the model has no parameter {name!r}", advice=f"it has {', '.join(self.parameters)}"
+            )
+        return found
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.parameters
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.parameters)
+
+    @cached_property
+    def parameters(self) -> dict[str, PhysicalParameter]:
+        """Parameters and limits in physical units, by name."""
+        from slipwise.models.parameter_table import physical_parameters
+
+        return {parameter.name: parameter for parameter in physical_parameters(self)}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return name, value, std, unit and identified of every parameter and limit, one a row.
+
+        Raises:
+            SlipwiseError: pandas is not installed.
+        """
+        rows = list(self.parameters.values())
+        names = ("name", "value", "std", "unit", "identified")
+        return data_frame({name: [getattr(row, name) for row in rows] for name in names})
+
     @cached_property
     def motion(self) -> _core.MotionModel:
         """The motion model of the core."""
@@ -107,6 +169,15 @@ class Model:
         if self.limits is None:
             return inputs
         return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
+
+    def driven_from(
+        self, inputs: _core.InputTrack, time: float, measured: _core.BodyTwist
+    ) -> _core.InputTrack:
+        """Return the same where the drive did `measured` at `time` [s], in the stamps of the inputs."""
+        if self.limits is None:
+            return inputs
+        chain = self.motion.chain(self.mean)
+        return _core.limited_track_from(inputs, self.limits, chain, time, measured)
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -221,10 +292,8 @@ def load_model(path: str | Path) -> Model:
     try:
         return Model(ModelFile.model_validate(content | {"slipwise_model": SCHEMA_VERSION}))
     except ValidationError as problem:
-        first = problem.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
         raise ModelError(
-            f"{key}: {first['msg']}", where=str(source), advice="calibrate again, or restore the file"
+            first_problem(problem), where=str(source), advice="calibrate again, or restore the file"
         ) from problem
     except ModelError as problem:
         raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem

@@ -171,6 +171,8 @@ class VerdictSection(_Section):
     advice: list[str] = []
     look_alikes: list[LookAlike] = []
     timing: str = ""  # which delay and which clock offset is which
+    reservations: list[str] = []  # sentences that qualify a good verdict
+    contradictions: list[str] = []  # between the poses and the inputs of the log: what was learned is no slip
     held_out: HeldOut | None = None
 
 

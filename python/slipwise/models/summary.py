@@ -22,6 +22,7 @@ _LIMITS = {
     "braking": "braking at most",
 }
 _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
+_NO_SLIP = "What was learned is no slip: poses and inputs of the log contradict each other."
 _SENSOR_PLACES = (("sensor_x", "ahead of", "behind"), ("sensor_y", "left of", "right of"))
 
 
@@ -39,6 +40,8 @@ class Summary:
 def summarise(model: Model) -> Summary:
     """Say what was learned: slip, response, limits, offsets, and how well it predicts."""
     parameters = physical_parameters(model)
+    if model.content.verdict.contradictions:
+        return Summary((_NO_SLIP,), parameters)
     sentences = [
         *slip_sentences(model, parameters),
         *response_sentences(model, parameters),

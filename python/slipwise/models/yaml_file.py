@@ -9,6 +9,7 @@ from typing import Any
 import yaml
 
 from slipwise.errors import ModelError, SlipwiseError
+from slipwise.files import read_whole
 
 MAX_BYTES = 4 * 1024 * 1024
 MAX_DIGITS = 64  # of one number; nothing physical has more
@@ -55,13 +56,7 @@ def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[st
     Raises:
         SlipwiseError: of type `error`: the file is missing, too large, not plain YAML or not a mapping.
     """
-    try:
-        with path.open("rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except OSError as problem:
-        raise error(f"cannot read: {problem.strerror}", where=str(path), advice="check the path") from problem
-    if len(data) > MAX_BYTES:
-        raise error("the file is too large", where=str(path), advice=f"at most {MAX_BYTES} bytes are read")
+    data = read_whole(path, most=MAX_BYTES, error=error)
     try:
         content = yaml.load(data, Loader=_PlainLoader)  # noqa: S506 - a SafeLoader with more refusals
     except (yaml.YAMLError, ValueError, RecursionError) as problem:

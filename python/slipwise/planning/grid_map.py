@@ -14,12 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError
 from slipwise.models.yaml_file import read_yaml
-from slipwise.planning.pgm import read_pgm
+from slipwise.planning.pgm import MOST_PIXELS, read_levels
 
 Floats = NDArray[np.float64]
 
 FINEST, COARSEST = 1e-3, 10.0  # m, of a cell; outside of these the unit is wrong
-FAR = 1e3  # m, the clearance in a map without obstacles
+FARTHEST = 1e8  # m, of a map's origin
+FAR = 1e3  # m, farther than any clearance: beyond the map all is occupied
 CELL_REACH = math.sqrt(0.5)  # cells, from a cell's centre to its corner
 
 
@@ -50,9 +51,11 @@ class GridMap:
                 where="resolution",
                 advice=f"give metres per cell, {FINEST:g} to {COARSEST:g}",
             )
-        if not all(map(math.isfinite, self.origin)):
-            raise PlanningError("the map's origin is not finite", where="origin", advice="give metres")
-        field_ = _core.distance_field(np.ascontiguousarray(cells, dtype=np.uint8), self.resolution, FAR)
+        if not all(abs(value) <= FARTHEST for value in self.origin):
+            advice = f"give metres, {FARTHEST:g} at most"
+            raise PlanningError("the map's origin is no place on earth", where="origin", advice=advice)
+        beyond = np.pad(cells.astype(np.uint8), 1, constant_values=1)  # what lies beyond the map is not free
+        field_ = _core.distance_field(beyond, self.resolution, FAR)[1:-1, 1:-1]
         reach = 2.0 * CELL_REACH * self.resolution  # half a cell each, of the robot's place and the obstacle
         object.__setattr__(self, "clearance", np.maximum(field_ - np.float32(reach), np.float32(0.0)))
 
@@ -65,25 +68,26 @@ class GridMap:
     def clearance_at(self, points: ArrayLike) -> Floats:
         """Return at least how far it is from points [N, 2] to what is occupied [m]; 0 beyond the map."""
         xy = np.asarray(points, dtype=np.float64).reshape(-1, 2)
-        column, row = np.floor((xy - self.origin) / self.resolution).astype(np.int64).T
-        rows, columns = self.occupied.shape
-        inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        place = (xy - self.origin) / self.resolution
+        inside = ((place >= 0.0) & (place < self.occupied.shape[::-1])).all(axis=1)  # false for NaN
+        column, row = place[inside].astype(np.int64).T
         found = np.zeros(len(xy))
-        found[inside] = self.clearance[row[inside], column[inside]]
+        found[inside] = self.clearance[row, column]
         return found
 
 
-def load_map(path: str | Path) -> GridMap:
-    """Read a map of ROS's map_server: a YAML file that names a PGM image.
+def load_map(path: str | Path, *, most_cells: int = MOST_PIXELS) -> GridMap:
+    """Read a map of ROS's map_server: a YAML file that names a PGM image of at most `most_cells` pixels.
 
     Raises:
         PlanningError: a file is missing or wrong, or the map is rotated.
     """
     source = Path(path)
     content = read_yaml(source, error=PlanningError)
-    grey = read_pgm(_image(source, content))
+    levels, white = read_levels(_image(source, content), most_pixels=most_cells)
+    grey = np.arange(white + 1) / white
     share = grey if _number(content, "negate", source, default=0.0) else 1.0 - grey
-    free = share < _number(content, "free_thresh", source, default=0.196)
+    free = (share < _number(content, "free_thresh", source, default=0.196))[levels]
     origin = content.get("origin")
     if not isinstance(origin, list) or len(origin) < 2 or not all(_is_number(value) for value in origin):
         raise _fault(source, "origin", "is no list of x, y, yaw", "such as [-10.0, -10.0, 0.0]")

@@ -113,6 +113,13 @@ def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap
     return Costmap(cells, grid.resolution, grid.origin, LETHAL)
 
 
+def _sent(command: tuple[float, float]) -> Floats:
+    values = np.asarray(command, dtype=np.float64)
+    if values.shape != (2,) or not np.isfinite(values).all():
+        raise SettingsError("the last command is no finite (v, omega)", advice="such as last=(0.5, 0.0)")
+    return values
+
+
 class Controller:
     """Follows a track, one command per period.
 
@@ -141,20 +148,27 @@ class Controller:
             self._core = _core.Mppi(models, options.to_core())
         except (ValueError, TypeError, OverflowError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
-        self._past = np.zeros((1, 2))
+        self._past = np.zeros((0, 2))
 
-    def command(self, pose: Pose, drive: tuple[float, float]) -> tuple[float, float]:
+    def command(
+        self, pose: Pose, drive: tuple[float, float], *, last: tuple[float, float] | None = None
+    ) -> tuple[float, float]:
         """Return the next command (v [m/s], omega [rad/s]); call it once per period.
 
         Args:
             pose: of the robot now, in the frame of the track.
             drive: what the drive does now (v, omega), as wheels show it.
+            last: the command that was sent last, where it is not what this controller returned. At the first
+                call, without it, the drive is taken to have been commanded what it does: a robot that moves
+                goes on moving.
 
         Raises:
-            SettingsError: pose or drive are not finite.
+            SettingsError: pose, drive or the last command are not finite.
             PlanningError: the robot is inside an obstacle.
         """
         at = to_core_pose(pose, "robot's pose")
+        if last is not None:
+            self._past = np.vstack((self._past[:-1], _sent(last)))
         obstacles = None if self._obstacles is None else self._obstacles.in_core
         wanted = self.track.ahead(pose, self.options.periods, self.options.period)
         try:

@@ -4,49 +4,71 @@
 from __future__ import annotations
 
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import PlanningError
-from slipwise.files import write_whole
+from slipwise.files import read_whole, write_whole
 
-MOST_PIXELS = 100_000_000
+MOST_PIXELS = 25_000_000  # such as 250 m x 250 m in cells of 5 cm; planning takes about 40 bytes for each
+_BYTES_PER_PIXEL = 6  # at most: five digits and a space
 _SPACE = rb"(?:\s|#[^\n]*\n)+"
 _HEADER = re.compile(rb"(P[25])" + _SPACE + rb"(\d{1,9})" + _SPACE + rb"(\d{1,9})" + _SPACE + rb"(\d{1,5})\s")
 
+Levels = NDArray[np.uint16]
 
-def read_pgm(path: Path) -> NDArray[np.float64]:
+
+def read_pgm(path: Path, *, most_pixels: int = MOST_PIXELS) -> NDArray[np.float64]:
     """Return an image's grey values, 0 (black) to 1 (white), [rows, columns], the top row first.
 
     Raises:
-        PlanningError: the file cannot be read or is no PGM image.
+        PlanningError: the file cannot be read, is no PGM image, or has more pixels than allowed.
     """
-    try:
-        data = path.read_bytes()
-    except OSError as problem:
-        raise PlanningError(
-            f"cannot read the map's image: {problem.strerror}", where=str(path), advice="check the path"
-        ) from problem
+    levels, white = read_levels(path, most_pixels=most_pixels)
+    return np.asarray(levels / white, dtype=np.float64)
+
+
+def read_levels(path: Path, *, most_pixels: int = MOST_PIXELS) -> tuple[Levels, int]:
+    """Return an image's grey levels as stored, [rows, columns], and which is white; see `read_pgm`."""
+    most = most_pixels * _BYTES_PER_PIXEL + 4096
+    data = read_whole(path, most=most, error=PlanningError, what="the map's image")
     header = _HEADER.match(data)
     if header is None:
         raise _fault(path, "is no PGM image", "save the map as PGM")
-    columns, rows, most = (int(number) for number in header.groups()[1:])
-    if not (0 < columns * rows <= MOST_PIXELS and 0 < most < 65536):
-        raise _fault(path, f"claims {columns} x {rows} pixels up to {most}", "save the map again")
-    body = data[header.end() :]
-    if header[1] == b"P2":
-        try:
-            values = np.array(body.split(), dtype=np.int64)
-        except (ValueError, OverflowError) as problem:
-            raise _fault(path, "holds what is no number", "save the map again") from problem
-    else:
-        kind = np.dtype(np.uint8 if most < 256 else ">u2")
-        values = np.frombuffer(body[: len(body) - len(body) % kind.itemsize], dtype=kind)
+    columns, rows, white = (int(number) for number in header.groups()[1:])
+    if not (columns * rows > 0 and 0 < white < 65536):
+        raise _fault(path, f"claims {columns} x {rows} pixels up to {white}", "save the map again")
+    if columns * rows > most_pixels:
+        advice = "cut it to where the robot drives, or allow more: most_cells, or --most-cells"
+        raise _fault(path, f"has {columns} x {rows} pixels, more than {most_pixels}", advice)
+    body = memoryview(data)[header.end() :]
+    values = _plain(path, body) if header[1] == b"P2" else _binary(body, white)
     if len(values) < columns * rows:
         raise _fault(path, f"is cut off: {len(values)} of {columns * rows} pixels", "copy the file again")
-    return np.asarray(values[: columns * rows].reshape(rows, columns) / most, dtype=np.float64)
+    levels = values[: columns * rows].reshape(rows, columns)
+    if int(levels.max()) > white:
+        raise _fault(path, f"has a pixel of {levels.max()}, where white is {white}", "save the map again")
+    return levels, white
+
+
+def _plain(path: Path, body: memoryview) -> Levels:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)  # NumPy's way to say that it stopped at other text
+        try:
+            values = np.fromstring(bytes(body), dtype=np.float64, sep=" ")
+        except (DeprecationWarning, ValueError) as problem:
+            raise _fault(path, "holds what is no number", "save the map again") from problem
+    if not ((values >= 0.0) & (values < 65536.0)).all():
+        raise _fault(path, "holds what is no grey level", "save the map again")
+    return values.astype(np.uint16)
+
+
+def _binary(body: memoryview, white: int) -> Levels:
+    kind = np.dtype(np.uint8 if white < 256 else ">u2")
+    return np.frombuffer(body[: len(body) - len(body) % kind.itemsize], dtype=kind).astype(np.uint16)
 
 
 def write_pgm(path: Path, grey: NDArray[np.float64]) -> Path:

@@ -14,6 +14,7 @@ from slipwise.errors import PlanningError, SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.limits import AT_REST, DriveState, Limits
+from slipwise.planning.position_ellipse import first_crossing
 from slipwise.planning.trajectory import (
     USUAL,
     Planner,
@@ -92,6 +93,12 @@ class RoutePlanner:
             raise SettingsError(
                 f"the radius is {search.radius}", where="radius", advice="give metres above 0"
             )
+        if search.seed < 0 or search.attempts < 1:
+            raise SettingsError(
+                f"a search with seed {search.seed} and {search.attempts} attempts cannot begin",
+                where="seed" if search.seed < 0 else "attempts",
+                advice="give a seed of 0 or more, and one attempt or more",
+            )
         if grid.resolution > 2.0 * search.radius:
             raise PlanningError(
                 f"cells of {grid.resolution:g} m are larger than the robot of {2 * search.radius:g} m",
@@ -149,18 +156,30 @@ class RoutePlanner:
                 where=f"goal {pose_text(goal)}",
                 advice="choose a goal with more room, a smaller radius, a larger curvature or more attempts",
             )
-        return self._checked(self._joined(best, start))
+        return self._checked(self._joined(best, start), start)
 
-    def _checked(self, route: Route) -> Route:
+    def _checked(self, route: Route, start: Pose) -> Route:
         """Refuse a route whose legs, driven one after the other, are not what each was by itself.
 
-        A leg begins with the last command alone; commands before it may still be in the delay.
+        A leg begins with the last command alone; commands before it may still be in the delay. A route is
+        refused as well where the robot may be, at 95 %, where it is not free.
         """
         if route.clearance < 0.0:
             raise PlanningError(
                 f"driven as a whole, the route of {route.legs} manoeuvres touches an obstacle",
                 where=f"clearance {route.clearance:.2g} m",
                 advice="use a larger radius, or another seed",
+            )
+        crossing = first_crossing(
+            self._grid, route.predicted[:, :2], route.covariance[:, :2, :2], route.dof, start[2]
+        )
+        if crossing is not None:
+            raise PlanningError(
+                f"the route is too uncertain: the 95 % ellipse of the robot's position, with a half-axis of "
+                f"{crossing.half_axis:.2g} m, leaves the free space",
+                where=f"after {route.times[crossing.at] - route.times[0]:.1f} s of "
+                f"{route.times[-1] - route.times[0]:.1f} s",
+                advice="choose a nearer goal or a map with more room, or learn the model from more driving",
             )
         return route
 

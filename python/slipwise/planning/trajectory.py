@@ -27,6 +27,8 @@ class TrajectoryOptions:
 
     cruise: float | None = None  # m/s between the ramps; by default `CRUISE_SHARE` of the limit
     end_speed: float = 0.0  # m/s commanded at the goal; 0 waits until the robot has come to rest
+    rest_speed: float = 0.02  # m/s; no faster counts as rest
+    rest_yaw_rate: float = 0.02  # rad/s; no faster counts as rest
     longest: float = 10.0  # m, of commanded paths
     backwards: bool = False  # drive backwards all the way
     commands: int = 32  # each held for the same time
@@ -39,6 +41,7 @@ class TrajectoryOptions:
         settings = _core.TrajectorySettings()
         settings.cruise = CRUISE_SHARE * limits.speed if self.cruise is None else self.cruise
         settings.end_speed = self.end_speed
+        settings.rest_speed, settings.rest_yaw_rate = self.rest_speed, self.rest_yaw_rate
         settings.longest = self.longest
         settings.backwards = self.backwards
         settings.commands = self.commands
@@ -163,8 +166,8 @@ def to_core_pose(pose: Pose, name: str) -> _core.Pose2:
 
 
 def pose_text(pose: Pose) -> str:
-    """Return a pose in few digits."""
-    return ", ".join(f"{value:.4g}" for value in pose)
+    """Return a pose to the millimetre and milliradian."""
+    return ", ".join(f"{round(value, 3) + 0.0:.10g}" for value in pose)
 
 
 def placed(poses: Floats, start: Pose) -> Floats:

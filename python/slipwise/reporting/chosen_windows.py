@@ -12,7 +12,7 @@ from slipwise.calibration.statistics import held_out_half
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
 
-MOST_WINDOWS = 12
+MOST_WINDOWS = 9
 
 
 @dataclass(frozen=True)
@@ -27,14 +27,14 @@ class ChosenWindow:
 
 
 def choose_windows(contents: Contents) -> list[ChosenWindow]:
-    """Choose among the scored windows of the longest horizon; in time order, numbered from 1."""
+    """Choose among the scored windows of the longest horizon; numbered from 1, the most various first."""
     predictions = contents.predictions(contents.learned_method, contents.longest_horizon)
     if predictions is None:
         return []
     total = len(predictions.t_start)
     candidates = np.arange(total)[held_out_half(total)]
     candidates = candidates[np.isfinite(predictions.measured[candidates]).all(axis=1)]
-    rows = sorted(candidates[_spread(_motions(predictions, candidates))].tolist())
+    rows = candidates[_spread(_motions(predictions, candidates))].tolist()
     return [
         ChosenWindow(
             number,
@@ -62,7 +62,7 @@ def _spread(points: NDArray[np.float64]) -> list[int]:
     distance = np.linalg.norm(points - points.mean(axis=0), axis=1)
     taken = [int(np.argmax(distance))]
     nearest = np.linalg.norm(points - points[taken[0]], axis=1)
-    while len(taken) < min(MOST_WINDOWS, len(points)):
+    while len(taken) < min(MOST_WINDOWS, len(points)) and nearest.max() > 0.0:
         taken.append(int(np.argmax(nearest)))
         nearest = np.minimum(nearest, np.linalg.norm(points - points[taken[-1]], axis=1))
-    return sorted(set(taken))
+    return taken

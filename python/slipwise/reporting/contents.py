@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from slipwise.calibration.result import Calibration
 from slipwise.evaluation.result import Evaluation, Predictions, Score
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, Log, Run
 
 PLAIN = "none"  # the method that predicts without slip
@@ -32,6 +33,13 @@ class Contents:
         horizons = [part.horizon for part in self.evaluation.predictions]
         horizons += [score.horizon for score in self.evaluation.scores]
         return max(horizons, default=None)
+
+    @property
+    def unknown_after(self) -> float:
+        """How old an input may become until it is unknown [s], as it was while learning."""
+        window = self.calibration.model.content.provenance.settings.get("window")
+        chosen = window.get("unknown_after") if isinstance(window, dict) else None
+        return float(chosen) if chosen is not None else UNKNOWN_AFTER
 
     @property
     def learned_method(self) -> str | None:

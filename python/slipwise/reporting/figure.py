@@ -53,7 +53,7 @@ class Figure:
             else ""
         )
         return (
-            f"<figure>{heading}{button}"
+            f'<figure><div class="figure-head">{heading}{button}</div>'
             f'<div class="plot" id="{escape(name)}" style="height:{self._css_height()}" role="img" '
             f'aria-label="{escape(self.label)}"></div>'
             f'<script type="application/json" data-figure="{escape(name)}">{self.json()}</script>'
@@ -74,9 +74,10 @@ class Figure:
         return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
-def axis(title: str, **options: object) -> dict[str, Any]:
+def axis(title: str, *, small: bool = False, **options: object) -> dict[str, Any]:
     """Return an axis with a title; the unit belongs into the title."""
-    return {**_AXIS, "title": {"text": title, "font": {"size": 13}, "standoff": 8}, **options}
+    size = {"size": 11} if small else {"size": 13}
+    return {**_AXIS, "title": {"text": title, "font": size, "standoff": 3 if small else 6}, **options}
 
 
 def top_colour_bar(**options: object) -> dict[str, Any]:
@@ -118,7 +119,7 @@ def numbers(values: ArrayLike) -> list[Any]:
 def _standard_layout() -> dict[str, Any]:
     return {
         "font": {**_FONT, "size": 12, "color": "#1b2430"},
-        "margin": {"l": 56, "r": 14, "t": 14, "b": 48},
+        "margin": {"l": 50, "r": 12, "t": 10, "b": 38},
         "paper_bgcolor": "rgba(0,0,0,0)",
         "plot_bgcolor": "#ffffff",
         "showlegend": False,

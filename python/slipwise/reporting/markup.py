@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from html import escape as _escape
 
 from slipwise.number_text import number_text
+from slipwise.reporting.dark_colours import css_colour
 
 MINUS = "−"
 
@@ -38,9 +39,9 @@ def bullets(texts: Iterable[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"
 
 
-def details(summary: str, html: str, *, is_open: bool = False) -> str:
+def details(summary: str, html: str) -> str:
     """Return HTML that is folded away below a plain summary."""
-    return f"<details{' open' if is_open else ''}><summary>{escape(summary)}</summary>{html}</details>"
+    return f"<details><summary>{escape(summary)}</summary>{html}</details>"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]], *, kind: str = "") -> str:
@@ -58,7 +59,7 @@ def scrolling(html: str) -> str:
 def legend(entries: Iterable[tuple[str, str, str]]) -> str:
     """Return a line of (label, colour, kind of mark), kinds being line, dash, dot, mark, ring and area."""
     items = (
-        f'<li><span class="key {kind}" style="color:{colour}"></span>{escape(label)}</li>'
+        f'<li><span class="key {kind}" style="color:{css_colour(colour)}"></span>{escape(label)}</li>'
         for label, colour, kind in entries
     )
     return f'<ul class="legend">{"".join(items)}</ul>'

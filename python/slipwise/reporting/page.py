@@ -12,6 +12,7 @@ from importlib import resources
 from plotly.offline import get_plotlyjs
 
 from slipwise.reporting.contents import Contents
+from slipwise.reporting.dark_colours import dark_style
 from slipwise.reporting.markup import escape
 from slipwise.reporting.section import Section
 
@@ -23,21 +24,26 @@ class Part:
     title: str
     explanation: str
     html: str
+    folded: bool = False  # shown when its heading is clicked
 
 
 def page(contents: Contents, sections: Sequence[Section]) -> str:
-    """Return the report's whole page."""
-    parts = [Part(section.title, section.explanation, section.html(contents)) for section in sections]
+    """Return the report's whole page: the first section, and the others folded under their headings."""
+    parts = [
+        Part(section.title, section.explanation, section.html(contents), folded=place > 0)
+        for place, section in enumerate(sections)
+    ]
     return page_of(contents.title, "slipwise motion model report", parts)
 
 
 def page_of(title: str, kicker: str, parts: Sequence[Part]) -> str:
-    """Return a whole page of parts under links to them; see `document`."""
-    links = "".join(
-        f'<a href="#section-{place}">{escape(part.title)}</a>' for place, part in enumerate(parts, start=1)
-    )
-    bodies = "\n".join(_section(f"section-{place}", part) for place, part in enumerate(parts, start=1))
-    return document(title, kicker, f"<nav>{links}</nav>\n<main>\n{bodies}\n</main>")
+    """Return a whole page of parts; see `document`."""
+    bodies = [_section(f"section-{place}", part) for place, part in enumerate(parts, start=1)]
+    unfolding = '<p class="unfolding"><button type="button" data-unfold>unfold all</button></p>'
+    first_folded = next((place for place, part in enumerate(parts) if part.folded), None)
+    if first_folded is not None:
+        bodies.insert(first_folded, unfolding)
+    return document(title, kicker, "<main>\n" + "\n".join(bodies) + "\n</main>")
 
 
 def document(title: str, kicker: str, body: str) -> str:
@@ -53,8 +59,9 @@ def document(title: str, kicker: str, body: str) -> str:
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(plotly, script)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        '<meta name="color-scheme" content="light dark">\n'
         '<link rel="icon" href="data:,">\n'
-        f"<title>{escape(title)}</title>\n<style>{_asset('report.css')}</style>\n</head>\n<body>\n"
+        f"<title>{escape(title)}</title>\n<style>{_asset('report.css')}{dark_style()}</style>\n</head>\n<body>\n"
         f"<header><p>{escape(kicker)}</p><h1>{escape(title)}</h1></header>\n"
         f"{body}\n"
         f"<script>{plotly}</script>\n<script>{script}</script>\n</body>\n</html>\n"
@@ -62,10 +69,13 @@ def document(title: str, kicker: str, body: str) -> str:
 
 
 def _section(name: str, part: Part) -> str:
-    return (
-        f'<section id="{name}"><h2>{escape(part.title)}</h2>'
-        f'<p class="explanation">{escape(part.explanation)}</p>{part.html}</section>'
-    )
+    head = f"<h2>{escape(part.title)}</h2>"
+    if part.folded:
+        explanation = f'<span class="explanation">{escape(part.explanation)}</span>'
+        summary = f"<summary>{head} {explanation}</summary>"
+        return f'<details class="section" id="{name}">{summary}{part.html}</details>'
+    explanation = f'<p class="explanation">{escape(part.explanation)}</p>'
+    return f'<section id="{name}">{head}{explanation}{part.html}</section>'
 
 
 def _policy(*scripts: str) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from slipwise.reporting.contents import LEARNED, MAIN_METHODS, PLAIN, SIMPLE, VENDOR
+from slipwise.reporting.dark_colours import css_colour
 
 MEASURED = "#1b2430"
 BAND = "#c3cad3"
@@ -54,3 +55,8 @@ def transparent(colour: str, opacity: float) -> str:
     """Return `#rrggbb` as an rgba() colour."""
     red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
     return f"rgba({red},{green},{blue},{opacity:g})"
+
+
+def css_swatch(colour: str) -> str:
+    """Return the style of a small square in a colour."""
+    return f"background:{css_colour(colour)}"

@@ -10,15 +10,17 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.models.parameter_table import physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
-from slipwise.reporting.markup import legend, number, paragraph
+from slipwise.reporting.markup import details, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
 
 _MOST_PARAMETERS = 12
+_SHOWN_AT_ONCE = 10  # the others are folded away
 _LOGARITHM = "log_"  # lags and delays are learned as logarithms and shown in seconds
 Floats = NDArray[np.float64]
 
@@ -69,18 +71,26 @@ def parameter_figures(
     names = _chosen(known, course.names, slip)
     if not names:
         return ""
+    physical = physical_parameters(model)[: len(known)]  # limits follow
+    identified = {name for name, p in zip(known, physical, strict=True) if p.identified}
     figures = [
-        _figure(contents, course, known[name], (f"{key}-{place}", list(marks))).html()
+        _figure(contents, course, (known[name], name in identified), (f"{key}-{place}", list(marks))).html()
         for place, name in enumerate(names, start=1)
     ]
     left = len(known) - len(figures)
-    keys = (("value", LEARNED_STROKE.colour, "line"), ("± 1 sigma", LEARNED_STROKE.colour, "area"))
-    more = f"; {left} more are in the table" if left > 0 else ""
-    note = f"Ordered by how much of the motion they explain{more}."
-    thinning = thinning_note(len(course.t))
-    return (
-        legend(keys) + f'<div class="grid">{"".join(figures)}</div>' + paragraph(f"{note} {thinning}".strip())
+    keys = (
+        ("value, its end below", LEARNED_STROKE.colour, "line"),
+        ("± 1 sigma", LEARNED_STROKE.colour, "area"),
     )
+    more = f"; {left} more are in the table" if left > 0 else ""
+    note = f"Ordered by how much of the motion they explain{more}. {thinning_note(len(course.t))}"
+    rest = figures[_SHOWN_AT_ONCE:]
+    folded = details(f"{len(rest)} more parameters", _grid(rest)) if rest else ""
+    return legend(keys) + _grid(figures[:_SHOWN_AT_ONCE]) + folded + paragraph(note.strip(), kind="note")
+
+
+def _grid(figures: Sequence[str]) -> str:
+    return f'<div class="fine-grid">{"".join(figures)}</div>'
 
 
 def _order(parameter: Parameter) -> tuple[bool, float]:
@@ -97,9 +107,9 @@ def _chosen(known: dict[str, Parameter], names: tuple[str, ...], slip: list[str]
 
 
 def _figure(
-    contents: Contents, course: Course, parameter: Parameter, label: tuple[str, list[dict[str, Any]]]
+    contents: Contents, course: Course, what: tuple[Parameter, bool], label: tuple[str, list[dict[str, Any]]]
 ) -> Figure:
-    key, marks = label
+    (parameter, identified), (key, marks) = what, label
     timeline, column = Timeline.of(contents.log), course.names.index(parameter.name)
     keep = thinned(len(course.t), CURVE_POINTS)
     run = course.run[keep]
@@ -117,14 +127,14 @@ def _figure(
     return Figure(
         key=key,
         label=f"Parameter {parameter.name} over time",
-        heading=shown.name + ("" if parameter.determined else " (not determined)"),
+        heading=shown.name + ("" if identified else " (not identified)"),
         traces=[_band(x, shown.values(mean - std), shown.values(mean + std)), value],
         layout={
-            "xaxis": axis(timeline.title, nticks=6),
-            "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=6),
+            "xaxis": axis(timeline.title, nticks=6, small=True),
+            "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=5, small=True),
             "shapes": timeline.shapes() + marks,
         },
-        height=240,
+        height=142,
         caption=shown.final(parameter),
     )
 
@@ -148,10 +158,10 @@ class _Shown:
 
     def final(self, parameter: Parameter) -> str:
         if not self.exponential:
-            return f"In the model: {number(parameter.value)} ± {number(parameter.std, 2)} {self.unit}"
+            return f"{number(parameter.value)} ± {number(parameter.std, 2)} {self.unit}"
         spread = parameter.std * np.array([0.0, -1.0, 1.0])
         value, low, high = self.values(parameter.value + spread).tolist()
-        return f"In the model: {number(value)} {self.unit}, ± 1 sigma: {number(low)} to {number(high)}"
+        return f"{number(value)} {self.unit}, ± 1 sigma: {number(low)} to {number(high)}"
 
 
 def _band(x: Floats, low: Floats, high: Floats) -> dict[str, Any]:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.ellipse import ellipse
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.route import Route
 from slipwise.planning.trajectory import Pose
-from slipwise.reporting.ellipse import ellipse
 
 Floats = NDArray[np.float64]
 

@@ -37,9 +37,7 @@ def plan_page(plan: Plan) -> str:
             "at any pose on the way.",
             _legend() + _map(plan).html(),
         ),
-        Part(
-            "Commands", "What the robot is told; each command is held until the next.", _commands(plan).html()
-        ),
+        Part("Commands", "What is commanded; each command is held until the next.", _commands(plan).html()),
     )
     return page_of(plan.title, "slipwise plan", parts)
 
@@ -111,8 +109,8 @@ def _map(plan: Plan) -> Figure:
         label="map with the swept path and its uncertainty",
         traces=[cells, *swept, *spread, path, goal],
         layout={
-            "xaxis": axis("x [m]", range=[left, right]),
-            "yaxis": axis("y [m]", range=[bottom, top], scaleanchor="x"),
+            "xaxis": axis("x [m]", range=[left, right], constrain="domain"),
+            "yaxis": axis("y [m]", range=[bottom, top], scaleanchor="x", constrain="domain"),
         },
         height=HIGHEST,
         aspect=rows / columns,

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
+import io
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,13 @@ from slipwise.errors import SlipwiseError
 from slipwise.files import write_whole
 
 DPI = 150
+ADVICE = 'pip install "slipwise[plot]"'
+_COLOURS = (128, 64, 32, 16)  # of a picture's palette, the most first
+
+
+def can_draw() -> bool:
+    """Return whether Matplotlib is installed."""
+    return importlib.util.find_spec("matplotlib") is not None
 
 
 def drawing_part(name: str) -> Any:
@@ -19,14 +28,9 @@ def drawing_part(name: str) -> Any:
     Raises:
         SlipwiseError: Matplotlib is not installed.
     """
-    try:
-        return importlib.import_module(f"matplotlib.{name}")
-    except ImportError as error:
-        raise SlipwiseError(
-            "pictures need Matplotlib, which is not installed",
-            where=str(error),
-            advice='pip install "slipwise[plot]", or leave the picture out by --no-picture',
-        ) from error
+    if not can_draw():
+        raise SlipwiseError("pictures need Matplotlib, which is not installed", advice=ADVICE)
+    return importlib.import_module(f"matplotlib.{name}")
 
 
 def write_png(path: Path, figure: Any) -> Path:
@@ -35,7 +39,26 @@ def write_png(path: Path, figure: Any) -> Path:
     Raises:
         OutputError: the file cannot be written.
     """
-    write_whole(
-        path, lambda target: figure.savefig(target, format="png", dpi=DPI, metadata={"Software": None})
-    )
+    write_whole(path, lambda target: _save(figure, target, DPI))
     return path
+
+
+def small_png(figure: Any, *, dpi: int, largest: int) -> bytes:
+    """Return a figure as PNG with as many colours as fit into `largest` bytes, 16 at the least."""
+    from PIL import Image  # Matplotlib brings it
+
+    drawn = io.BytesIO()
+    _save(figure, drawn, dpi)
+    image = Image.open(drawn).convert("RGB")
+    for colours in _COLOURS:
+        small = io.BytesIO()
+        image.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(
+            small, format="png", optimize=True
+        )
+        if small.tell() <= largest:
+            break
+    return small.getvalue()
+
+
+def _save(figure: Any, target: Path | io.BytesIO, dpi: int) -> None:
+    figure.savefig(target, format="png", dpi=dpi, metadata={"Software": None})

@@ -14,8 +14,6 @@ from slipwise.reporting.contents import Contents
 from slipwise.reporting.page import page
 from slipwise.reporting.section import Section
 from slipwise.reporting.sections.convergence import ConvergenceSection
-from slipwise.reporting.sections.coverage import CoverageSection
-from slipwise.reporting.sections.drive_map import DriveMapSection
 from slipwise.reporting.sections.errors import ErrorsSection
 from slipwise.reporting.sections.left_out import LeftOutSection
 from slipwise.reporting.sections.nis import NisSection
@@ -28,13 +26,11 @@ from slipwise.reporting.sections.verdict import VerdictSection
 SECTIONS: tuple[Section, ...] = (
     VerdictSection(),
     ScoresSection(),
-    DriveMapSection(),
     PathsSection(),
     ErrorsSection(),
+    NisSection(),
     ConvergenceSection(),
     SurfacesSection(),
-    CoverageSection(),
-    NisSection(),
     LeftOutSection(),
     ProvenanceSection(),
 )
@@ -59,7 +55,8 @@ def write_report(  # noqa: PLR0913 - the three results of a session, and how to 
         evaluation: how well it predicts.
         title: heading of the page, any text.
         command: the command line, shown as provenance.
-        sections: what the page shows, in order; `SECTIONS` plus one's own for an extended report.
+        sections: what the page shows, the first at once and the others folded under their headings;
+            `SECTIONS` plus one's own for an extended report.
 
     Returns:
         The path that was written.

@@ -14,6 +14,7 @@ from slipwise.reporting.palette import BAND, DIVERGING
 from slipwise.surfaces import SlipExamples, SlipSurface
 
 NODES = 25  # along each axis of a surface
+MAP_HEIGHT = 240  # px
 CHANNELS = (
     ("forward", "forward slip rate [m/s]", "m/s"),
     ("sideways", "slip rate to the left [m/s]", "m/s"),
@@ -137,5 +138,5 @@ def contour_map(grid: SlipGrid, channel: int) -> Figure:
         heading=title[0].upper() + title[1:],
         traces=[contour],
         layout={"margin": TOP_BAR_MARGIN, "xaxis": axis(_SPEED), "yaxis": axis(_YAW_RATE)},
-        height=320,
+        height=MAP_HEIGHT,
     )

@@ -20,4 +20,4 @@ def thinning_note(length: int, limit: int = CURVE_POINTS) -> str:
     """Return the sentence that says how a curve was thinned, empty where it was not."""
     if length <= limit:
         return ""
-    return f"Drawn thinned: {limit} evenly spaced of {length} points; all scores use every point."
+    return f"Drawn thinned: {limit} evenly spaced of {length} points."

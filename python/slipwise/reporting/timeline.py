@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.logs.log import Log, Run
+from slipwise.logs.log import Log
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,7 +27,7 @@ class Timeline:
     @classmethod
     def of(cls, log: Log) -> Timeline:
         """Lay the runs of a log one after the other."""
-        spans = np.array([_span(run) for run in log.runs], dtype=np.float64).reshape(-1, 2)
+        spans = np.array([run.span for run in log.runs], dtype=np.float64).reshape(-1, 2)
         lengths = spans[:, 1] - spans[:, 0]
         return cls(spans[:, 0], np.concatenate([[0.0], np.cumsum(lengths)[:-1]]) if len(lengths) else lengths)
 
@@ -42,6 +42,10 @@ class Timeline:
             return np.asarray(t)
         place = np.clip(run, 0, len(self.first) - 1)
         return np.asarray(t - self.first[place] + self.offset[place])
+
+    def seconds(self, run: int, t: float) -> float:
+        """Return the common time of one time `t` in a run."""
+        return float(self.at(np.array([run]), np.array([t]))[0])
 
     def shapes(self) -> list[dict[str, Any]]:
         """Return a thin vertical line where each later run starts, none where there are too many."""
@@ -58,10 +62,3 @@ class Timeline:
 def with_breaks(run: Ints, values: Floats) -> Floats:
     """Insert NaN [N + changes] where the run [N] changes, so that a line is not drawn across."""
     return np.insert(np.asarray(values, dtype=np.float64), np.flatnonzero(np.diff(run)) + 1, np.nan)
-
-
-def _span(run: Run) -> tuple[float, float]:
-    times = [part.t for part in (run.poses, run.commands, run.wheels) if part is not None and len(part)]
-    if not times:
-        return 0.0, 0.0
-    return float(min(t[0] for t in times)), float(max(t[-1] for t in times))

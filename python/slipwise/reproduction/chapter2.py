@@ -79,7 +79,7 @@ def rivals(bench: Bench) -> Exhibit:
     """Compare the models of section 2.3 where the ground follows (2.8) and (2.9)."""
     settings = Settings.model_validate({"vehicle": {"track": LandTamer().track}})
     options = EvaluationOptions(HORIZONS, tuple(METHODS))
-    result = evaluate(bench.long_drive(GROUND).log, input_name="wheel", settings=settings, options=options)
+    result = evaluate(bench.long_drive(GROUND).log, input="wheel", settings=settings, options=options)
     last = result.horizons[-1]
     names = tuple(METHODS.values())
     panels = [

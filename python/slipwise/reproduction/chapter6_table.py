@@ -73,10 +73,10 @@ Contest = dict[str, Errors]
 def contest(log: Log, input_name: str) -> Contest:
     """Let every estimator learn the drive from nothing."""
     options = EvaluationOptions(horizons=(HORIZON,), methods=METHODS)
-    found = evaluate(log, input_name=input_name, options=options).predictions
+    found = evaluate(log, input=input_name, options=options).predictions
     errors = {predictions.method: Errors.of(predictions) for predictions in found}
     options = EvaluationOptions(horizons=(HORIZON,), methods=(DEFAULT,))
-    (measured,) = evaluate(log, input_name=input_name, settings=MEASURED, options=options).predictions
+    (measured,) = evaluate(log, input=input_name, settings=MEASURED, options=options).predictions
     course = Course("ekf-thesis", BASIS, input_name, EXACT)
     targets = drive_windows(log, course, HORIZON)
     exact = Errors.of(record(log, course).predictions(targets, EXACT_NAME))

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The panels of an exhibit as one small PNG, by matplotlib."""
+"""The panels of an exhibit as one small PNG."""
 
 from __future__ import annotations
 
-import io
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from slipwise.errors import SlipwiseError
 from slipwise.reporting.palette import BAND, DIVERGING
+from slipwise.reporting.png_picture import drawing_part, small_png
 from slipwise.reproduction.exhibit import Exhibit
 from slipwise.reproduction.panel import Band, Bars, ErrorBars, Heat, Line, Panel, Points, Series, Surface
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 DPI = 100
 PANEL_SIZE = (4.4, 3.4)  # [in]
@@ -30,27 +26,21 @@ def draw_png(exhibit: Exhibit) -> bytes:
     """Return the picture of an exhibit with panels; the same exhibit gives the same bytes.
 
     Raises:
-        SlipwiseError: matplotlib is not installed.
+        SlipwiseError: Matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise SlipwiseError(
-            "pictures need matplotlib, which is not installed",
-            where=str(error),
-            advice='pip install "slipwise[thesis]"',
-        ) from error
     panels = exhibit.panels
     across = min(len(panels), 2 if len(panels) in (2, 4) else 3)
     down = math.ceil(len(panels) / across)
     width, height = SINGLE_SIZE if len(panels) == 1 else PANEL_SIZE
-    figure = Figure(figsize=(width * across, height * down), dpi=DPI, layout="constrained")
+    figure = drawing_part("figure").Figure(
+        figsize=(width * across, height * down), dpi=DPI, layout="constrained"
+    )
     for place, panel in enumerate(panels, start=1):
         _draw(figure, (down, across, place), panel)
-    return _small(figure)
+    return small_png(figure, dpi=DPI, largest=LARGEST)
 
 
-def _draw(figure: Figure, place: tuple[int, int, int], panel: Panel) -> None:
+def _draw(figure: Any, place: tuple[int, int, int], panel: Panel) -> None:
     axes: Any = figure.add_subplot(*place, projection="3d" if panel.solid else None)
     axes.set_title(panel.title, fontsize=10)
     axes.set_xlabel(panel.x_label, fontsize=9)
@@ -170,9 +160,7 @@ def _heat(axes: Any, heat: Heat) -> None:
 
 
 def _diverging() -> Any:
-    from matplotlib.colors import LinearSegmentedColormap
-
-    return LinearSegmentedColormap.from_list("diverging", DIVERGING)
+    return drawing_part("colors").LinearSegmentedColormap.from_list("diverging", DIVERGING)
 
 
 def _legend(axes: Any) -> None:
@@ -181,20 +169,3 @@ def _legend(axes: Any) -> None:
     if first:
         ordered = sorted(first, key=labels.index)
         axes.legend([first[name] for name in ordered], ordered, fontsize=7.5, framealpha=0.85)
-
-
-def _small(figure: Figure) -> bytes:
-    """Return the PNG with as many colours of a palette as fit into LARGEST bytes, 16 at the least."""
-    from PIL import Image
-
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", metadata={"Software": None})
-    image = Image.open(drawn).convert("RGB")
-    for colours in (128, 64, 32, 16):
-        small = io.BytesIO()
-        image.quantize(colours, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE).save(
-            small, format="png", optimize=True
-        )
-        if small.tell() <= LARGEST:
-            break
-    return small.getvalue()

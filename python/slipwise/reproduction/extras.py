@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 from slipwise.errors import SlipwiseError
 
-_LIBRARIES = {"matplotlib": "pictures", "mujoco": "simulation", "sklearn": "Gaussian processes"}
+_LIBRARIES = {"mujoco": "simulation", "sklearn": "Gaussian processes"}
 
 
 def refuse_missing_extras() -> None:
@@ -20,5 +20,5 @@ def refuse_missing_extras() -> None:
         if find_spec(library) is None:
             raise SlipwiseError(
                 f"the reproduction needs {library} for {purpose}, which is not installed",
-                advice='pip install "slipwise[thesis,sim,gp]"',
+                advice='pip install "slipwise[thesis]"',
             )

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.reporting.ellipse import outline_of
+from slipwise.ellipse import outline_of
 
 Floats = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot", "dashdot"]

@@ -96,7 +96,7 @@ def log_scores(bench: Bench, names: Sequence[str], progress: Callable[[str, floa
 def _scores(log: Log, name: str, input_name: str) -> LogScores:
     methods = tuple(m for m in METHODS if input_name == "wheel" or m != "slip-ratio-ekf")
     options = EvaluationOptions(horizons=HORIZONS, methods=methods)
-    result = evaluate(log, input_name=input_name, options=options)
+    result = evaluate(log, input=input_name, options=options)
     horizon = result.horizons[-1]
     return LogScores(name, input_name, horizon, {s.method: s for s in result.scores if s.horizon == horizon})
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from slipwise.files import write_text_whole, write_whole
+from slipwise.reporting.png_picture import can_draw
 from slipwise.reproduction.draw_page import draw_page
 from slipwise.reproduction.draw_png import draw_png
 from slipwise.reproduction.markdown import markdown
@@ -16,15 +17,19 @@ from slipwise.reproduction.reproduce import ChapterResult
 def write_reproduction(folder: Path, chapters: Sequence[ChapterResult]) -> dict[str, Path]:
     """Write `index.html`, and `markdown/README.md` with a PNG per drawn exhibit beside it.
 
+    Without Matplotlib, which draws the pictures, the Markdown is left out.
+
     Returns:
-        The two documents by the names "page" and "markdown".
+        The documents by the names "page" and "markdown".
 
     Raises:
         OutputError: a file cannot be written.
-        SlipwiseError: matplotlib is not installed.
     """
-    files = {"page": folder / "index.html", "markdown": folder / "markdown" / "README.md"}
+    files = {"page": folder / "index.html"}
     write_text_whole(files["page"], draw_page(chapters))
+    if not can_draw():
+        return files
+    files["markdown"] = folder / "markdown" / "README.md"
     for chapter in chapters:
         for exhibit in chapter.exhibits:
             if exhibit.panels:

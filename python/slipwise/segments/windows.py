@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Poses, Run
 
 Floats = NDArray[np.float64]
@@ -25,7 +26,7 @@ LEAST_SHARE = 0.25  # of the length asked for; a frame shorter than this is no w
 class WindowRules:
     """When two poses and the inputs between them make a window."""
 
-    unknown_after: float = 0.5  # s; an input is unknown once it is older than this
+    unknown_after: float = UNKNOWN_AFTER  # s; an input is unknown once it is older than this
     late_factor: float = (
         2.5  # a pose after a gap of more than this many usual intervals is late: never an end
     )
@@ -202,7 +203,7 @@ class _Cutter:
         pairs = np.array(self._pairs, dtype=np.int64).reshape(-1, 2)
         i, j = pairs[:, 0], pairs[:, 1]
         left_out = tuple(
-            LeftOut(_REASONS[kind], count, f"run {self._run.name}, t = {self._first[kind]:.3f} s", kind)
+            LeftOut(_REASONS[kind], count, self._run.place(self._first[kind]), kind)
             for kind, count in sorted(self._counts.items())
         )
         usable = np.concatenate([np.empty(0, dtype=np.int64), *self._usable])

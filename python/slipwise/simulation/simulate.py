@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +17,14 @@ from slipwise.simulation.physics import GROUNDS, GroundChange, Progress, Samplin
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
+
+_RANGES = {  # of a scenario's numbers: least, most, unit; beyond them a simulation has no sense, or no end
+    "duration": (0.1, 86400.0, "s"),
+    "pose_rate": (0.1, 1000.0, "Hz"),
+    "std_xy": (0.0, 1000.0, "m"),
+    "std_yaw": (0.0, 10.0, "rad"),
+    "pose_delay": (-1000.0, 1000.0, "s"),
+}
 
 
 @dataclass(frozen=True)
@@ -133,16 +140,11 @@ def _check(scenario: Scenario, seed: int) -> None:
     if scenario.commands is None and scenario.drive not in DRIVES:
         advice = "choose one of " + ", ".join(DRIVES)
         raise SettingsError(f"unknown drive {scenario.drive!r}", where="drive", advice=advice)
-    for name in ("duration", "pose_rate"):
+    for name, (least, most, unit) in _RANGES.items():
         value = getattr(scenario, name)
-        if not (math.isfinite(value) and value > 0):
-            raise SettingsError(f"{name} is {value}", where=name, advice="give a positive number")
-    for name in ("std_xy", "std_yaw"):
-        value = getattr(scenario, name)
-        if not (math.isfinite(value) and value >= 0):
-            raise SettingsError(f"{name} is {value}", where=name, advice="give zero or a positive number")
-    if not math.isfinite(scenario.pose_delay):
-        raise SettingsError(f"pose_delay is {scenario.pose_delay}", where="pose_delay", advice="give seconds")
+        if not least <= value <= most:
+            advice = f"give {least:g} to {most:g} {unit}"
+            raise SettingsError(f"{name} is {value}", where=name, advice=advice)
 
 
 def _check_change(scenario: Scenario, change: GroundChange) -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs
 
 Floats = NDArray[np.float64]
@@ -19,7 +20,7 @@ class HoldRules:
 
     speed: float = 0.01  # m/s; a command within this of the hold's first one continues it
     yaw_rate: float = 0.01  # rad/s
-    unknown_after: float = 0.5  # s; a command is unknown once it is older than this
+    unknown_after: float = UNKNOWN_AFTER  # s; a command is unknown once it is older than this
     still_speed: float = 0.02  # m/s and rad/s; a hold at or below both is the robot standing still
 
 

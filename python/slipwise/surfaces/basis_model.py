@@ -48,7 +48,7 @@ class SegmentInfo:
     """What the examples' segments were."""
 
     seconds: float = 3.0  # length of a segment [s]
-    input_name: Literal["command", "wheel"] = "command"  # what V and omega of the examples are
+    input: Literal["command", "wheel"] = "command"  # what V and omega of the examples are
 
 
 def as_basis_model(
@@ -91,7 +91,7 @@ def as_basis_model(
     return Model(
         ModelFile(
             slipwise_model=SCHEMA_VERSION,
-            input=segments.input_name,
+            input=segments.input,
             slip=Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
             dynamics=False,
             clock_offset=False,

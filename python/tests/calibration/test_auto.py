@@ -33,7 +33,7 @@ def errors(truth: str) -> dict[str, np.ndarray]:
     total = dict.fromkeys((*AUTO_BASES, "auto"), np.zeros(2))
     for seed in (3, 4, 5):
         drive = Drive(seconds=240.0, seed=seed, basis=basis_of(truth), alpha=TRUTHS[truth])
-        result = evaluate(simulated_log(drive), input_name="wheel", options=options)
+        result = evaluate(simulated_log(drive), input="wheel", options=options)
         for score in result.scores:
             total[score.method] = total[score.method] + (score.position.mean, score.heading.mean)
     return total
@@ -59,7 +59,7 @@ def test_no_fixed_basis_is_as_good_as_auto_over_all_truths() -> None:
 
 def test_weights_sum_to_one_after_every_window() -> None:
     drive = Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=(-0.02, -0.03))
-    history = calibrate(simulated_log(drive), input_name="wheel").history
+    history = calibrate(simulated_log(drive), input="wheel").history
     assert history is not None
     assert history.bases == AUTO_BASES
     assert history.basis_weight.sum(axis=1) == pytest.approx(np.ones(len(history.t)))
@@ -68,7 +68,7 @@ def test_weights_sum_to_one_after_every_window() -> None:
 
 def test_weight_goes_to_the_true_basis() -> None:
     drive = Drive(seconds=240.0, seed=3, basis=basis_of("odd-even-10"), alpha=TRUTHS["odd-even-10"])
-    history = calibrate(simulated_log(drive), input_name="wheel").history
+    history = calibrate(simulated_log(drive), input="wheel").history
     assert history is not None
     assert history.bases[int(np.argmax(history.basis_weight[-1]))] == "odd-even-10"
     assert history.basis_weight[-20:, history.bases.index("none")].max() < 0.01
@@ -77,7 +77,7 @@ def test_weight_goes_to_the_true_basis() -> None:
 def test_little_data_leaves_the_model_near_the_plain_one() -> None:
     """Two windows of a robot that slips half its turn: the model moves towards it, and is not sure."""
     drive = Drive(seconds=2.2, basis=basis_of("edd-2"), alpha=(0.0, -0.5))
-    few = calibrate(simulated_log(drive), input_name="wheel").model
+    few = calibrate(simulated_log(drive), input="wheel").model
     content = few.content
     assert all(abs(p.value) <= 2.0 * p.prior_std for p in content.parameters)
     assert max(content.weights.values()) < 0.5
@@ -86,7 +86,7 @@ def test_little_data_leaves_the_model_near_the_plain_one() -> None:
 
 def test_fixed_basis_has_all_the_weight() -> None:
     history = calibrate(
-        simulated_log(Drive(seconds=30.0)), input_name="wheel", settings=make_settings({"basis": "edd-2"})
+        simulated_log(Drive(seconds=30.0)), input="wheel", settings=make_settings({"basis": "edd-2"})
     ).history
     assert history is not None
     assert history.bases == ("edd-2",)

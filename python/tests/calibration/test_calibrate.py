@@ -40,7 +40,7 @@ def recovered(basis: str, input_name: str, seed: int, estimator: str = "average"
     drive = Drive(seconds=150.0, seed=seed, basis=_core.named_basis(basis), alpha=TRUTHS[basis])
     drive = replace(drive, lag=0.4, delay=0.2) if input_name == "command" else replace(drive, late=0.15)
     settings = make_settings({"basis": basis, "estimator": estimator})
-    return calibrate(simulated_log(drive), input_name=input_name, settings=settings)
+    return calibrate(simulated_log(drive), input=input_name, settings=settings)
 
 
 def truth_of(basis: str, input_name: str) -> np.ndarray:
@@ -73,7 +73,7 @@ def test_recovered_slip_is_also_close(basis: str) -> None:
 def test_clock_offset_is_recovered(late: float) -> None:
     drive = Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"], late=late)
     settings = make_settings({"basis": "edd-2"})
-    model = calibrate(simulated_log(drive), input_name="wheel", settings=settings).model
+    model = calibrate(simulated_log(drive), input="wheel", settings=settings).model
     assert model.content.parameters[-1].name == "clock_offset"
     assert model.mean[-1] == pytest.approx(late, abs=0.02)
 
@@ -82,7 +82,7 @@ def test_clock_offset_is_recovered_from_short_runs_that_begin_in_motion() -> Non
     drive = Drive(seconds=60.0, late=0.15, speeds=(0.8, 1.5))
     whole = simulated_run(drive)
     runs = tuple(part_of(whole, 5.0 * k, 5.0 * k + 4.5) for k in range(12))
-    model = calibrate(Log(runs=runs), input_name="wheel", settings=make_settings({"basis": "edd-2"})).model
+    model = calibrate(Log(runs=runs), input="wheel", settings=make_settings({"basis": "edd-2"})).model
     assert model.mean[-1] == pytest.approx(0.15, abs=0.02)
 
 
@@ -98,7 +98,7 @@ def part_of(run: Run, start: float, end: float) -> Run:
 @pytest.mark.parametrize(("lag", "delay"), [(0.2, 0.1), (0.6, 0.3)])
 def test_lag_and_delay_are_recovered_from_commands(lag: float, delay: float) -> None:
     log = simulated_log(Drive(seconds=120.0, lag=lag, delay=delay))
-    model = calibrate(log, input_name="command", settings=make_settings({"basis": "edd-2"})).model
+    model = calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).model
     lag_v, lag_omega, delay_v, delay_omega = np.exp(model.mean[-4:])
     assert [lag_v, lag_omega] == pytest.approx([lag, lag], rel=0.15)
     assert [delay_v, delay_omega] == pytest.approx([delay, delay], abs=0.03)
@@ -129,7 +129,7 @@ def test_one_wild_pose_does_not_spoil_the_model() -> None:
     x[::400] += 30.0
     settings = make_settings({"basis": "edd-2"})
     model = calibrate(
-        Log(runs=(with_poses(run, replace(run.poses, x=x)),)), input_name="wheel", settings=settings
+        Log(runs=(with_poses(run, replace(run.poses, x=x)),)), input="wheel", settings=settings
     ).model
     assert model.mean[:2] == pytest.approx(TRUTHS["edd-2"], abs=0.03)
 
@@ -144,11 +144,11 @@ def test_batch_fit_keeps_the_verdict_of_the_filter_that_runs_along() -> None:
 @pytest.mark.parametrize("settings", [{}, {"basis": "edd-2"}, {"estimator": "iekf", "basis": "edd-2"}])
 def test_errors_of_the_verdict_are_those_of_the_evaluation(settings: dict[str, str]) -> None:
     log = simulated_log(Drive(seconds=90.0, basis=_core.named_basis("edd-2"), alpha=TRUTHS["edd-2"]))
-    result = calibrate(log, input_name="wheel", settings=make_settings(settings))
+    result = calibrate(log, input="wheel", settings=make_settings(settings))
     held_out = result.model.content.verdict.held_out
     assert held_out is not None
     options = EvaluationOptions(JUDGING_HORIZONS, ("none", result.method))
-    scores = evaluate(log, input_name="wheel", settings=make_settings(settings), options=options)
+    scores = evaluate(log, input="wheel", settings=make_settings(settings), options=options)
     learned, plain = (scores.score(name, held_out.horizon) for name in (result.method, "none"))
     assert (held_out.position, held_out.heading) == (learned.position.mean, learned.heading.mean)
     assert (held_out.plain_position, held_out.plain_heading) == (plain.position.mean, plain.heading.mean)
@@ -201,26 +201,26 @@ def test_log_without_poses_is_said_with_advice() -> None:
 def test_log_without_the_input_asked_for_is_said_with_advice() -> None:
     log = Log(runs=(replace(steady_run(), wheels=None),))
     with pytest.raises(LogError, match=r"the log has no wheel input.*use --input command"):
-        calibrate(log, input_name="wheel")
+        calibrate(log, input="wheel")
     no_commands = Log(runs=(replace(steady_run(), commands=None),))
     with pytest.raises(LogError, match=r"the log has no commands.*use --input wheel"):
-        calibrate(no_commands, input_name="command")
+        calibrate(no_commands, input="command")
 
 
 def test_input_of_an_unknown_name_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"unknown input 'joystick'.*command or wheel"):
-        calibrate(Log(runs=(steady_run(),)), input_name="joystick")
+        calibrate(Log(runs=(steady_run(),)), input="joystick")
 
 
 def test_runs_of_equal_names_stay_apart() -> None:
     one, other = simulated_run(Drive(seconds=30.0)), simulated_run(Drive(seconds=30.0, seed=2))
-    history = calibrate(Log(runs=(one, other)), input_name="wheel").history
+    history = calibrate(Log(runs=(one, other)), input="wheel").history
     assert history is not None
     assert sorted(set(history.run.tolist())) == [0, 1]
 
 
 def test_progress_goes_from_the_start_to_the_end() -> None:
     shares: list[float] = []
-    calibrate(simulated_log(Drive(seconds=120.0)), input_name="wheel", progress=shares.append)
+    calibrate(simulated_log(Drive(seconds=120.0)), input="wheel", progress=shares.append)
     assert shares == sorted(shares)
     assert 0.0 < shares[0] <= shares[-1] <= 1.0

@@ -36,9 +36,7 @@ def models(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Model]:
     """Each learned from a drive of its own, saved, and read; by the drive's seed."""
     folder = tmp_path_factory.mktemp("models")
     logs = {seed: simulated_log(drive(seed, 1800.0)) for seed in (1, 21, 22, 23)}
-    learned = {
-        seed: calibrate(log, input_name="wheel", settings=SETTINGS).model for seed, log in logs.items()
-    }
+    learned = {seed: calibrate(log, input="wheel", settings=SETTINGS).model for seed, log in logs.items()}
     return {seed: load_model(model.save(folder / f"{seed}.yaml")) for seed, model in learned.items()}
 
 

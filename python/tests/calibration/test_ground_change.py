@@ -39,7 +39,7 @@ def until(log: Log, t: float) -> Log:
 
 
 def test_step_of_yaw_slip_is_found_within_three_windows(changing: Log) -> None:
-    history = calibrate(changing, input_name="wheel").history
+    history = calibrate(changing, input="wheel").history
     assert history is not None
     (alarm,) = history.alarms()
     assert alarm[0] == 0
@@ -62,7 +62,7 @@ def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log)
     bare = replace(changing, runs=tuple(replace(run, wheels=None) for run in changing.runs))
     found = {}
     for name, log in (("with wheels", changing), ("alone", bare)):
-        history = calibrate(log, input_name="command").history
+        history = calibrate(log, input="command").history
         assert history is not None
         ((_, found[name]),) = history.alarms()
     assert CHANGE < found["with wheels"] <= CHANGE + 5.0
@@ -73,14 +73,14 @@ def test_step_is_learned_sooner_for_having_been_found(changing: Log) -> None:
     learned = {}
     for detect in (True, False):
         settings = make_settings({"basis": "edd-2", "change": {"detect": detect}})
-        history = calibrate(changing, input_name="wheel", settings=settings).history
+        history = calibrate(changing, input="wheel", settings=settings).history
         assert history is not None
         learned[detect] = history.mean[history.t <= CHANGE + 12.0, history.names.index("ang.w")][-1]
     assert learned[True] < learned[False] - 0.05
 
 
 def test_drive_over_one_ground_raises_no_alarm(changing: Log) -> None:
-    history = calibrate(until(changing, CHANGE), input_name="wheel").history
+    history = calibrate(until(changing, CHANGE), input="wheel").history
     assert history is not None
     assert history.alarms() == ()
     assert (history.change >= 0.0).all()

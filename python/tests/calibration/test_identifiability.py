@@ -27,7 +27,7 @@ LEARN = {"basis": "edd-2", "mount": {"learn": True}}
 
 
 def learned(log: Log, source: str, given: dict[str, object]) -> Calibration:
-    return calibrate(log, input_name=source, settings=make_settings(given))
+    return calibrate(log, input=source, settings=make_settings(given))
 
 
 def straight(**given: object) -> Log:
@@ -75,11 +75,11 @@ def test_a_sensor_and_the_slip_it_looks_like_are_named_with_what_to_do(tmp_path:
 
 
 def test_lag_and_delay_of_one_channel_alone_trade_places() -> None:
-    told = advice_for_pairs(
+    advice = advice_for_pairs(
         (LookAlike("log_delay_v", "log_lag_v", -0.97), LookAlike("log_lag_v", "log_delay_omega", 0.95))
     )
-    assert len(told) == 1
-    assert told[0].endswith("delay_v and lag_v (-0.97).")
+    assert len(advice) == 1
+    assert advice[0].endswith("delay_v and lag_v (-0.97).")
 
 
 def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
@@ -87,6 +87,10 @@ def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
     alone = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=False)
     assert "commands and poses alone cannot tell apart" in alone
     assert "Wheel speeds in the log would tell them apart" in alone
+    advised = timing_words(
+        _core.MotionModel(basis, True, False), (), wheels_logged=False, wheels_advice="give --wheel-radius"
+    )
+    assert "Wheel speeds in the log would tell them apart; give --wheel-radius." in advised
     unused = timing_words(_core.MotionModel(basis, True, False), (), wheels_logged=True)
     assert "would tell them apart" not in unused
     cascade = timing_words(_core.MotionModel.with_response(basis, True), (), wheels_logged=True)

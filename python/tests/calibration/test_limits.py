@@ -55,7 +55,7 @@ def log() -> Log:
 
 @pytest.fixture(scope="module")
 def model(log: Log) -> Model:
-    return calibrate(log, input_name="command").model
+    return calibrate(log, input="command").model
 
 
 @pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
@@ -63,7 +63,9 @@ def model(log: Log) -> Model:
 def test_limits_are_found_within_three_sigma(limits: _core.CommandLimits, seed: int) -> None:
     found = search(limits, steps_drive(seed, 60.0), seed).found
     shown = {(limit.lane, limit.kind) for limit in found}
-    lanes = (_core.Lane.Side,) if limits is SIDES else (_core.Lane.Speed, _core.Lane.YawRate)
+    lanes = (
+        (_core.LimitedAxis.Side,) if limits is SIDES else (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate)
+    )
     smooth = (_core.LimitKind.Top, _core.LimitKind.Acceleration, _core.LimitKind.Braking)
     assert {(lane, kind) for lane in lanes for kind in smooth} <= shown
     assert {lane for lane, _ in shown} == set(lanes)
@@ -94,7 +96,7 @@ def test_simulated_physics_behind_limits_show_them() -> None:
     rows = np.column_stack((run.wheels.t, run.wheels.v, run.wheels.omega))
     record = _core.DriveRecord(track_of(run.commands), np.ascontiguousarray(rows))
     found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
-    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.lane == _core.Lane.Side]
+    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.lane == _core.LimitedAxis.Side]
     assert len(tops) == 1
     assert tops[0].value == pytest.approx(1.2, rel=0.05)
 
@@ -109,7 +111,7 @@ def test_limits_are_used_where_they_predict_better(model: Model) -> None:
 
 def test_without_the_setting_there_are_none(log: Log) -> None:
     settings = Settings(auto={"limits": False})
-    learned = calibrate(log, input_name="command", settings=settings).model
+    learned = calibrate(log, input="command", settings=settings).model
     assert learned.limits is None
 
 
@@ -224,7 +226,7 @@ def test_limits_that_change_are_found_again() -> None:
     changed = replace(
         first, v=np.where(late, second.v, first.v), omega=np.where(late, second.omega, first.omega)
     )
-    learned = calibrate(driven(commands, changed), input_name="command").model.limits
+    learned = calibrate(driven(commands, changed), input="command").model.limits
     assert learned is not None
     assert learned.side.top == pytest.approx(0.8, rel=0.1)
 
@@ -237,5 +239,5 @@ def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: 
     watch = LimitWatch(drive, Settings())
     assert watch.look(1, float(drive[1].inputs.t[-1]))
     found = {(f.lane, f.kind): f.value for f in watch.search.found}
-    assert found[(_core.Lane.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
-    assert found[(_core.Lane.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)

@@ -38,7 +38,7 @@ def calibrated(
     log: Log, mount: dict[str, object], *, basis: str = "edd-2", source: str = "wheel"
 ) -> Calibration:
     settings = make_settings({"basis": basis, "mount": mount})
-    return calibrate(log, input_name=source, settings=settings)
+    return calibrate(log, input=source, settings=settings)
 
 
 def value(result: Calibration, name: str) -> tuple[float, float, float]:
@@ -77,7 +77,7 @@ def test_evaluation_compares_the_poses_of_the_sensor(log: Log) -> None:
     for given, drive in ((mount, log), ({}, simulated_log(DRIVE)), ({"learn": True}, log)):
         settings = make_settings({"basis": "edd-2", "mount": given})
         options = EvaluationOptions(horizons=(2.0,), methods=("none", "edd-2", "iekf"))
-        scores = evaluate(drive, input_name="wheel", settings=settings, options=options).scores
+        scores = evaluate(drive, input="wheel", settings=settings, options=options).scores
         errors.append({score.method: score.position.mean for score in scores})
     known, at_base, learned = errors
     for method in ("edd-2", "iekf"):

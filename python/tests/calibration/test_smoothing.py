@@ -27,7 +27,7 @@ def changing_log() -> Log:
 
 def learned(**settings: object) -> Calibration:
     given = {"basis": "edd-2", "smoothing": RANDOM_WALK, "learn_clock_offset": False, **settings}
-    return calibrate(changing_log(), input_name="wheel", settings=make_settings(given), smooth=True)
+    return calibrate(changing_log(), input="wheel", settings=make_settings(given), smooth=True)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +58,7 @@ def test_a_longer_drift_length_follows_less() -> None:
 
 def test_smoothing_changes_no_model(calibration: Calibration) -> None:
     settings = make_settings({"basis": "edd-2", "smoothing": RANDOM_WALK, "learn_clock_offset": False})
-    alone = calibrate(changing_log(), input_name="wheel", settings=settings)
+    alone = calibrate(changing_log(), input="wheel", settings=settings)
     assert alone.smoothed is None
     assert alone.model.content == calibration.model.content
 

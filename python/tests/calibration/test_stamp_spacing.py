@@ -21,7 +21,7 @@ SPACING = 0.05  # s
 
 def test_poses_without_any_noise_do_not_tell_the_offset_to_microseconds() -> None:
     log = simulated_log(Drive(seconds=120.0, late=0.15, pose_std=(0.0, 0.0), slip_psd=(0.0, 0.0, 0.0)))
-    model = calibrate(log, input_name="wheel", settings=Settings(basis="edd-2")).model
+    model = calibrate(log, input="wheel", settings=Settings(basis="edd-2")).model
     (offset,) = (p for p in model.content.parameters if p.name == "clock_offset")
     windows = model.content.provenance.learned_windows
     assert offset.std >= 0.999 * SPACING / np.sqrt(12.0 * windows)

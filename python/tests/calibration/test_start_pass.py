@@ -116,7 +116,7 @@ def test_noise_of_poses_is_averaged_out_of_starts(
     drive = Drive(seconds=400.0, basis=_core.named_basis("edd-2"), alpha=(-0.1, -0.3), pose_std=pose_std)
     options = EvaluationOptions(methods=("edd-2",), horizons=(1.0,))
     found = [
-        evaluate(simulated_log(drive), input_name="wheel", options=options, settings=settings).predictions[0]
+        evaluate(simulated_log(drive), input="wheel", options=options, settings=settings).predictions[0]
         for settings in (SETTINGS, make_settings({"basis": "edd-2", "start": {"learn": False}}))
     ]
     averaged, measured = (p.position_error[len(p) // 2 :].mean() for p in found)

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The method judged is the one that a model file could hold."""
+"""The method judged is the one that a model file could hold; what is said of it is what calibrations say."""
 
 from __future__ import annotations
 
-import pytest
+from dataclasses import replace
 
-from slipwise.cli.evaluation_verdict import judged_method
+import pytest
+from contradictory_logs import sound_log, turned
+
+from slipwise.calibration import calibrate, make_settings
+from slipwise.cli.evaluation_verdict import judged_method, verdict_on
+from slipwise.evaluation import EvaluationOptions, evaluate
 
 
 @pytest.mark.parametrize(
@@ -23,3 +28,27 @@ def test_first_method_that_learns_a_model_is_judged_after_model_and_auto(
     methods: tuple[str, ...], judged: str | None
 ) -> None:
     assert judged_method(methods) == judged
+
+
+def test_an_evaluation_and_a_calibration_say_the_same_of_the_same_log() -> None:
+    settings = make_settings({"basis": "edd-2"})
+    calibration = calibrate(sound_log(), input="wheel", settings=settings)
+    options = EvaluationOptions(methods=("none", "edd-2"))
+    evaluation = evaluate(sound_log(), input="wheel", settings=settings, options=options)
+    verdict = verdict_on(evaluation, calibration)
+    assert verdict is not None
+    assert verdict.sentence == calibration.verdict.sentence
+    assert verdict.reservations == calibration.verdict.reservations
+    assert set(calibration.verdict.advice) <= set(verdict.advice)
+
+
+def test_an_evaluation_on_a_log_that_contradicts_itself_is_not_good_though_the_model_is() -> None:
+    model = calibrate(sound_log(), input="wheel", settings=make_settings({"basis": "edd-2"})).model
+    other = replace(turned(sound_log(), 1.5707963), sources=())
+    options = EvaluationOptions(methods=("none", "model"), model=model)
+    verdict = verdict_on(evaluate(other, input="wheel", options=options), model)
+    assert model.content.verdict.good
+    assert verdict is not None
+    assert not verdict.good
+    assert "the poses move to the right of their heading" in verdict.sentence
+    assert "--pose-yaw-offset -1.5708" in verdict.advice[0]

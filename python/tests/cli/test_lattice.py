@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -33,6 +34,19 @@ def test_lattice_writes_primitives_table_and_picture(slipwise: Slipwise, argumen
     assert len(content["primitives"]) == content["lattice_metadata"]["number_of_trajectories"]
     assert Path("out/lattice/curvature.png").read_bytes().startswith(b"\x89PNG")
     assert f"{len(content['primitives'])} primitives over 16 headings at 0.5 m/s" in result.out
+
+
+def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
+    slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    result = slipwise(*arguments)
+    assert (result.code, result.err) == (0, "")
+    assert sorted(path.name for path in Path("out/lattice").iterdir()) == ["curvature.csv", "lattice.json"]
+    assert 'The picture was left out: it needs Matplotlib (pip install "slipwise[plot]").' in result.out
+    refused = slipwise(*arguments, "--picture")
+    assert refused.code == 2
+    assert "pictures need Matplotlib, which is not installed" in refused.line
 
 
 def test_the_table_has_what_slip_leaves(slipwise: Slipwise, arguments: list[object]) -> None:

@@ -28,6 +28,35 @@ def test_a_wide_table_is_not_cut_in_a_pipe(capsys: pytest.CaptureFixture[str]) -
     assert all(cell in out for cell in cells)
 
 
+def test_a_table_goes_without_its_spare_columns_where_it_is_too_wide_and_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "0")  # no terminal is wider
+    monkeypatch.setattr("slipwise.cli.output.WIDTH_OF_A_PIPE", 60)
+    columns = [Column("name", whole=True), Column("kept", whole=True)]
+    columns += [Column("first", whole=True, spare=2), Column("second", whole=True, spare=1)]
+    Output(None).table("Title", columns, [["x" * 20, "1" * 12, "2" * 12, "3" * 12]])
+    out = " ".join(capsys.readouterr().out.split())
+    assert ("x" * 20 + " " + "1" * 12 + " " + "3" * 12) in out
+    assert "2" * 12 not in out
+    assert "Too narrow for first: a wider terminal or --json has them." in out
+    Output(None).table("Title", columns, [["x" * 10, "1", "2", "3"]])
+    assert "Too narrow" not in capsys.readouterr().out
+
+
+def test_numbers_stay_whole_where_names_are_broken(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "0")  # no terminal is wider
+    monkeypatch.setattr("slipwise.cli.output.WIDTH_OF_A_PIPE", 40)
+    columns = [Column("name"), Column("a_long_head_of_a_file.yaml", True), Column("b", True)]
+    Output(None).table("Title", columns, [["n" * 40, "0.0176 ± 0.0010", "-8.2"]])
+    out = capsys.readouterr().out
+    assert "0.0176 ± 0.0010" in out
+    assert "-8.2" in out
+    assert max(map(len, out.splitlines())) <= 40
+
+
 def test_nothing_but_json_is_printed_where_json_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
     output = Output(Path("-"))
     output.line("text")

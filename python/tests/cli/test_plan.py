@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -50,6 +51,20 @@ def test_plan_without_a_picture_needs_no_matplotlib_and_tells_machines(
     assert not Path("plan.png").exists()
 
 
+def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
+    slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    result = slipwise(*arguments, "--from", START, "--to", GOAL)
+    assert (result.code, result.err) == (0, "")
+    assert sorted(path.name for path in Path().glob("plan.*")) == ["plan.csv", "plan.html"]
+    assert 'The picture was left out: it needs Matplotlib (pip install "slipwise[plot]").' in result.out
+    refused = slipwise(*arguments, "--from", START, "--to", GOAL, "--picture")
+    assert refused.code == 2
+    assert "pictures need Matplotlib, which is not installed" in refused.line
+    assert 'pip install "slipwise[plot]"' in refused.line
+
+
 @pytest.mark.parametrize(
     ("start", "goal", "message"),
     [
@@ -66,6 +81,33 @@ def test_a_pose_that_cannot_be_is_refused(
     assert result.code == 2
     assert message in result.line
     assert not Path("plan.html").exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (
+            ("--seed", "-1"),
+            "a search with seed -1 and 1500 attempts cannot begin (seed): give a seed of 0 or more",
+        ),
+        (("--cruise", "1e-300"), "the cruise speed must be 0.001 m/s at least"),
+        (("--cruise", "-1"), "the cruise speed must be 0.001 m/s at least"),
+        (("--longest", "1e300"), "the longest path must lie between 0.01 and 10000 m"),
+    ],
+)
+def test_options_that_make_no_sense_are_refused_with_advice(
+    slipwise: Slipwise, arguments: list[object], option: tuple[str, str], message: str
+) -> None:
+    result = slipwise(*arguments, "--from", START, "--to", GOAL, *option)
+    assert result.code == 2
+    assert message in result.line
+
+
+def test_a_route_over_the_edge_of_the_map_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:
+    write_pgm(Path("map.pgm"), np.ones((80, 120)))
+    result = slipwise(*arguments, "--radius", "2", "--from", "0.05,0.05,0", "--to", "8,0.05,0")
+    assert result.code == 2
+    assert "the start lies in or too near an obstacle, or off the map" in result.line
 
 
 def test_a_model_of_another_schema_version_is_refused(slipwise: Slipwise, arguments: list[object]) -> None:

@@ -35,7 +35,7 @@ def test_an_unknown_chapter_is_refused_before_the_work(slipwise: Slipwise, folde
     assert list(folder.iterdir()) == []
 
 
-@pytest.mark.parametrize("library", ["matplotlib", "mujoco", "sklearn"])
+@pytest.mark.parametrize("library", ["mujoco", "sklearn"])
 def test_a_missing_library_is_named_with_the_extra(
     slipwise: Slipwise, folder: Path, monkeypatch: pytest.MonkeyPatch, library: str
 ) -> None:
@@ -43,5 +43,15 @@ def test_a_missing_library_is_named_with_the_extra(
     result = slipwise("reproduce", "thesis", "--only", "chapter-3")
     assert result.code == 2
     assert f"the reproduction needs {library}" in result.line
-    assert 'pip install "slipwise[thesis,sim,gp]"' in result.line
+    assert 'pip install "slipwise[thesis]"' in result.line
     assert list(folder.iterdir()) == []
+
+
+def test_without_matplotlib_the_page_is_written_and_what_is_left_out_is_said(
+    slipwise: Slipwise, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    result = slipwise("reproduce", "thesis", "--only", "chapter-3", "-o", "out")
+    assert result.code == 0
+    assert [path.name for path in (folder / "out").iterdir()] == ["index.html"]
+    assert "The Markdown with its pictures was left out: it needs Matplotlib" in result.out

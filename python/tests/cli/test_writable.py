@@ -20,7 +20,7 @@ from slipwise.planning.pgm import write_pgm
 Slipwise = Callable[..., Result]
 
 #: Paths that commands take: what they read, and what they write. `runs` is a folder that gets new folders.
-READ = {"logs", "settings", "model", "map_file", "data"}
+READ = {"logs", "poses", "settings", "model", "first", "second", "map_file", "data"}
 WRITTEN = {"output", "report", "json", "predictions", "runs"}
 
 
@@ -69,6 +69,8 @@ def test_two_outputs_of_one_name_are_refused_before_they_are_there(folder: Path,
 def files(folder: Path, drive_csv: Path) -> None:
     """One of each file that commands read."""
     make_model(named("edd-2", ang__w=-0.3)).save(folder / "m.yaml")
+    make_model(named("edd-2", ang__w=-0.4)).save(folder / "other.yaml")
+    (folder / "p.csv").write_text("t,x,y,yaw\n")
     (folder / "s.toml").write_text("basis = 'edd-2'\n")
     write_pgm(folder / "map.png", np.ones((60, 60)))  # what a file is called says nothing of what it is
     (folder / "map.yaml").write_text("image: map.png\nresolution: 0.1\norigin: [-3.0, -3.0, 0.0]\n")
@@ -93,6 +95,9 @@ DESTROYING = (
     "export m.yaml --to all -o config --json m.yaml",
     "lattice m.yaml --json m.yaml --no-picture",
     "show m.yaml --json m.yaml",
+    "evaluate drive.csv --poses p.csv --json p.csv",
+    "compare m.yaml other.yaml --json other.yaml",
+    "compare m.yaml other.yaml drive.csv --json drive.csv",
     "plan --model m.yaml --map map.yaml --json m.yaml",
     "plan --model m.yaml --map map.yaml --json map.yaml",
     "plan --model m.yaml --map map.yaml -o map",

@@ -9,7 +9,7 @@ import numpy as np
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
-from slipwise.calibration import identifiability, statistics, tails, verdict
+from slipwise.calibration import consistency, identifiability, judgement, statistics, tails
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
@@ -31,13 +31,23 @@ def keys(table: dict[str, Any], prefix: str = "") -> set[str]:
     return found
 
 
+def without_default(block: str) -> set[str]:
+    """Return the dotted names of keys that are shown as comments, since they have no default."""
+    found, section = set(), ""
+    for line in block.splitlines():
+        section = line[1 : line.index("]")] if line.startswith("[") else section
+        commented = re.match(r"# (\w+) = ", line)
+        if commented is not None:
+            found.add(f"{section}.{commented[1]}")
+    return found
+
+
 def test_the_settings_page_lists_every_key_with_its_default() -> None:
     (block,) = blocks(DOCS / "settings.md", "toml")
     shown = tomllib.loads(block)
     assert make_settings(shown) == Settings()
     every_key = keys(Settings().model_dump())
-    assert keys(shown) | {"window.length"} == every_key, "say in docs/settings.md what is new"
-    assert "# length = " in block
+    assert keys(shown) | without_default(block) == every_key, "say in docs/settings.md what is new"
     defaults = re.search(r"without it ([\d.]+) from wheel speeds and ([\d.]+) from commands", block)
     assert defaults is not None
     assert (float(defaults[1]), float(defaults[2])) == (WINDOW_SECONDS["wheel"], WINDOW_SECONDS["command"])
@@ -155,7 +165,11 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     assert f"undetermined above a ratio of {identifiability.UNDETERMINED_RATIO:g}" in " ".join(
         derivations.split()
     )
-    assert f"fewer than {verdict.FEWEST_WINDOWS} held-out windows" in read("getting-started.md")
+    pages = " ".join(read("statistics.md").split())
+    assert f"with a ratio up to {judgement.SAME:g} counting as the same" in pages
+    assert consistency.FAR == 3.0
+    assert "beyond three times the end of its band" in pages
+    assert f"fewer than {judgement.FEWEST_WINDOWS} held-out segments" in read("getting-started.md")
     assert statistics.BLOCK_WINDOWS == 3, "the pages say blocks of three windows"
     points = ", ".join(f"{point:.3f}" for point in statistics.ELLIPSOIDS.values())
     assert points.replace(", 7", " and 7") in derivations

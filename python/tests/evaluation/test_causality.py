@@ -102,11 +102,11 @@ def by_name(evaluation: Evaluation) -> dict[tuple[str, float], Predictions]:
 
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: str) -> None:
-    whole = evaluate(log, input_name=input_name, options=OPTIONS)
+    whole = evaluate(log, input=input_name, options=OPTIONS)
     first, last = whole.predictions[0].t_start[0], whole.predictions[0].t_end[-1]
     for share in (0.3, 0.55, 0.8):
         until = float(first + share * (last - first))
-        part = evaluate(cut_off(log, until), input_name=input_name, options=OPTIONS)
+        part = evaluate(cut_off(log, until), input=input_name, options=OPTIONS)
         for key, here in by_name(part).items():
             there = by_name(whole)[key]
             places = {(t, e): i for i, (t, e) in enumerate(zip(there.t_start, there.t_end, strict=True))}
@@ -127,13 +127,13 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
 ) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
     settings = make_settings({"coloured": {"learn": at_start}, "start": {"learn": at_start}})
-    whole = by_name(evaluate(log, input_name=input_name, options=options, settings=settings))
+    whole = by_name(evaluate(log, input=input_name, options=options, settings=settings))
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
         until = start if at_start else start - 2.0  # the slip and the pose now are of the start
         runs = tuple(replace(run, poses=spoilt_poses(run.poses, until + 1e-6)) for run in log.runs)
         spoilt = by_name(
-            evaluate(replace(log, runs=runs), input_name=input_name, options=options, settings=settings)
+            evaluate(replace(log, runs=runs), input=input_name, options=options, settings=settings)
         )
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
@@ -142,14 +142,14 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
 
 def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
-    whole = by_name(evaluate(log, input_name="command", options=options))
+    whole = by_name(evaluate(log, input="command", options=options))
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
         runs = tuple(
             replace(run, wheels=None if run.wheels is None else spoilt_inputs(run.wheels, start))
             for run in log.runs
         )
-        spoilt = by_name(evaluate(replace(log, runs=runs), input_name="command", options=options))
+        spoilt = by_name(evaluate(replace(log, runs=runs), input="command", options=options))
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
 
@@ -157,7 +157,7 @@ def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
-    whole = by_name(evaluate(log, input_name=input_name, options=options))
+    whole = by_name(evaluate(log, input=input_name, options=options))
     for i in chosen(whole["auto", 2.0]):
         end = float(whole["auto", 2.0].t_end[i])
         runs = tuple(
@@ -168,7 +168,7 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
             )
             for run in log.runs
         )
-        spoilt = by_name(evaluate(replace(log, runs=runs), input_name=input_name, options=options))
+        spoilt = by_name(evaluate(replace(log, runs=runs), input=input_name, options=options))
         for key, predictions in whole.items():
             same(predictions, i, spoilt[key], i)
 
@@ -179,7 +179,7 @@ def test_stated_times_lie_before_the_start_and_those_of_parameters_before_the_em
 ) -> None:
     still = make_settings({"coloured": {"learn": False}, "start": {"learn": False}})
     for settings in (still, make_settings({})):
-        for p in evaluate(log, input_name=input_name, options=OPTIONS, settings=settings).predictions:
+        for p in evaluate(log, input=input_name, options=OPTIONS, settings=settings).predictions:
             assert (p.learned_until <= p.t_start + 1e-9).all()
             if input_name == "command" and p.method != "none":
                 assert (p.learned_until == p.t_start).all()  # the wheel speed at the start is used
@@ -204,13 +204,13 @@ def test_file_cut_off_gives_the_same_predictions_as_the_whole_file(
 def test_embargo_holds_across_runs_that_follow_each_other_on_one_clock() -> None:
     log = simulated()
     options = EvaluationOptions(methods=("auto",), horizons=(5.0,))
-    (whole,) = evaluate(log, input_name="wheel", options=options).predictions
+    (whole,) = evaluate(log, input="wheel", options=options).predictions
     first = int(np.flatnonzero(whole.run == 1)[0])
     embargo = float(whole.t_start[first]) - 5.0
     assert embargo < log.runs[0].poses.t[-1] - 2.0
     poses = spoilt_poses(log.runs[0].poses, embargo + 1e-6)
     runs = (replace(log.runs[0], poses=poses), log.runs[1])
-    (spoilt,) = evaluate(replace(log, runs=runs), input_name="wheel", options=options).predictions
+    (spoilt,) = evaluate(replace(log, runs=runs), input="wheel", options=options).predictions
     same(whole, first, spoilt, first)
 
 
@@ -219,7 +219,7 @@ def test_runs_with_clocks_of_their_own_learn_from_all_earlier_runs() -> None:
     own_clock = Log(runs=(log.runs[0], shifted(log.runs[1], -62.0)))
     settings = make_settings({"basis": "edd-2"})
     options = EvaluationOptions(methods=("none", "edd-2"), horizons=(2.0,))
-    result = evaluate(own_clock, input_name="wheel", settings=settings, options=options)
+    result = evaluate(own_clock, input="wheel", settings=settings, options=options)
     plain, learned = result.predictions
     second = plain.run == 1
     at_once = second & (plain.t_start < 1.0)
@@ -236,7 +236,7 @@ def test_method_that_saw_its_windows_is_not_called_causal() -> None:
 
 
 def test_windows_never_overlap(log: Log) -> None:
-    for p in evaluate(log, input_name="wheel", options=replace(OPTIONS, methods=("none",))).predictions:
+    for p in evaluate(log, input="wheel", options=replace(OPTIONS, methods=("none",))).predictions:
         for run in np.unique(p.run):
             start, end = p.t_start[p.run == run], p.t_end[p.run == run]
             assert all(e <= s for (_, e), (s, _) in pairwise(zip(start, end, strict=True)))

@@ -31,7 +31,7 @@ def evaluation(log: Log) -> Evaluation:
     options = EvaluationOptions(
         methods=("none", "vendor", "edd-2", "auto"), vendor_track_multiplier=1.0 / 0.6
     )
-    return evaluate(log, input_name="wheel", options=options)
+    return evaluate(log, input="wheel", options=options)
 
 
 def test_scores_are_those_of_the_predictions_in_the_second_half(evaluation: Evaluation) -> None:
@@ -85,19 +85,19 @@ def test_covariances_are_positive_definite(evaluation: Evaluation) -> None:
 
 
 def test_all_methods_that_apply_are_compared_by_default(log: Log) -> None:
-    methods = evaluate(log, input_name="wheel", options=EvaluationOptions(horizons=(2.0,))).methods
+    methods = evaluate(log, input="wheel", options=EvaluationOptions(horizons=(2.0,))).methods
     assert methods == ("none", *_core.basis_names(), "batch", "auto")
 
 
 def test_the_estimator_of_the_settings_is_compared_by_default(log: Log) -> None:
     options, settings = EvaluationOptions(horizons=(2.0,)), make_settings({"estimator": "iekf"})
-    methods = evaluate(log, input_name="wheel", settings=settings, options=options).methods
+    methods = evaluate(log, input="wheel", settings=settings, options=options).methods
     assert methods == ("none", *_core.basis_names(), "batch", "iekf", "auto")
 
 
 def test_single_estimators_are_methods_by_name(log: Log) -> None:
     options = EvaluationOptions(horizons=(2.0,), methods=("none", *_core.estimator_names()))
-    result = evaluate(log, input_name="wheel", options=options)
+    result = evaluate(log, input="wheel", options=options)
     for name in _core.estimator_names():
         score = result.score(name, 2.0)
         assert score.causal == (name != "batch")
@@ -138,7 +138,7 @@ def test_no_horizon_with_windows_is_an_error_with_advice(log: Log) -> None:
 
 def test_model_of_another_drive_is_causal_and_of_the_same_log_is_not(log: Log) -> None:
     settings = make_settings({"basis": "edd-2"})
-    model = calibrate(log, input_name="wheel", settings=settings).model
+    model = calibrate(log, input="wheel", settings=settings).model
     options = EvaluationOptions(methods=("none", "model"), horizons=(2.0,), model=model)
     other = replace(simulated_log(replace(DRIVE, seed=9)), sources=(Source("b.csv", "cd" * 32, "csv", 1200),))
     fresh, seen = (evaluate(x, options=options).score("model", 2.0) for x in (other, log))
@@ -147,11 +147,11 @@ def test_model_of_another_drive_is_causal_and_of_the_same_log_is_not(log: Log) -
 
 
 def test_model_decides_the_input_and_another_one_is_refused(log: Log) -> None:
-    model = calibrate(log, input_name="wheel", settings=make_settings({"basis": "edd-2"})).model
+    model = calibrate(log, input="wheel", settings=make_settings({"basis": "edd-2"})).model
     options = EvaluationOptions(methods=("model",), model=model)
     assert evaluate(log, options=options).input == "wheel"
     with pytest.raises(SettingsError, match=r"learned from wheel input, not command .*use --input wheel"):
-        evaluate(log, input_name="command", options=options)
+        evaluate(log, input="command", options=options)
 
 
 def test_runs_without_poses_or_inputs_are_passed_over() -> None:
@@ -160,10 +160,10 @@ def test_runs_without_poses_or_inputs_are_passed_over() -> None:
     no_wheels = replace(good, name="none", wheels=None)
     result = evaluate(
         Log(runs=(no_poses, no_wheels, good)),
-        input_name="wheel",
+        input="wheel",
         options=EvaluationOptions(methods=("none",)),
     )
-    alone = evaluate(Log(runs=(good,)), input_name="wheel", options=EvaluationOptions(methods=("none",)))
+    alone = evaluate(Log(runs=(good,)), input="wheel", options=EvaluationOptions(methods=("none",)))
     assert {int(r) for p in result.predictions for r in p.run} == {2}
     for one, other in zip(result.scores, alone.scores, strict=True):
         assert (one.windows, one.position, one.heading) == (other.windows, other.position, other.heading)
@@ -182,8 +182,8 @@ def test_wheels_that_start_late_are_used_where_they_are() -> None:
     )
     log = Log(runs=(replace(run, wheels=late),))
     options = EvaluationOptions(methods=("auto",), horizons=(2.0,))
-    (wheel,) = evaluate(log, input_name="wheel", options=options).predictions
-    (command,) = evaluate(log, input_name="command", options=options).predictions
+    (wheel,) = evaluate(log, input="wheel", options=options).predictions
+    (command,) = evaluate(log, input="command", options=options).predictions
     assert wheel.t_start.min() > 20.0
     assert command.t_start.min() < 1.0
 

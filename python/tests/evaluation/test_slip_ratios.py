@@ -43,7 +43,7 @@ def crooked() -> Log:
 @cache
 def judged() -> Evaluation:
     options = EvaluationOptions(methods=METHODS, horizons=(2.0, 5.0))
-    return evaluate(crooked(), input_name="wheel", settings=SETTINGS, options=options)
+    return evaluate(crooked(), input="wheel", settings=SETTINGS, options=options)
 
 
 @pytest.mark.parametrize("method", RIVALS)
@@ -82,14 +82,14 @@ def test_nothing_learned_is_unlearned(make: object) -> None:
 def test_poses_within_the_embargo_do_not_reach_a_prediction(method: str) -> None:
     log = crooked()
     options = EvaluationOptions(methods=(method,), horizons=(2.0,))
-    (whole,) = evaluate(log, input_name="wheel", settings=SETTINGS, options=options).predictions
+    (whole,) = evaluate(log, input="wheel", settings=SETTINGS, options=options).predictions
     for i in (len(whole) // 3, len(whole) - 1):
         embargo = float(whole.t_start[i]) - 2.0
         poses = log.runs[0].poses
         late = poses.t > embargo + 1e-6
         spoilt = replace(poses, x=poses.x + 100.0 * late, y=poses.y - 50.0 * late)
         changed = replace(log, runs=(replace(log.runs[0], poses=spoilt),))
-        (other,) = evaluate(changed, input_name="wheel", settings=SETTINGS, options=options).predictions
+        (other,) = evaluate(changed, input="wheel", settings=SETTINGS, options=options).predictions
         np.testing.assert_array_equal(other.pose[i], whole.pose[i])
         np.testing.assert_array_equal(other.covariance[i], whole.covariance[i])
         assert whole.learned_until[i] <= embargo + 1e-6
@@ -98,13 +98,13 @@ def test_poses_within_the_embargo_do_not_reach_a_prediction(method: str) -> None
 @pytest.mark.parametrize("method", RIVALS)
 def test_commands_are_refused_with_advice(method: str) -> None:
     with pytest.raises(SettingsError, match=f"{method} learns slip between wheels and ground.*--input wheel"):
-        evaluate(crooked(), input_name="command", options=EvaluationOptions(methods=(method,)))
+        evaluate(crooked(), input="command", options=EvaluationOptions(methods=(method,)))
 
 
 def test_icr_learns_sideways_motion_of_a_real_skid_steered_robot(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
     options = EvaluationOptions(methods=("none", "edd-2", "icr-3", *RIVALS), horizons=(2.0,))
-    result = evaluate(log, input_name="wheel", options=options)
+    result = evaluate(log, input="wheel", options=options)
     errors = {m: result.score(m, 2.0).position.mean for m in result.methods}
     assert errors["icr-3"] < 0.5 * errors["edd-2"]
     assert np.isfinite([errors[m] for m in RIVALS]).all()

@@ -35,7 +35,7 @@ def slipping() -> Log:
 
 def judged(log: Log, methods: tuple[str, ...], *, input_name: str = "command") -> Evaluation:
     options = EvaluationOptions(methods=("none", *methods), horizons=(1.0, 2.0))
-    return evaluate(log, input_name=input_name, settings=SETTINGS, options=options)
+    return evaluate(log, input=input_name, settings=SETTINGS, options=options)
 
 
 def needs_scikit_learn(method: str) -> None:

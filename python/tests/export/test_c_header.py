@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -129,8 +130,13 @@ def commands_of(seed: int, *, seconds: float = 12.0) -> Floats:
 
 def expected(model: Model, commands: Floats, window: Window) -> Floats:
     t, v, omega = (np.ascontiguousarray(column) for column in commands.T)
-    track = model.driven(_core.InputTrack(t, v, np.zeros_like(v), omega))
+    given = _core.InputTrack(t, v, np.zeros_like(v), omega)
     drive = window.drive
+    track = (
+        model.driven(given)
+        if drive is None
+        else model.driven_from(given, window.start, _core.BodyTwist(drive[0], 0.0, drive[1]))
+    )
     segment = _core.Segment(window.start, window.end, _core.Pose2(0.0, 0.0, 0.0), None, window.gx, window.gy)
     if drive is not None:
         held = _core.InputTrack(
@@ -198,6 +204,30 @@ def test_header_has_delays_without_an_actuator_model(compiled: Compile, delays: 
     _, rows = compiled(model, "double").run(commands, windows)
     poses = np.array([expected(model, commands, window) for window in windows])
     assert np.abs(rows[:, 1:4] - poses).max() < TOLERANCE["double"]
+
+
+@pytest.mark.parametrize("lanes", [(), ("speed", "yaw_rate"), ("side",)], ids=["free", "ramps", "sides"])
+@pytest.mark.parametrize("share", [0.0, 0.14, 0.8])
+def test_header_goes_from_a_measured_speed_to_the_command_and_not_beyond(
+    compiled: Compile, share: float, lanes: tuple[str, ...]
+) -> None:
+    rates = {lane: {"acceleration": 0.8, "braking": 1.7} for lane in lanes}
+    values = {"slow_share_v": share, "gain_v": 0.8, "log_slow_lag_v": 1.0}
+    model = make_model(Made(_core.Basis("none", [], [], []), values, response=True, limits=rates or None))
+    program = compiled(model, "double")
+    commands = np.array([(t, 1.0, 0.0) for t in np.arange(0.0, 6.0, 0.25)])
+    goal = 0.8 * (1.1 if "side" in lanes else 1.0)  # limited sides come with a gain of their own
+    for start, part in product((0.0, 0.125, 0.5, 2.0), (0.0, 0.3, 1.0)):
+        ends = start + np.arange(1, 31) / 10.0
+        windows = [Window(start, float(end), drive=(part * goal, 0.0)) for end in ends]
+        _, rows = program.run(commands, windows)
+        poses = np.array([expected(model, commands, window) for window in windows])
+        assert rows[:, 1:4] == pytest.approx(poses, abs=TOLERANCE["double"])
+        speed = np.diff(rows[:, 1], prepend=0.0) / 0.1
+        assert speed.min() >= -1e-9
+        assert speed.max() <= goal + 1e-9
+        if part == 1.0:
+            assert speed == pytest.approx(np.full(len(speed), goal), abs=1e-9)
 
 
 @pytest.mark.parametrize("number", ["float", "double"])

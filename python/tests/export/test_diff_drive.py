@@ -109,7 +109,7 @@ def test_stated_sigma_is_that_of_drawn_parameters() -> None:
 
 def test_a_perfect_robot_has_multipliers_of_one_within_three_sigma() -> None:
     log = simulated_log(Drive(seconds=90.0, slip_psd=(1e-5, 1e-5, 1e-5)))
-    model = calibrate(log, input_name="wheel", settings=make_settings({"basis": "odd-even-10"})).model
+    model = calibrate(log, input="wheel", settings=make_settings({"basis": "odd-even-10"})).model
     found, numbers = wheel_multipliers(model, ExportOptions()), LearnedNumbers(model)
     for multiplier in (found.left_radius, found.separation):
         assert abs(multiplier.value - 1.0) < 3.0 * numbers.std(multiplier) < 0.1

@@ -106,9 +106,7 @@ def test_an_unknown_target_is_refused() -> None:
 def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
     settings = make_settings({"basis": "full-linear-6"})
-    learned = {
-        name: calibrate(log, input_name=name, settings=settings).model for name in ("wheel", "command")
-    }
+    learned = {name: calibrate(log, input=name, settings=settings).model for name in ("wheel", "command")}
     options = ExportOptions(wheel_separation=0.481)
     for target in TARGETS:
         model = learned["command" if fitting(target).commands else "wheel"]

@@ -46,4 +46,4 @@ def test_no_inputs_are_no_error() -> None:
 
 
 def test_an_old_input_does_not_count_as_held() -> None:
-    assert held_for(held([0.0, 0.1, 10.0])).tolist() == [0.1, 0.5, 0.0]
+    assert held_for(held([0.0, 0.1, 10.0]), 0.5).tolist() == [0.1, 0.5, 0.0]

@@ -39,7 +39,7 @@ def test_times_are_those_that_calibrate_finds() -> None:
     told = {(timing.input, timing.name): timing for timing in inspect_log(log).timing}
     assert len(told) == len(inspect_log(log).timing)
     for name in ("command", "wheel"):
-        content = calibrate(log, input_name=name).model.content
+        content = calibrate(log, input=name).model.content
         for parameter in content.parameters:
             timing = told.get((name, parameter.name.removeprefix("log_")))
             if timing is None or parameter.name == "clock_offset" != name:

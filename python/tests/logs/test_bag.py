@@ -4,97 +4,16 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from rosbags.rosbag1 import Writer as Writer1
-from rosbags.rosbag2 import StoragePlugin
-from rosbags.rosbag2 import Writer as Writer2
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import get_types_from_msg
+from sample_bags import EPOCH, ODOMETRY, POSE, SECOND, TWIST, Bag, drive_along_x
 
 from slipwise.errors import LogError
 from slipwise.logs import Log, LogOptions, open_log
-from slipwise.logs.messages import ACKERMANN, ACKERMANN_DEFINITION
-from slipwise.logs.rotation import quaternions_of
-
-POSE = "geometry_msgs/msg/PoseStamped"
-TWIST = "geometry_msgs/msg/Twist"
-ODOMETRY = "nav_msgs/msg/Odometry"
-SECOND = 1_000_000_000
-EPOCH = 1_700_000_000 * SECOND
-
-
-@dataclass
-class Bag:
-    """Collects messages and writes them in any format."""
-
-    ros1: bool = False
-    messages: list[tuple[int, str, str, Any]] = field(default_factory=list)
-
-    def __post_init__(self) -> None:
-        self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_HUMBLE)
-        self.store.register(get_types_from_msg(ACKERMANN_DEFINITION, ACKERMANN))
-
-    def make(self, kind: str, *values: Any) -> Any:
-        return self.store.types[kind](*values)
-
-    def header(self, stamp: int, frame: str = "map") -> Any:
-        time = self.make("builtin_interfaces/msg/Time", stamp // SECOND, stamp % SECOND)
-        return self.make("std_msgs/msg/Header", *([0] if self.ros1 else []), time, frame)
-
-    def vector(self, x: float, y: float, z: float) -> Any:
-        return self.make("geometry_msgs/msg/Vector3", x, y, z)
-
-    def twist(self, v: float, omega: float) -> Any:
-        return self.make(TWIST, self.vector(v, 0.0, 0.0), self.vector(0.0, 0.0, omega))
-
-    def pose(self, x: float, y: float, yaw: float) -> Any:
-        q = quaternions_of(np.zeros(1), np.zeros(1), np.array([yaw]))[0].tolist()
-        return self.make(
-            "geometry_msgs/msg/Pose",
-            self.make("geometry_msgs/msg/Point", x, y, 0.0),
-            self.make("geometry_msgs/msg/Quaternion", *q),
-        )
-
-    def odometry(self, stamp: int, x: float, y: float, yaw: float, v: float = 0.0, omega: float = 0.0) -> Any:
-        covariance = np.zeros(36)
-        pose = self.make("geometry_msgs/msg/PoseWithCovariance", self.pose(x, y, yaw), covariance)
-        twist = self.make("geometry_msgs/msg/TwistWithCovariance", self.twist(v, omega), covariance)
-        return self.make(ODOMETRY, self.header(stamp, "odom"), "base_link", pose, twist)
-
-    def add(self, stamp: int, topic: str, kind: str, message: Any) -> None:
-        self.messages.append((stamp, topic, kind, message))
-
-    def write(self, path: Path) -> Path:
-        if self.ros1:
-            self._fill(Writer1(path), self.store.serialize_ros1)
-            return path
-        plugin = StoragePlugin.SQLITE3 if path.suffix == ".db3" else StoragePlugin.MCAP
-        folder = path.with_suffix("")
-        self._fill(Writer2(folder, version=9, storage_plugin=plugin), self.store.serialize_cdr)
-        return folder
-
-    def _fill(self, writer: Any, serialise: Callable[[Any, str], Any]) -> None:
-        with writer:
-            connections: dict[str, Any] = {}
-            for stamp, topic, kind, message in self.messages:
-                if topic not in connections:
-                    connections[topic] = writer.add_connection(topic, kind, typestore=self.store)
-                writer.write(connections[topic], stamp, bytes(serialise(message, kind)))
-
-
-def drive_along_x(bag: Bag, *, count: int = 100, start: int = EPOCH) -> Bag:
-    """Drive at 1 m/s along x: commands and poses at 10 Hz."""
-    for k in range(count):
-        stamp = start + k * SECOND // 10
-        bag.add(stamp, "/cmd_vel", TWIST, bag.twist(1.0, 0.0))
-        pose = bag.make(POSE, bag.header(stamp), bag.pose(0.1 * k, 2.0, 0.5))
-        bag.add(stamp, "/mocap/robot", POSE, pose)
-    return bag
+from slipwise.logs.messages import ACKERMANN, TF
 
 
 def counts(log: Log) -> dict[str, int]:
@@ -296,7 +215,7 @@ def test_two_equal_candidates_are_listed(tmp_path: Path) -> None:
     for k in range(10):
         bag.add(EPOCH + k, "/robot2/cmd_vel", TWIST, bag.twist(1.0, 0.0))
     folder = bag.write(tmp_path / "a.mcap")
-    with pytest.raises(LogError, match=r"set command_topic to one of .*/cmd_vel.*/robot2/cmd_vel"):
+    with pytest.raises(LogError, match=r"give --command-topic one of .*/cmd_vel.*/robot2/cmd_vel"):
         open_log(folder)
     commands = open_log(folder, options=LogOptions(command_topic="/cmd_vel")).runs[0].commands
     assert commands is not None
@@ -305,7 +224,7 @@ def test_two_equal_candidates_are_listed(tmp_path: Path) -> None:
 
 def test_a_given_topic_that_is_not_there_is_refused_with_those_that_are(tmp_path: Path) -> None:
     folder = drive_along_x(Bag()).write(tmp_path / "a.mcap")
-    with pytest.raises(LogError, match=r"pose_topic /gps is not in the bag.*/mocap/robot"):
+    with pytest.raises(LogError, match=r"--pose-topic /gps is not in the bag.*/mocap/robot"):
         open_log(folder, options=LogOptions(pose_topic="/gps"))
 
 
@@ -342,27 +261,16 @@ def test_satellite_fixes_get_their_heading_from_the_track(tmp_path: Path) -> Non
     assert counts(log)["no-fix"] == 1
 
 
-def test_poses_come_from_a_chain_of_transforms(tmp_path: Path) -> None:
-    bag = Bag()
-
-    def transform(stamp: int, parent: str, child: str, x: float, yaw: float) -> Any:
-        q = quaternions_of(np.zeros(1), np.zeros(1), np.array([yaw]))[0].tolist()
-        motion = bag.make(
-            "geometry_msgs/msg/Transform",
-            bag.vector(x, 0.0, 0.0),
-            bag.make("geometry_msgs/msg/Quaternion", *q),
-        )
-        return bag.make("geometry_msgs/msg/TransformStamped", bag.header(stamp, parent), child, motion)
-
-    kind = "tf2_msgs/msg/TFMessage"
-    bag.add(EPOCH, "/tf_static", kind, bag.make(kind, [transform(EPOCH, "base_link", "lidar", 9.0, 0.0)]))
+@pytest.mark.parametrize("name", ["a.mcap", "a.bag"])
+def test_poses_come_from_a_chain_of_transforms(tmp_path: Path, name: str) -> None:
+    bag = Bag(ros1=name == "a.bag")
+    bag.add(EPOCH, "/tf_static", TF, bag.transform(EPOCH, "base_link", "lidar", (9.0, 0.0, 0.0)))
     for k in range(50):
         stamp = EPOCH + k * SECOND // 10
         bag.add(stamp, "/cmd_vel", TWIST, bag.twist(1.0, 0.0))
-        bag.add(stamp, "/tf", kind, bag.make(kind, [transform(stamp, "map", "odom", 1.0, 0.5 * np.pi)]))
-        odometry = transform(stamp, "odom", "base_link", 0.1 * k, 0.0)
-        bag.add(stamp, "/tf", kind, bag.make(kind, [odometry]))
-    folder = bag.write(tmp_path / "a.mcap")
+        bag.add(stamp, "/tf", TF, bag.transform(stamp, "map", "odom", (1.0, 0.0, 0.5 * np.pi)))
+        bag.add(stamp, "/tf", TF, bag.transform(stamp, "odom", "base_link", (0.1 * k, 0.0, 0.0)))
+    folder = bag.write(tmp_path / name)
     log = open_log(folder)
     poses = log.runs[0].poses
     np.testing.assert_allclose(poses.x, 1.0, atol=1e-9)

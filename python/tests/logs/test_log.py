@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slipwise.errors import LogError
-from slipwise.logs import Inputs, Poses, empty_poses
+from slipwise.logs import Inputs, Poses, Run, empty_poses
 
 ONE = np.ones(3)
 T = np.array([0.0, 1.0, 2.0])
@@ -41,3 +41,12 @@ def test_integers_in_place_of_numbers_are_refused() -> None:
 
 def test_no_poses_is_a_valid_series() -> None:
     assert len(empty_poses()) == 0
+
+
+def test_a_place_in_a_run_counts_from_its_first_stamp_and_names_that_of_the_file() -> None:
+    commands = Inputs(t=1.7e9 - 0.5 + T, v=ONE, vy=ONE, omega=ONE)
+    poses = Poses(t=1.7e9 + T, x=ONE, y=ONE, yaw=ONE, frame=np.zeros(3, np.int64))
+    run = Run("field", commands, None, poses)
+    assert run.span == (1.7e9 - 0.5, 1.7e9 + 2.0)
+    assert run.place(1.7e9 + 1.0) == "run field, 1.5 s from its start (t = 1700000001.000 s)"
+    assert Run("bare", None, None, empty_poses()).span == (0.0, 0.0)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from slipwise.errors import LogError
-from slipwise.logs import Inputs, Log, Poses, Run
+from slipwise.logs import Inputs, LeftOut, Log, Poses, Run
 from slipwise.logs.quality import checked
 
 
@@ -139,3 +139,30 @@ def test_a_log_whose_poses_all_jump_is_refused(slow: Run) -> None:
     wild = np.repeat(rng.uniform(-50.0, 50.0, len(slow.poses) // 2 + 1), 2)[: len(slow.poses)]
     with pytest.raises(LogError, match=r"out of reach|further"):
         checked(Log(runs=(replace(slow, poses=replace(slow.poses, x=wild)),)))
+
+
+@pytest.mark.parametrize("turns", [3, 1e3, -1e9])
+def test_a_heading_that_is_whole_turns_off_for_a_moment_is_dropped(run: Run, turns: float) -> None:
+    yaw = run.poses.yaw.copy()
+    yaw[300] += turns * 2.0 * np.pi
+    result = checked(Log(runs=(replace(run, poses=replace(run.poses, yaw=yaw)),)))
+    assert len(result.runs[0].poses) == len(run.poses) - 1
+    assert [(entry.kind, entry.count) for entry in result.left_out] == [("pose-outlier", 1)]
+
+
+def test_a_heading_that_is_not_wrapped_is_no_jump(run: Run) -> None:
+    unwrapped = replace(run.poses, yaw=np.unwrap(run.poses.yaw) + 500.0)
+    assert checked(Log(runs=(replace(run, poses=unwrapped),))).left_out == ()
+
+
+def test_a_log_whose_stamps_are_all_the_same_is_refused(run: Run) -> None:
+    few = replace(
+        run.poses,
+        **{
+            name: getattr(run.poses, name)[:1]
+            for name in ("t", "x", "y", "yaw", "frame", "std_xy", "std_yaw")
+        },
+    )
+    same = LeftOut("poses with the stamp of the one before", 300, "line 3", "duplicate-stamp")
+    with pytest.raises(LogError, match="stamps do not go forward in 300 of 301 poses"):
+        checked(Log(runs=(replace(run, poses=few),), left_out=(same,)))

@@ -140,3 +140,16 @@ def test_real_logs_read_back_equal(real_log_dir: Path, tmp_path: Path, name: str
     log = open_log(real_log_dir / name)
     save_log(log, tmp_path / f"copy{ending}")
     assert_equal(log, open_log(tmp_path / f"copy{ending}"))
+
+
+def test_stamps_that_a_bag_cannot_hold_are_refused(run: Run, tmp_path: Path) -> None:
+    assert run.commands is not None
+    late = replace(
+        run,
+        commands=replace(run.commands, t=run.commands.t + 3e9),
+        wheels=None,
+        poses=replace(run.poses, t=run.poses.t + 3e9),
+    )
+    with pytest.raises(LogError, match=r"stamps in a bag end at 2147483647 s .*write a table"):
+        save_log(Log(runs=(late,)), tmp_path / "late.mcap")
+    assert list(tmp_path.iterdir()) == []

@@ -88,7 +88,7 @@ def test_other_columns_are_carried_along(tmp_path: Path) -> None:
 
 def test_wheel_speeds_need_radius_and_track(tmp_path: Path) -> None:
     path = table(tmp_path, "0,2,4,0,0,0", "0.1,2,4,0,0,0", header="t,wheel_left,wheel_right,x,y,yaw")
-    with pytest.raises(LogError, match="wheel_radius and track"):
+    with pytest.raises(LogError, match="--wheel-radius and --track"):
         open_log(path)
     wheels = open_log(path, options=LogOptions(wheel_radius=0.5, track=2.0)).runs[0].wheels
     assert wheels is not None
@@ -247,5 +247,5 @@ def test_a_gap_of_a_minute_is_no_fault_of_the_file(tmp_path: Path) -> None:
 
 
 def test_a_negative_radius_is_refused() -> None:
-    with pytest.raises(SettingsError, match="wheel_radius must be a positive number"):
+    with pytest.raises(SettingsError, match="--wheel-radius must be a positive number"):
         LogOptions(wheel_radius=-0.1)

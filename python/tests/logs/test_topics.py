@@ -6,6 +6,7 @@ import pytest
 from slipwise.errors import LogError
 from slipwise.logs import LogOptions
 from slipwise.logs.messages import (
+    ACKERMANN,
     IMU,
     JOINT_STATE,
     NAV_SAT_FIX,
@@ -15,12 +16,18 @@ from slipwise.logs.messages import (
     TWIST,
     TWIST_STAMPED,
 )
-from slipwise.logs.topics import Topic, choose_topics
+from slipwise.logs.role_choice import Topic
+from slipwise.logs.topics import choose_topics, transforms_matter, weigh_topics
+from slipwise.logs.transforms import TransformSource
 
 
 def chosen(*topics: tuple[str, str], options: LogOptions | None = None) -> tuple[str | None, ...]:
-    roles = choose_topics([Topic(name, kind, 10) for name, kind in topics], options or LogOptions())
+    roles = choose_topics(live(*topics), options or LogOptions())
     return tuple(topic.name if topic else None for topic in (roles.pose, roles.command, roles.wheel))
+
+
+def live(*topics: tuple[str, str]) -> list[Topic]:
+    return [Topic(name, kind, 10) for name, kind in topics]
 
 
 CLEARPATH = (
@@ -50,6 +57,7 @@ def test_ground_truth_comes_before_everything_else() -> None:
 def test_a_fused_pose_is_the_last_resort_and_is_pointed_out() -> None:
     topics = [Topic(*CLEARPATH[k], 5) for k in (0, 3, 4)]
     roles = choose_topics(topics, LogOptions())
+    assert roles.pose is not None
     assert roles.pose.name == "/odometry/filtered"
     assert any("is fused" in note for note in roles.guessed)
 
@@ -86,6 +94,88 @@ def test_a_given_topic_of_a_wrong_type_is_refused() -> None:
 
 def test_without_any_input_the_topics_are_listed() -> None:
     with pytest.raises(
-        LogError, match=r"set command_topic or wheel_topic; the bag has /vicon/p \(PoseStamped\)"
+        LogError, match=r"give --command-topic or --wheel-topic; the bag has /vicon/p \(PoseStamped\)"
     ):
         chosen(("/vicon/p", POSE_STAMPED))
+
+
+CAR = (("/drive", ACKERMANN), ("/amcl_pose", POSE_STAMPED), ("/tf", TF))
+
+
+def transforms(samples: int, *, odometry_alone: bool = False) -> TransformSource:
+    return TransformSource("/tf", ("map", "base_link"), samples, odometry_alone)
+
+
+def pose_of(source: TransformSource | None, *topics: tuple[str, str]) -> str:
+    roles = choose_topics(live(*topics), LogOptions(), source)
+    assert roles.pose is not None
+    return roles.pose.name
+
+
+def test_transforms_with_more_poses_replace_the_topic_of_a_localiser() -> None:
+    assert pose_of(transforms(200), *CAR) == "/tf"
+    assert pose_of(transforms(15), *CAR) == "/amcl_pose"
+    assert pose_of(transforms(200, odometry_alone=True), *CAR) == "/amcl_pose"
+    note = choose_topics(live(*CAR), LogOptions(), transforms(200)).guessed[0]
+    assert note.endswith("it has more poses than /amcl_pose (200 to 10)")
+
+
+@pytest.mark.parametrize("name", ["/mocap/p", "/gps/odom", "/ground_truth/pose"])
+def test_a_sensor_of_its_own_is_never_replaced_by_transforms(name: str) -> None:
+    topics = (("/cmd_vel", TWIST), (name, POSE_STAMPED), ("/tf", TF))
+    assert pose_of(transforms(10_000), *topics) == name
+    assert not transforms_matter(live(*topics), LogOptions())
+
+
+def test_transforms_are_looked_at_only_where_they_matter() -> None:
+    assert transforms_matter(live(*CAR), LogOptions())
+    assert transforms_matter(live(("/cmd_vel", TWIST), ("/tf", TF)), LogOptions())
+    assert not transforms_matter(live(*CAR[:2]), LogOptions())
+
+
+def test_pose_and_wheels_from_one_topic_are_refused_with_what_to_record() -> None:
+    topics = (("/cmd_vel", TWIST), ("/odom", ODOMETRY))
+    with pytest.raises(LogError, match=r"both come from /odom.*record where .*RTK.*--wheel-topic none"):
+        chosen(*topics, options=LogOptions(pose_topic="/odom"))
+    named = LogOptions(pose_topic="/state", wheel_topic="/state")
+    with pytest.raises(LogError, match="both come from /state"):
+        chosen(("/state", ODOMETRY), options=named)
+    assert chosen(*topics, options=LogOptions(pose_topic="/odom", wheel_topic="none")) == (
+        "/odom",
+        "/cmd_vel",
+        None,
+    )
+
+
+def test_a_pose_topic_that_is_named_like_odometry_is_taken_and_pointed_out() -> None:
+    options = LogOptions(pose_topic="/odom", wheel_topic="none")
+    notes = choose_topics(live(("/cmd_vel", TWIST), ("/odom", ODOMETRY)), options).guessed
+    assert any(
+        "/odom is the pose as given, although its name says that it is wheel odometry" in n for n in notes
+    )
+
+
+def test_a_pose_topic_that_only_might_be_wheel_odometry_is_not_read_as_wheels() -> None:
+    assert chosen(("/cmd_vel", TWIST), ("/state", ODOMETRY)) == ("/state", "/cmd_vel", None)
+    with pytest.raises(LogError, match="both come from /state"):
+        chosen(("/state", ODOMETRY))
+
+
+def test_joint_states_without_sizes_are_named_with_the_options_to_add() -> None:
+    topics = (("/cmd_vel", TWIST), ("/joint_states", JOINT_STATE), ("/vicon/p", POSE_STAMPED))
+    roles = choose_topics(live(*topics), LogOptions())
+    assert "/joint_states has joint states: give --wheel-radius and --track" in roles.advice["wheel"]
+    with pytest.raises(LogError, match="/joint_states has joint states: give --wheel-radius and --track"):
+        chosen(*topics[1:])
+    beside = choose_topics(live(*topics, ("/odom", ODOMETRY)), LogOptions())
+    assert beside.advice == {}
+
+
+def test_every_topic_that_is_not_used_has_a_reason() -> None:
+    found = weigh_topics(live(*CLEARPATH), LogOptions())
+    reasons = found.pose.rejected
+    assert reasons["/move_base_simple/goal"] == "its name says that it is a goal or a plan"
+    assert "cannot show its own slip" in reasons["/husky_velocity_controller/odom"]
+    assert reasons["/odometry/filtered"] == "the name /icp_odom fits better"
+    assert reasons["/tf"] == "/icp_odom is preferred"
+    assert found.command.rejected["/cmd_vel"].startswith("the name /husky")

@@ -20,7 +20,7 @@ CELL = 0.1  # m
 def learned_model() -> Model:
     """Return a model with slip, lag and delay, learned from a simulated drive."""
     log = simulated_log(Drive(seconds=60.0, lag=0.2, delay=0.1))
-    return calibrate(log, input_name="command", settings=make_settings({"basis": "edd-2"})).model
+    return calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).model
 
 
 def walled_map() -> GridMap:

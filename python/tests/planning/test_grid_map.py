@@ -54,11 +54,20 @@ def test_clearance_never_overstates_the_room_and_ends_at_the_map() -> None:
     rng = np.random.Generator(np.random.PCG64(2))
     points = np.array([1.0, 2.0]) + rng.random((400, 2)) * grid.size
     low, high = np.array([7.0, 6.0]), np.array([7.2, 6.6])  # the obstacle's corners
-    true = np.hypot(*np.maximum(np.maximum(low - points, points - high), 0.0).T)
+    to_obstacle = np.hypot(*np.maximum(np.maximum(low - points, points - high), 0.0).T)
+    to_edge = np.minimum(points - grid.origin, np.array(grid.origin) + grid.size - points).min(axis=1)
+    true = np.minimum(to_obstacle, to_edge)
     stated = grid.clearance_at(points)
     assert (stated <= true + 1e-9).all()
     assert (stated >= true - 0.6).all()
     assert grid.clearance_at([[0.9, 3.0], [100.0, 3.0]]).tolist() == [0.0, 0.0]
+
+
+def test_beyond_the_map_nothing_is_free() -> None:
+    grid = GridMap(np.zeros((100, 200), dtype=bool), 0.1, (-10.0, -5.0))
+    middle, edge = grid.clearance_at([[0.0, 0.0], [-9.75, 0.0]])
+    assert 4.7 < middle <= 5.0
+    assert edge <= 0.25
 
 
 @pytest.mark.parametrize(
@@ -72,6 +81,10 @@ def test_clearance_never_overstates_the_room_and_ends_at_the_map() -> None:
         ({"image": ""}, "`image` names no image"),
         ({"image": "no.pgm"}, "cannot read the map's image"),
         ({"image": "map.yaml"}, "is no PGM image"),
+        ({"image": '"a\\0.pgm"'}, "not the name of a file"),
+        ({"image": "/dev/zero"}, "not a regular file"),
+        ({"origin": "[1.0e+300, 0.0, 0.0]"}, "origin is no place on earth"),
+        ({"origin": "[.nan, 0.0, 0.0]"}, "origin is no place on earth"),
         ({"origin": "[0.0]"}, "`origin` is no list"),
         ({"origin": "[0.0, 0.0, 0.5]"}, "`origin` is rotated"),
     ],
@@ -79,7 +92,7 @@ def test_clearance_never_overstates_the_room_and_ends_at_the_map() -> None:
 def test_a_map_that_makes_no_sense_is_refused(tmp_path: Path, changed: dict[str, str], message: str) -> None:
     with pytest.raises(PlanningError, match=message) as caught:
         load_map(written(tmp_path, **changed))
-    assert str(tmp_path) in caught.value.where
+    assert str(tmp_path) in caught.value.where or caught.value.where == "/dev/zero"
     assert caught.value.advice
 
 
@@ -89,6 +102,43 @@ def test_a_cut_off_image_is_refused(tmp_path: Path) -> None:
     image.write_bytes(image.read_bytes()[:-3])
     with pytest.raises(PlanningError, match="cut off: 21 of 24 pixels"):
         load_map(path)
+
+
+@pytest.mark.parametrize(
+    ("image", "message"),
+    [
+        (b"P5\n100000 100000\n255\n", "has 100000 x 100000 pixels, more than 25000000"),
+        (b"P5\n2 2\n100\n\x00\x10\x20\xff", "has a pixel of 255, where white is 100"),
+        (b"P2\n2 2\n255\n0 1 2 many\n", "holds what is no number"),
+        (b"P2\n2 2\n255\n0 1 2 -3\n", "holds what is no grey level"),
+        (b"P2\n2 2\n255\n0 1 2 nan\n", "holds what is no"),
+        (b"P2\n2 2\n255\n0 1 2 1e99\n", "holds what is no grey level"),
+        (b"P5\n0 2\n255\n", "claims 0 x 2 pixels"),
+    ],
+)
+def test_an_image_that_makes_no_sense_is_refused(tmp_path: Path, image: bytes, message: str) -> None:
+    (tmp_path / "a.pgm").write_bytes(image)
+    with pytest.raises(PlanningError, match=message):
+        read_pgm(tmp_path / "a.pgm")
+
+
+def test_how_many_cells_are_read_is_a_setting(tmp_path: Path) -> None:
+    assert load_map(written(tmp_path), most_cells=24).occupied.size == 24
+    with pytest.raises(PlanningError, match=r"has 6 x 4 pixels, more than 23 .*--most-cells"):
+        load_map(written(tmp_path), most_cells=23)
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+def test_grey_levels_are_read_in_either_width(tmp_path: Path, bits: int) -> None:
+    kind, white = (">u2", 65535) if bits == 16 else ("u1", 255)
+    levels = np.array([[0, white // 2], [white, 1]], dtype=kind)
+    (tmp_path / "a.pgm").write_bytes(f"P5\n2 2\n{white}\n".encode() + levels.tobytes())
+    assert (read_pgm(tmp_path / "a.pgm") == levels.astype(float) / white).all()
+
+
+def test_points_that_are_nowhere_have_no_clearance() -> None:
+    grid = GridMap(np.zeros((5, 5), dtype=bool), 0.5)
+    assert grid.clearance_at([[1e300, 0.0], [np.nan, 1.0], [-np.inf, 1.0]]).tolist() == [0.0, 0.0, 0.0]
 
 
 def test_cells_that_are_no_grid_are_refused() -> None:

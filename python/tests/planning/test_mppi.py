@@ -14,6 +14,7 @@ from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.planning import (
     Controller,
+    GridMap,
     MppiOptions,
     Track,
     inflated,
@@ -21,6 +22,7 @@ from slipwise.planning import (
     plain_motion,
     vendor_motion,
 )
+from slipwise.planning.mppi import LETHAL
 
 QUICK = MppiOptions(rollouts=256, periods=30, period=0.1)
 
@@ -58,6 +60,34 @@ def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> 
         assert spread == pytest.approx(1.0, abs=0.2)
         again = np.array([motion.parameters for motion in learned_motions(model, samples=400, seconds=2.0)])
         assert (drawn == again).all()
+
+
+def test_a_moving_robot_does_not_brake_at_the_first_cycle() -> None:
+    track = Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 1.0)
+    slow = make_model(Made(basis=_core.named_basis("edd-2"), response=True))
+    for motions in ([plain_motion()], learned_motions(slow)):
+        for last in (None, (1.0, 0.0)):
+            controller = Controller(motions, track, options=QUICK)
+            v, _ = controller.command((1.0, 0.0, 0.0), (1.0, 0.0), last=last)
+            assert v > 0.97
+
+
+def test_the_last_command_bounds_the_next() -> None:
+    controller = Controller([plain_motion()], straight(), options=QUICK)
+    controller.command((1.0, 0.0, 0.0), (0.0, 0.0))
+    v, omega = controller.command((1.0, 0.0, 0.0), (0.2, 0.0), last=(1.2, -0.5))
+    change = QUICK.acceleration * QUICK.period, QUICK.yaw_acceleration * QUICK.period
+    assert abs(v - 1.2) <= change[0] + 1e-6
+    assert abs(omega + 0.5) <= change[1] + 1e-6
+    with pytest.raises(SettingsError, match="the last command is no finite"):
+        controller.command((1.0, 0.0, 0.0), (0.2, 0.0), last=(math.nan, 0.0))
+
+
+def test_what_lies_beyond_the_map_costs_as_an_obstacle_does() -> None:
+    grid = GridMap(np.zeros((40, 60), dtype=bool), 0.1)
+    cells = np.asarray(inflated(grid, 0.5).cells)
+    assert cells[20, 2] == cells[2, 30] == LETHAL
+    assert cells[20, 30] == 0.0
 
 
 def test_a_start_in_an_obstacle_is_refused() -> None:

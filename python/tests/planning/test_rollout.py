@@ -23,7 +23,7 @@ N, K, DT = 20, 30, 0.1
 
 def learned(basis: str) -> Model:
     log = simulated_log(Drive(seconds=40.0, lag=0.2, delay=0.1))
-    return calibrate(log, input_name="command", settings=make_settings({"basis": basis})).model
+    return calibrate(log, input="command", settings=make_settings({"basis": basis})).model
 
 
 def responding() -> Model:

@@ -40,7 +40,16 @@ def test_a_route_leads_round_a_wall_to_the_goal_without_touching_it() -> None:
 
 
 def test_manoeuvres_in_a_row_go_on_with_what_the_slow_part_of_the_chain_holds() -> None:
-    slow = make_model(Made(basis=_core.named_basis("edd-2"), values={"ang.w": -0.3}, response=True))
+    slow = make_model(
+        Made(
+            basis=_core.named_basis("edd-2"),
+            values={"ang.w": -0.3},
+            response=True,
+            std=1e-3,
+            fraction=0.01,
+            psd_motion=1e-5,
+        )
+    )
     search = RouteOptions(radius=0.3, attempts=800, seed=4)
     routes = RoutePlanner(slow, walled_map(), limits=LIMITS, options=OPTIONS, search=search)
     route = routes.route((1.5, 2.0, 0.5), (10.0, 2.5, -0.6))
@@ -54,6 +63,29 @@ def test_a_route_that_touches_an_obstacle_as_a_whole_is_refused(monkeypatch: pyt
     monkeypatch.setattr(routes, "_joined", lambda node, start: replace(joined(node, start), clearance=-0.1))
     with pytest.raises(PlanningError, match="driven as a whole"):
         routes.route((1.0, 6.0, 0.0), (5.5, 6.5, 0.2))
+
+
+def test_a_disc_does_not_hang_over_the_edge_of_the_map() -> None:
+    open_map = GridMap(np.zeros((100, 100), dtype=bool), 0.1, (-5.0, -5.0))
+    with pytest.raises(PlanningError, match="the start lies in or too near an obstacle, or off the map"):
+        planner(open_map, radius=2.0).route((-4.95, -4.95, 0.0), (3.0, -4.95, 0.0))
+    route = planner(open_map, radius=1.0).route((-3.8, -3.0, 0.0), (1.0, -3.0, 0.0))
+    assert np.abs(route.predicted[:, :2]).max() <= 4.0
+
+
+def test_a_route_whose_position_may_be_anywhere_is_no_plan() -> None:
+    vague = make_model(Made(_core.named_basis("edd-2"), commands=True, fraction=0.4, psd_motion=0.3))
+    routes = RoutePlanner(
+        vague, walled_map(), limits=LIMITS, options=OPTIONS, search=RouteOptions(radius=0.3)
+    )
+    with pytest.raises(PlanningError, match=r"too uncertain: the 95 % ellipse .* half-axis of .* m, leaves"):
+        routes.route((1.0, 6.0, 0.0), (5.5, 6.5, 0.2))
+
+
+@pytest.mark.parametrize(("changed", "where"), [({"seed": -1}, "seed"), ({"attempts": 0}, "attempts")])
+def test_a_search_that_cannot_begin_is_refused(changed: dict[str, int], where: str) -> None:
+    with pytest.raises(SettingsError, match=rf"cannot begin \({where}\)"):
+        RoutePlanner(learned_model(), walled_map(), search=RouteOptions(**changed))
 
 
 @pytest.mark.parametrize(

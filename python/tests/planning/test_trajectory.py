@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model
 from sample_models import LIMITS as LANES
-from sample_models import make_model, named
+from sample_models import Made, make_model, named
 
+from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.models import Model
 from slipwise.planning import (
     DriveState,
     Limits,
@@ -23,6 +25,7 @@ from slipwise.planning import (
     uncertain_path,
 )
 from slipwise.planning.limits import ACCELERATION
+from slipwise.planning.trajectory import pose_text
 
 OPTIONS = TrajectoryOptions(cruise=1.0, longest=8.0)
 
@@ -82,6 +85,36 @@ def test_a_moving_robot_goes_on_with_its_curvature() -> None:
     assert plan.commands[0, 2] / plan.commands[0, 1] == pytest.approx(0.3, abs=0.1)
 
 
+def slow_model(share: float, seconds: float) -> Model:
+    values = {"slow_share_v": share, "log_slow_lag_v": math.log(seconds), "gain_v": 1.0}
+    values |= {"slow_share_omega": share, "log_slow_lag_omega": math.log(seconds), "gain_omega": 1.0}
+    return make_model(Made(_core.named_basis("edd-2"), values, response=True))
+
+
+@pytest.mark.parametrize(("share", "seconds"), [(0.14, 7.0), (0.3, 1.5), (0.5, 4.0)])
+def test_a_plan_ends_when_the_robot_is_slower_than_what_counts_as_rest(share: float, seconds: float) -> None:
+    model = slow_model(share, seconds)
+    for goal in ((4.0, 0.0, 0.0), (3.0, 1.0, 0.3)):
+        plan = Planner(model, limits=Limits(1.0, 1.0, 1.0)).to(goal)
+        assert plan.poses[-1] == pytest.approx(goal, abs=2e-3)
+        assert max(map(abs, plan.at_end.drive)) <= 0.0205
+        last = plan.t > plan.duration - 1.0
+        moved = np.hypot(*np.diff(plan.poses[last][:, :2], axis=0).T) / np.diff(plan.t[last])
+        assert moved.max() > 0.015  # it does not wait for longer than it must
+        assert np.abs(plan.poses[:, 2]).max() < 1.5  # it does not turn round on its way
+
+
+def test_what_counts_as_rest_is_an_option() -> None:
+    model = slow_model(0.3, 3.0)
+    seconds = [
+        Planner(model, limits=Limits(1.0, 1.0, 1.0), options=TrajectoryOptions(rest_speed=v, rest_yaw_rate=v))
+        .to((4.0, 0.0, 0.0))
+        .duration
+        for v in (0.01, 0.1)
+    ]
+    assert seconds[0] == pytest.approx(seconds[1] + 3.0 * math.log(10.0), rel=0.2)
+
+
 def test_limits_follow_from_what_the_model_has_seen() -> None:
     limits = limits_of(learned_model())
     seen = learned_model().content.range
@@ -115,3 +148,8 @@ def test_options_that_contradict_the_limits_are_refused() -> None:
         Limits(speed=1.0, yaw_rate=0.0, curvature=1.0)
     with pytest.raises(SettingsError, match="not finite"):
         DriveState(drive=(math.nan, 0.0))
+
+
+def test_pose_is_said_to_the_millimetre_without_a_tail_of_rounding() -> None:
+    assert pose_text((10.0, -1e-9, 1.259e-08)) == "10, 0, 0"
+    assert pose_text((12345.6784, 1.2346, -0.5)) == "12345.678, 1.235, -0.5"

@@ -25,6 +25,7 @@ FLAGS = (
     "--disable-sync",
     "--disable-dev-shm-usage",
     "--hide-scrollbars",
+    "--blink-settings=primaryHoverType=2,availableHoverTypes=2",  # a mouse: figures have their buttons
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
     "--host-resolver-rules=MAP * ~NOTFOUND",
@@ -35,6 +36,7 @@ START = (
     "import fcntl, os, sys; r, w = (fcntl.fcntl(int(f), fcntl.F_DUPFD, 10) for f in sys.argv[1:3]); "
     "os.dup2(r, 3); os.dup2(w, 4); os.execv(sys.argv[3], sys.argv[3:])"
 )
+SCREEN_HEIGHT = 900  # px of the window
 SCREENSHOT_HEIGHT = (
     1600  # px of one picture; a browser without graphics card repeats itself in very high ones
 )
@@ -98,12 +100,25 @@ class Browser:
         os.close(self._write)
         os.close(self._read)
 
+    def prefer(self, scheme: str) -> None:
+        """Ask pages for "light" or "dark" colours."""
+        feature = {"name": "prefers-color-scheme", "value": scheme}
+        self.call("Emulation.setEmulatedMedia", features=[feature])
+
+    def wait_for(self, expression: str) -> None:
+        """Wait until a JavaScript expression is true."""
+        deadline = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            if time.monotonic() > deadline:
+                raise TimeoutError(f"{expression} stays false")
+            time.sleep(0.05)
+
     def open(self, page: Path, *, width: int) -> None:
         """Show a file at a width [px] and wait until its script says that it is ready."""
         self.call(
             "Emulation.setDeviceMetricsOverride",
             width=width,
-            height=900,
+            height=SCREEN_HEIGHT,
             deviceScaleFactor=1,
             mobile=width < 600,
         )

@@ -12,15 +12,15 @@ from reporting.synthetic_results import make_results
 from slipwise.reporting.chosen_windows import MOST_WINDOWS, choose_windows
 
 
-def test_chosen_windows_are_scored_ones_in_order_of_time() -> None:
+def test_chosen_windows_are_scored_ones_each_once() -> None:
     contents = contents_of(make_results(runs=3))
     chosen = choose_windows(contents)
     predictions = contents.predictions("auto", 5.0)
     assert predictions is not None
     assert [window.number for window in chosen] == list(range(1, MOST_WINDOWS + 1))
     rows = [window.row for window in chosen]
-    assert rows == sorted(set(rows))
-    assert rows[0] >= len(predictions) // 2
+    assert len(set(rows)) == MOST_WINDOWS
+    assert min(rows) >= len(predictions) // 2
 
 
 def test_chosen_motions_differ_more_than_the_first_ones() -> None:

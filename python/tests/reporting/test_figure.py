@@ -24,7 +24,7 @@ def test_figure_data_cannot_end_the_script_that_holds_it() -> None:
 
 def test_layout_is_added_to_the_standard_one() -> None:
     layout = json.loads(Figure(key="a", label="a", traces=[], layout={"margin": {"t": 40}}).json())["layout"]
-    assert layout["margin"] == {"l": 56, "r": 14, "t": 40, "b": 48}
+    assert layout["margin"] == {"l": 50, "r": 12, "t": 40, "b": 38}
 
 
 def test_label_from_a_user_holds_no_markup_and_no_format() -> None:

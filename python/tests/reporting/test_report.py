@@ -31,18 +31,23 @@ def page(results: Results) -> str:
 
 def test_sections_stand_in_the_order_of_the_reader_s_questions(page: str) -> None:
     assert headings_of(page) == [
-        "Verdict",
-        "How far the predictions are off",
-        "Where the robot drove",
-        "Measured and predicted paths",
+        "Does the learned model help?",
+        "How far each method misses",
+        "Where the robot drove, and what was predicted",
         "Errors over time",
-        "Parameters while learning",
-        "Learned slip",
-        "Speeds and yaw rates driven",
         "Is the stated uncertainty true?",
+        "Parameters while learning",
+        "Learned slip, and the speeds and yaw rates driven",
         "Data left out, and what was guessed",
-        "Provenance",
+        "How to make this again",
     ]
+
+
+def test_all_but_the_answer_is_folded_under_its_heading(page: str) -> None:
+    assert page.count('<section id="section-1">') == 1
+    folded = re.findall(r'<details class="section" id="(.*?)">', page)
+    assert folded == [f"section-{place}" for place in range(2, len(SECTIONS) + 1)]
+    assert "<details open" not in page
 
 
 def test_same_results_give_the_same_bytes(page: str) -> None:

@@ -10,14 +10,14 @@ from reporting.page_parts import contents_of
 from reporting.synthetic_results import make_results, without_history
 
 from slipwise.logs.log import Log
-from slipwise.reporting.chosen_windows import choose_windows
+from slipwise.reporting.chosen_windows import MOST_WINDOWS, choose_windows
 from slipwise.reporting.window_paths import window_paths
 
 
 def test_paths_start_at_the_robot_and_the_learned_one_ends_near_the_measured_one() -> None:
     contents = contents_of(make_results())
     paths = window_paths(contents, choose_windows(contents))
-    assert len(paths) == 12
+    assert len(paths) == MOST_WINDOWS
     for path in paths.values():
         assert np.allclose(path.measured[0], 0.0)
         assert np.allclose(path.predicted[0], 0.0)

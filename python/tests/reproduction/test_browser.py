@@ -8,10 +8,13 @@ from pathlib import Path
 
 import pytest
 from reporting.browser import Browser
+from reporting.page_privacy import assert_sends_nothing
 from reproduction.toy_chapters import exhibit, solid, toy_results
 
 from slipwise.reproduction import ChapterResult
 from slipwise.reproduction.draw_page import draw_page
+
+pytestmark = pytest.mark.slow
 
 STATE = "document.documentElement.dataset"
 CANVASES = "document.querySelectorAll('.plot canvas').length"
@@ -29,6 +32,13 @@ def test_all_kinds_of_panels_are_drawn_without_error_or_request(
     assert [url for url in browser.requests if not url.startswith("data:")] == [page.as_uri()]
     assert browser.value(f"{STATE}.drawn") == "6"
     assert browser.value("document.documentElement.scrollWidth") == width
+
+
+def test_no_button_sends_anything(browser: Browser, tmp_path: Path) -> None:
+    page = tmp_path / "index.html"
+    page.write_text(draw_page(toy_results()), encoding="utf-8")
+    browser.open(page, width=1280)
+    assert_sends_nothing(browser, page)
 
 
 def test_of_many_surfaces_only_those_near_the_window_are_drawn(browser: Browser, tmp_path: Path) -> None:

@@ -113,7 +113,11 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
     [
         ({"duration": -1.0}, "duration is -1.0"),
         ({"duration": float("nan")}, "duration is nan"),
+        ({"duration": 1e9}, "duration is 1000000000.0"),
         ({"pose_rate": 0.0}, "pose_rate is 0.0"),
+        ({"pose_rate": 1e9}, r"pose_rate is 1000000000.0 .*give 0\.1 to 1000 Hz"),
+        ({"pose_rate": 1e-300}, "pose_rate is 1e-300"),
+        ({"pose_delay": 1e300}, "pose_delay is 1e"),
         ({"std_xy": -0.01}, "std_xy is -0.01"),
         ({"std_yaw": float("inf")}, "std_yaw is inf"),
         ({"pose_delay": float("nan")}, "pose_delay is nan"),

@@ -9,7 +9,11 @@ from tools.requirements import ROOT, requirements
 
 PROJECT = {
     "build-system": {"requires": ["builder>=1"]},
-    "project": {"dependencies": ["numpy>=2"], "optional-dependencies": {"sim": ["mujoco>=3"]}},
+    "project": {
+        "name": "robot",
+        "dependencies": ["numpy>=2"],
+        "optional-dependencies": {"plot": ["drawing>=1"], "sim": ["mujoco>=3"], "all": ["robot[plot,sim]"]},
+    },
     "dependency-groups": {"dev": ["pytest>=9"]},
 }
 
@@ -22,12 +26,31 @@ def test_each_part_is_read_from_its_own_table(part: str, expected: str) -> None:
     assert requirements(PROJECT, part) == [expected]
 
 
+def test_an_extra_that_names_others_stands_for_theirs() -> None:
+    assert requirements(PROJECT, "all") == ["drawing>=1", "mujoco>=3"]
+
+
+def test_every_extra_that_an_error_advises_exists() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    sources = [*(ROOT / "python/slipwise").rglob("*.py"), *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
+    advised = {
+        extra
+        for source in sources
+        for names in re.findall(
+            r"install ['\"]*(?:slipwise|\.)\[([^\]]+)\]", source.read_text(encoding="utf-8")
+        )
+        for extra in names.split(",")
+    }
+    assert {"gp", "plot", "sim"} <= advised
+    assert advised <= set(project["project"]["optional-dependencies"])
+
+
 def test_an_unknown_part_is_refused() -> None:
     with pytest.raises(KeyError, match="docs"):
         requirements(PROJECT, "docs")
 
 
-@pytest.mark.parametrize("part", ["build", "native", "run", "sim", "dev", "bench"])
+@pytest.mark.parametrize("part", ["build", "native", "run", "gp", "plot", "sim", "thesis", "dev", "bench"])
 def test_every_requirement_has_a_pinned_version(part: str) -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()

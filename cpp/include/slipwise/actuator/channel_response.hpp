@@ -18,6 +18,8 @@ struct ChannelResponse {
   /// Of the input, what the fast lag goes towards.
   double fast_share() const { return (1.0 - share()) * gain; }
   double longest_lag() const { return std::max(lag, slow_lag); }
+  /// The input that keeps a channel at `drive`.
+  double keeping_input(double drive) const { return gain != 0.0 ? drive / gain : 0.0; }
 };
 
 inline ChannelResponse speed_response(const CommandChain& chain) {
@@ -29,10 +31,11 @@ inline ChannelResponse turn_response(const CommandChain& chain) {
 
 inline constexpr double kSettledLags = 8.0;  ///< after this many time constants the start of a lag is forgotten (e^-8)
 
-/// For how long before a moment at which the whole drive is known the inputs must be followed, so that it is known what
-/// of the drive is the fast parts' [s].
-inline double fast_warm_up(const ChannelResponse& speed, const ChannelResponse& turn) {
-  return kSettledLags * std::max(speed.has_slow_part() ? speed.lag : 0.0, turn.has_slow_part() ? turn.lag : 0.0);
+/// For how long before a moment at which the whole drive is known the inputs must be followed, so that it is known how
+/// it is divided between the fast and the slow mode [s].
+inline double parts_warm_up(const ChannelResponse& speed, const ChannelResponse& turn) {
+  return kSettledLags *
+         std::max(speed.has_slow_part() ? speed.longest_lag() : 0.0, turn.has_slow_part() ? turn.longest_lag() : 0.0);
 }
 
 }  // namespace slipwise

@@ -24,6 +24,13 @@ class LaneRamp {
     target_ = limited(command);
     jump();
   }
+  /// On its way to `target` it has come as far as `state`, if it was not yet so far.
+  void reach(double state, double target) {
+    const double done = state - state_, whole = target - state_;
+    if (done * whole > 0.0) {
+      state_ = std::abs(done) < std::abs(whole) ? state : target;
+    }
+  }
   /// Now it is `state`, however that came about.
   void place(double state) { state_ = state; }
   double state() const { return state_; }
@@ -98,6 +105,9 @@ class CommandLimiter {
   void settle(const BodyTwist& command);
   /// It gives out `given` now, and was told so.
   void place(const BodyTwist& given);
+  /// The drive was measured to do what `given` keeps: ramps of the speed or of the yaw rate, and those of both sides,
+  /// have come at least as far.
+  void reach(const BodyTwist& given, bool speed, bool yaw_rate);
   /// It is told this from now on; vy passes as it is.
   void tell(const BodyTwist& command);
 
@@ -115,6 +125,9 @@ class CommandLimiter {
 
  private:
   BodyTwist joined(double v, double omega, const SideSpeeds& sides) const;
+  BodyTwist asked_for(const BodyTwist& given) const {
+    return sides_ ? BodyTwist{given.v / limits_.gain_v, given.vy, given.omega / limits_.gain_omega} : given;
+  }
   SideSpeeds asked_of_sides(double v, double omega) const { return side_speeds(limits_, {v, vy_, omega}); }
 
   CommandLimits limits_;

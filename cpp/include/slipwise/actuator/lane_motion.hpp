@@ -11,7 +11,7 @@
 namespace slipwise {
 
 /// One lane: which part of the inputs it follows, and how.
-struct Lane {
+struct ActuatorAxis {
   double BodyTwist::* part;
   ChannelResponse response;
   double delay;  ///< [s]
@@ -32,14 +32,14 @@ struct LaneMotion {
 };
 
 /// The state of a lane whose input at `time` [s] was held for long.
-LaneState settled_lane(const InputTrack& inputs, const Lane& lane, double time);
+LaneState settled_lane(const InputTrack& inputs, const ActuatorAxis& lane, double time);
 
 /// The lane over the K intervals between `edges` [s, increasing, in input stamps], from `start` at the first of them.
-LaneMotion lane_motion(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+LaneMotion lane_motion(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start,
                        std::span<const double> edges);
 
 /// Its values alone.
-Eigen::VectorXd lane_values(const InputTrack& inputs, const Lane& lane, const LaneState& start,
+Eigen::VectorXd lane_values(const InputTrack& inputs, const ActuatorAxis& lane, const LaneState& start,
                             std::span<const double> edges);
 
 }  // namespace slipwise

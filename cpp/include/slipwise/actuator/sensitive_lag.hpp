@@ -16,6 +16,11 @@ struct Sensitive {
   Eigen::Matrix<double, 1, N> slope = Eigen::Matrix<double, 1, N>::Zero();
 };
 
+template <int N>
+double value_of(const Sensitive<N>& number) {
+  return number.value;
+}
+
 /// Where a channel's parameters stand among the N.
 struct ChannelPlaces {
   Eigen::Index lag, delay, gain, slow_share, slow_lag;

@@ -37,7 +37,7 @@ class ChainChannel {
   double noise_variance() const { return size_; }
 
  private:
-  Lane lane(const Eigen::VectorXd& state, std::size_t i) const;
+  ActuatorAxis lane(const Eigen::VectorXd& state, std::size_t i) const;
   bool begin(const ChannelWindow& window);
   void lose_track();
   Passage foretell(const ChannelWindow& window, const DriveNoiseMeans& noise, const Eigen::VectorXd& state) const;

@@ -20,10 +20,10 @@ class DeadBandSearch {
   /// Dead-bands between two neighbouring commands are all alike, and nearly so beyond them: half that width as of a
   /// uniform distribution. What those commands ask of the sides is not known exactly either; `to_sides` is of
   /// LimitedDriveFit::Spread.
-  double std(const ScoredDrive& drive, Lane lane, const Eigen::Matrix3d& to_sides) const;
+  double std(const ScoredDrive& drive, LimitedAxis lane, const Eigen::Matrix3d& to_sides) const;
 
  private:
-  ScoredDrive best(const ScoredDrive& drive, Lane lane) const;
+  ScoredDrive best(const ScoredDrive& drive, LimitedAxis lane) const;
   double side_std(const CommandLimits& limits, double lower, double upper, const Eigen::Matrix3d& to_sides) const;
 
   std::span<const DriveRecord> records_;

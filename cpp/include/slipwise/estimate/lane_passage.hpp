@@ -27,7 +27,7 @@ struct ChannelWindow {
 };
 
 /// The lane that follows this part of the inputs through a channel's parameters.
-Lane lane_of(double BodyTwist::* part, const ChannelParameters& parameters);
+ActuatorAxis lane_of(double BodyTwist::* part, const ChannelParameters& parameters);
 
 /// A lane's state and the variances of its parts.
 struct FirstLaneState {
@@ -36,7 +36,7 @@ struct FirstLaneState {
 
 /// Of a lane that was not followed until the window only the range of its speeds is known; none where it does not move.
 /// `wander` is the variance of its deviation.
-std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Lane& lane, double wander);
+std::optional<FirstLaneState> first_state(const ChannelWindow& window, const ActuatorAxis& lane, double wander);
 
 /// The K means of the window, and after them the state at its end.
 struct LanePassage {
@@ -45,10 +45,10 @@ struct LanePassage {
   Eigen::Matrix<double, Eigen::Dynamic, kLaneStates> by_state;         ///< [K + 3, 3] by the state at the start
 };
 
-LanePassage lane_passage(const ChannelWindow& window, const Lane& lane, const LaneVector& start,
+LanePassage lane_passage(const ChannelWindow& window, const ActuatorAxis& lane, const LaneVector& start,
                          const DriveNoiseMeans& noise);
 
 /// What wheel speeds say of the lane, [K].
-Eigen::VectorXd lane_means(const WheelMeans& seen, const Lane& lane);
+Eigen::VectorXd lane_means(const WheelMeans& seen, const ActuatorAxis& lane);
 
 }  // namespace slipwise

@@ -23,6 +23,6 @@ struct LaneRange {
   double step = 0.0;
 };
 
-LaneRange lane_range(std::span<const DriveRecord> records, const CommandLimits& limits, Lane lane);
+LaneRange lane_range(std::span<const DriveRecord> records, const CommandLimits& limits, LimitedAxis lane);
 
 }  // namespace slipwise

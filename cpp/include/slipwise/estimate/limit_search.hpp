@@ -19,7 +19,7 @@ struct LimitSearchSettings {
 
 /// A limit that the data show.
 struct FoundLimit {
-  Lane lane;
+  LimitedAxis lane;
   LimitKind kind;
   double value;  ///< [m/s, rad/s, m/s^2 or rad/s^2]
   double std;    ///< of the value

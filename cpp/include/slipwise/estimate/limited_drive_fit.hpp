@@ -35,10 +35,10 @@ double limit_of(const LaneLimits& limits, LimitKind kind);
 bool limits_anything(const LaneLimits& limits, LimitKind kind);
 
 /// What limits belong to: the commanded speed, the commanded yaw rate, or the two sides, which share them.
-enum class Lane : std::uint8_t { Speed, YawRate, Side };
-inline constexpr std::array kLanes{Lane::Speed, Lane::YawRate, Lane::Side};
-LaneLimits& lane_of(CommandLimits& limits, Lane lane);
-const LaneLimits& lane_of(const CommandLimits& limits, Lane lane);
+enum class LimitedAxis : std::uint8_t { Speed, YawRate, Side };
+inline constexpr std::array kLanes{LimitedAxis::Speed, LimitedAxis::YawRate, LimitedAxis::Side};
+LaneLimits& lane_of(CommandLimits& limits, LimitedAxis lane);
+const LaneLimits& lane_of(const CommandLimits& limits, LimitedAxis lane);
 
 /// A command as one side sees it: its speed is |gain_v * v + gain_omega * omega * track / 2|.
 struct SideCommand {

@@ -76,11 +76,12 @@ class Mppi {
   /// \throws std::invalid_argument without a model, or where one has another period than the settings.
   Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings);
 
-  /// One iteration from the last plan, moved on by a period. `map` is null where there are no obstacles.
+  /// One iteration from the last plan, moved on by a period; at first from the last command, held. `map` is null where
+  /// there are no obstacles.
   /// \throws std::invalid_argument when the reference does not fit, something is not finite, or the start is where the
   /// map is lethal.
   MppiResult step(const MppiState& state, const MppiReference& reference, const Costmap* map);
-  /// Forgets the last plan.
+  /// Forgets the last plan; the next begins with this command, held.
   void reset(const DriveCommand& command);
 
   const MppiSettings& settings() const { return settings_; }
@@ -95,7 +96,8 @@ class Mppi {
   std::vector<RolloutProgram> models_;
   MppiSettings settings_;
   ColouredNoise noise_v_, noise_omega_;
-  std::vector<DriveCommand> plan_;                // [periods]
+  std::vector<DriveCommand> plan_;  // [periods]
+  bool planned_ = false;
   std::vector<float> v_, omega_, x_, y_, theta_;  // [periods * rollouts], rollouts side by side
   std::vector<float> cost_, mean_, worst_;        // [rollouts]
   std::vector<std::uint8_t> free_;                // [rollouts], whether no model collides

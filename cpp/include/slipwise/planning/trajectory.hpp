@@ -11,15 +11,17 @@
 namespace slipwise {
 
 struct TrajectorySettings {
-  double cruise = 1.0;        ///< speed between the ramps [m/s]
-  double end_speed = 0.0;     ///< commanded at the goal; 0 waits until the robot has come to rest [m/s]
-  double longest = 10.0;      ///< of commanded paths [m]
-  bool backwards = false;     ///< drive backwards all the way
-  bool straight_end = false;  ///< the last command has no curvature, so that another manoeuvre can follow
-  int commands = 32;          ///< each held for the same time
-  int samples = 10000;        ///< of the table of first guesses
-  int guesses = 12;           ///< tried at most
-  ReachSettings reach = {};   ///< tolerances
+  double cruise = 1.0;          ///< speed between the ramps [m/s]
+  double end_speed = 0.0;       ///< commanded at the goal; 0 waits until the robot has come to rest [m/s]
+  double rest_speed = 0.02;     ///< no faster counts as rest [m/s]
+  double rest_yaw_rate = 0.02;  ///< no faster counts as rest [rad/s]
+  double longest = 10.0;        ///< of commanded paths [m]
+  bool backwards = false;       ///< drive backwards all the way
+  bool straight_end = false;    ///< the last command has no curvature, so that another manoeuvre can follow
+  int commands = 32;            ///< each held for the same time
+  int samples = 10000;          ///< of the table of first guesses
+  int guesses = 12;             ///< tried at most
+  ReachSettings reach = {};     ///< tolerances
 
   /// \throws std::invalid_argument unless all are positive, finite, and within the limits.
   void check(const DriveLimits& limits) const;

@@ -7,54 +7,73 @@
 #include <cstddef>
 
 #include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/slow_mode.hpp"
 #include "slipwise/rollout/chain_schedule.hpp"
 
 namespace slipwise {
 
 /// One channel of a drive.
 struct StartDrive {
-  double told;  ///< the input that would keep the drive as it is, for when no command was sent yet
+  double told;  ///< the input that keeps the drive as it is, for when no command was sent yet
   double fast;  ///< what the fast lag holds
   double slow;  ///< what the slow lag holds
 };
 
-/// The input that would keep a channel as it is.
-inline double told_by(const ChannelResponse& response, double drive) {
-  return response.gain != 0.0 ? drive / response.gain : 0.0;
+/// When the command that is sent at i * period acts [s].
+inline double acts_at(const ChannelTiming& channel, double period, std::ptrdiff_t i) {
+  return static_cast<double>(i + channel.shift) * period + channel.rest;
 }
 
-/// A lag's output at the start, after inputs that began `warm_up` seconds before it. `command(i)` is the one sent at
-/// i * period, of which those before `oldest` equal the oldest.
+/// The inputs of a channel until the start: `command(i)` is the one sent at i * period, of which those before `oldest`
+/// equal the oldest; without any sent before the start (`oldest` is 0), they are `keeping`.
 template <typename Command>
-double lagged_input(const ChannelTiming& channel, double period, double warm_up, std::ptrdiff_t oldest,
-                    const Command& command) {
-  const auto acts = [&](std::ptrdiff_t i) { return static_cast<double>(i + channel.shift) * period + channel.rest; };
-  const auto begun = static_cast<std::ptrdiff_t>(std::floor((-warm_up - channel.rest) / period)) - channel.shift;
-  std::ptrdiff_t i = std::max(begun, oldest);
-  double output = command(i);
-  for (double now = std::max(-warm_up, acts(i)); now < 0.0; ++i) {
-    const double next = std::min(acts(i + 1), 0.0);
-    output = lag_step(output, command(i), channel.response.lag, next - now).output;
-    now = next;
-  }
-  return output;
-}
+struct StartInputs {
+  const ChannelTiming& channel;
+  double period;
+  std::ptrdiff_t oldest;
+  double keeping;
+  const Command& command;
 
-/// The whole drive was measured: what the fast part does not explain is the slow part's. Without any command sent
-/// before the start (`oldest` is 0) the drive is taken to be settled.
+  double at(std::ptrdiff_t i) const { return oldest == 0 && i < 0 ? keeping : command(std::max(i, oldest)); }
+
+  /// What acts at the start.
+  double now() const { return at(static_cast<std::ptrdiff_t>(std::floor(-channel.rest / period)) - channel.shift); }
+
+  /// A lag's output at the start, after inputs that began `warm_up` seconds before it.
+  double lagged(double lag, double warm_up) const {
+    const auto begun = static_cast<std::ptrdiff_t>(std::floor((-warm_up - channel.rest) / period)) - channel.shift;
+    std::ptrdiff_t i = std::max(begun, oldest - 1);
+    double output = at(i);
+    for (double time = std::max(-warm_up, acts_at(channel, period, i)); time < 0.0; ++i) {
+      const double next = std::min(acts_at(channel, period, i + 1), 0.0);
+      output = lag_output(output, at(i), lag, next - time);
+      time = next;
+    }
+    return output;
+  }
+};
+
+/// The whole drive was measured; what the commands before it say of its parts, as slow_mode.hpp has it. Without any the
+/// drive is settled.
 template <typename Command>
 StartDrive start_drive(const ChainSchedule& chain, const ChannelTiming& channel, double drive, std::ptrdiff_t oldest,
                        const Command& command) {
   const ChannelResponse& response = channel.response;
-  StartDrive start{.told = told_by(response, drive), .fast = drive, .slow = 0.0};
-  if (response.has_slow_part()) {
-    const double warm_up = fast_warm_up(chain.v.response, chain.omega.response);
-    const auto sent = [&](std::ptrdiff_t i) { return i < 0 && oldest == 0 ? start.told : command(i); };
-    start.fast = response.fast_share() *
-                 lagged_input(channel, chain.period, warm_up, std::min<std::ptrdiff_t>(oldest, -1), sent);
-    start.slow = drive - start.fast;
+  const double keeping = response.keeping_input(drive);
+  if (!response.has_slow_part()) {
+    return {.told = keeping, .fast = drive, .slow = 0.0};
   }
-  return start;
+  if (oldest == 0 && acts_at(channel, chain.period, oldest) > 0.0) {
+    return {.told = keeping, .fast = (1.0 - response.share()) * drive, .slow = response.share() * drive};
+  }
+  const double warm_up = parts_warm_up(chain.v.response, chain.omega.response);
+  const StartInputs<Command> inputs{channel, chain.period, oldest, keeping, command};
+  const double settled = response.gain * inputs.now(), share = response.share();
+  const double slow = slow_mode<double>({.left = drive - response.fast_share() * inputs.lagged(response.lag, warm_up),
+                                         .modelled = share * response.gain * inputs.lagged(response.slow_lag, warm_up),
+                                         .settled = share * settled,
+                                         .carried = drive - (1.0 - share) * settled});
+  return {.told = keeping, .fast = drive - slow, .slow = slow};
 }
 
 }  // namespace slipwise

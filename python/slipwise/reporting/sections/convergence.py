@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How the parameters and the weights of the bases settled while driving."""
+"""How the parameters and the weights of the bases converged while driving."""
 
 from __future__ import annotations
 
@@ -9,27 +9,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.calibration.result import History
-from slipwise.models.limits import limit_rows
-from slipwise.models.model import Model
-from slipwise.reporting.contents import Contents
+from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
+from slipwise.number_text import estimate_text
+from slipwise.reporting.contents import PLAIN, Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
-from slipwise.reporting.markup import details, legend, missing, number, paragraph, table
+from slipwise.reporting.markup import MINUS, details, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
 from slipwise.reporting.thinning import thinned
 from slipwise.reporting.timeline import Timeline
 
 _MOST_ALARMS = 6
+_NO_SLIP = "no slip"  # the basis without terms, which is not the kinematic baseline: it has lag and delay
 Floats = NDArray[np.float64]
 
 
 class ConvergenceSection:
-    """Did the parameters settle?"""
+    """Did the parameters converge?"""
 
     title = "Parameters while learning"
     explanation = (
-        "Each parameter after every window learned, with a band of one standard deviation: what is "
-        "determined settles and its band narrows."
+        "After every window learned, with a band of one standard deviation: it narrows where the log "
+        "identifies the parameter."
     )
 
     def html(self, contents: Contents) -> str:
@@ -37,7 +38,7 @@ class ConvergenceSection:
         model, history = contents.calibration.model, contents.calibration.history
         if not model.content.parameters:
             return missing("The model has no parameters: it predicts without slip.")
-        values = details("All parameters of the model", _values(model))
+        values = details("All parameters of the model", _values(contents))
         smoothed = _smoothed(contents)
         if history is None:
             return (
@@ -50,57 +51,44 @@ class ConvergenceSection:
         return (
             _parameters(contents, history)
             + _alarms(contents, history)
+            + _weights(contents, history)
             + smoothed
             + values
-            + _weights(contents, history)
         )
 
 
-_VALUE_COLUMNS = (
-    "parameter",
-    "unit",
-    "value",
-    "± 1 sigma",
-    "± before any data",
-    "share left",
-    "determined",
-)
-
-
-def _values(model: Model) -> str:
+def _values(contents: Contents) -> str:
+    """Return all parameters and limits in physical units, and what the log can hardly tell apart."""
     rows = [
         (
             parameter.name,
+            estimate_text(parameter.value, parameter.std).replace("-", MINUS),
             parameter.unit,
-            number(parameter.value, 4),
-            number(parameter.std, 2),
-            number(parameter.prior_std, 2),
-            number(parameter.std / parameter.prior_std, 2) if parameter.prior_std > 0.0 else "",
-            "yes" if parameter.determined else "no",
+            "yes" if parameter.identified else "no",
         )
-        for parameter in model.content.parameters
+        for parameter in physical_parameters(contents.calibration.model)
     ]
-    html = table(_VALUE_COLUMNS, rows)
-    if model.content.limits is None:
-        return html
-    limits = [
-        (name, unit, number(value, 4), number(std, 2))
-        for name, value, std, unit in limit_rows(model.content.limits)
-    ]
-    return html + table(("limit of the drive", "unit", "value", "± 1 sigma"), limits)
+    html = table(("parameter", "value ± 1 sigma", "unit", "identified"), rows)
+    note = (
+        f"Identified: known to {100.0 * IDENTIFIED_FRACTION:.0f} % of the value, or known to be negligible."
+    )
+    pairs = ", ".join(map(str, contents.calibration.verdict.look_alikes))
+    confounded = paragraph(f"Confounded parameters (correlation of their errors): {pairs}.") if pairs else ""
+    return html + paragraph(f"{note} {contents.calibration.verdict.timing}".strip()) + confounded
 
 
 def _alarms(contents: Contents, history: History) -> str:
     """Say when the ground seemed to change."""
     alarms = history.alarms()
     if not alarms:
-        return paragraph("No change of ground was found.")
-    names = [run.name for run in contents.log.runs]
-    shown = ", ".join(f"{t:.1f} s of {names[run] or f'run {run}'}" for run, t in alarms[:_MOST_ALARMS])
+        return paragraph("No change of terrain was found.", kind="note")
+    timeline = Timeline.of(contents.log)
+    shown = ", ".join(f"{timeline.seconds(run, t):.1f} s" for run, t in alarms[:_MOST_ALARMS])
     more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
     return paragraph(
-        f"The ground seems to change {len(alarms)} time{'s' if len(alarms) > 1 else ''}, marked by an orange "
-        f"line: at {shown}{more}. There, what was learned before counts less."
+        f"The terrain seems to change {len(alarms)} time{'s' if len(alarms) > 1 else ''}, marked by an "
+        f"orange line: at {shown}{more}. There, what was learned before counts less.",
+        kind="note",
     )
 
 
@@ -134,30 +122,26 @@ def _smoothed(contents: Contents) -> str:
 
 def _weights(contents: Contents, history: History) -> str:
     """Draw the weights of the bases, and of the ways to learn from commands, where there are several."""
-    if history.structure_weight is None:
-        return _basis_weights(contents, history)
-    strokes = {name: stroke_of(name, history.structures) for name in history.structures}
-    shown = (strokes, history.structure_weight)
-    heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
-    note = f"Predictions are those of the heavier way, at the end {heavier}, which this section shows."
-    figure = _weights_figure(contents, history, ("structures", "ways to explain the motion"), shown)
-    return _basis_weights(contents, history) + figure + paragraph(note)
-
-
-def _basis_weights(contents: Contents, history: History) -> str:
-    if len(history.bases) < 2:
-        return paragraph(
-            f"One basis was used: {', '.join(history.bases) or contents.calibration.model.motion.basis.name}."
-        )
-    # The bases of an average are methods too and have their colours.
-    strokes = {
-        name: stroke_of(name, (*contents.evaluation.methods, *history.bases)) for name in history.bases
-    }
-    figure = _weights_figure(contents, history, ("weights", "slip bases"), (strokes, history.basis_weight))
-    return figure + paragraph(
-        "A basis gains weight by how near its predictions come; after each window a share is dealt out "
-        "evenly. The model is the weighted mean."
-    )
+    drawn, notes = [], []
+    if len(history.bases) > 1:
+        # The bases of an average are methods too and have their colours.
+        methods = (*contents.evaluation.methods, *history.bases)
+        strokes = {name: stroke_of(name, methods) for name in history.bases}
+        shown = (strokes, history.basis_weight)
+        drawn.append(_weights_figure(contents, history, ("weights", "slip bases"), shown))
+        notes.append("A basis gains weight by how near its predictions come; the model is the weighted mean.")
+    else:
+        name = ", ".join(history.bases) or contents.calibration.model.motion.basis.name
+        notes.append(f"One basis was used: {name}.")
+    if history.structure_weight is not None:
+        strokes = {name: stroke_of(name, history.structures) for name in history.structures}
+        names = ("structures", "ways to explain the motion")
+        drawn.append(_weights_figure(contents, history, names, (strokes, history.structure_weight)))
+        heavier = history.structures[int(np.argmax(history.structure_weight[-1]))]
+        notes.append(f"Predictions are those of the heavier way, at the end {heavier}, shown above.")
+    figures = "".join(f"<div>{figure}</div>" for figure in drawn)
+    notes_html = paragraph(" ".join(notes), kind="note")
+    return (f'<div class="wide-grid">{figures}</div>' if drawn else "") + notes_html
 
 
 def _weights_figure(
@@ -171,7 +155,7 @@ def _weights_figure(
         {
             "type": "scatter",
             "mode": "lines",
-            "name": plain_label(name),
+            "name": plain_label(_NO_SLIP if name == PLAIN else name),
             "x": numbers(timeline.at(history.run[keep], history.t[keep])),
             "y": numbers(weights[keep, place]),
             "stackgroup": "weights",
@@ -188,11 +172,14 @@ def _weights_figure(
         traces=traces,
         layout={
             "xaxis": axis(timeline.title),
-            "yaxis": axis("weight, together 1 [-]", range=[0, 1]),
+            "yaxis": axis("weight [-]", range=[0, 1]),
             "shapes": timeline.shapes() + _alarm_marks(timeline, history),
         },
-        height=280,
+        height=150,
     )
     last = zip(strokes.items(), weights[-1].tolist(), strict=True)
-    keys = ((f"{name} {weight:.2f}", stroke.colour, "line") for (name, stroke), weight in last)
+    keys = (
+        (f"{_NO_SLIP if name == PLAIN else name} {weight:.2f}", stroke.colour, "line")
+        for (name, stroke), weight in last
+    )
     return legend(keys) + figure.html()

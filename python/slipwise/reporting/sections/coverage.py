@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which speeds and yaw rates the log holds, and for how long."""
+"""Which speeds and yaw rates the log holds, and for how long, as a figure."""
 
 from __future__ import annotations
 
@@ -8,71 +8,53 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.logs.log import Inputs
+from slipwise.logs.held import held_for
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, numbers, top_colour_bar
-from slipwise.reporting.markup import legend, missing
 from slipwise.reporting.palette import SEQUENTIAL
-from slipwise.segments import WindowRules
+from slipwise.reporting.slip_figures import MAP_HEIGHT as HEIGHT
 
 _BINS = 32
 _SHORTEST = 1e-3  # s; shorter is drawn like this
 Floats = NDArray[np.float64]
 
 
-class CoverageSection:
-    """Where in the plane of inputs did the robot drive?"""
-
-    title = "Speeds and yaw rates driven"
-    explanation = (
-        "How long the robot was told to drive (or its wheels drove) at each speed and yaw rate; the model is "
-        "not known to hold outside the dashed box."
+def coverage_figure(contents: Contents) -> Figure | None:
+    """Return the histogram over the plane of inputs, None where the log has no such input."""
+    used = [inputs for run in contents.log.runs if (inputs := contents.inputs(run)) is not None]
+    if not used:
+        return None
+    v, omega = (np.concatenate([getattr(part, name) for part in used]) for name in ("v", "omega"))
+    held = np.concatenate([held_for(part, contents.unknown_after) for part in used])
+    seconds, v_edges, omega_edges = np.histogram2d(
+        v, omega, bins=_BINS, range=(_range(v), _range(omega)), weights=held
     )
-
-    def html(self, contents: Contents) -> str:
-        """Return the histogram over the plane of inputs."""
-        used = [inputs for run in contents.log.runs if (inputs := contents.inputs(run)) is not None]
-        if not used:
-            name = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
-            return missing(f"The log has no {name}, so there is no plane of inputs to cover.")
-        v, omega = (np.concatenate([getattr(part, name) for part in used]) for name in ("v", "omega"))
-        held = np.concatenate([_held_for(part) for part in used])
-        seconds, v_edges, omega_edges = np.histogram2d(
-            v, omega, bins=_BINS, range=(_range(v), _range(omega)), weights=held
-        )
-        heatmap = {
-            "type": "heatmap",
-            "x": numbers(0.5 * (v_edges[:-1] + v_edges[1:])),
-            "y": numbers(0.5 * (omega_edges[:-1] + omega_edges[1:])),
-            "z": numbers(np.where(seconds > 0.0, np.log10(np.maximum(seconds, _SHORTEST)), np.nan).T),
-            "customdata": numbers(seconds.T),
-            "colorscale": SEQUENTIAL,
-            "reversescale": True,
-            "colorbar": _colour_bar(seconds),
-            "hoverongaps": False,
-            "hovertemplate": "V %{x:.2f} m/s, ω %{y:.2f} rad/s<br>%{customdata:.1f} s<extra></extra>",
-        }
-        figure = Figure(
-            key="coverage",
-            heading="The colour is the time [s]",
-            label="Time spent at each speed and yaw rate",
-            traces=[heatmap],
-            layout={
-                "margin": TOP_BAR_MARGIN,
-                "xaxis": axis("speed V [m/s]"),
-                "yaxis": axis("yaw rate ω [rad/s]"),
-                "shapes": [_box(contents)],
-            },
-            height=420,
-            caption=f"{held.sum():.0f} s of known input; colours are logarithmic, white was never driven.",
-        )
-        return legend((("range of the model", "#1b2430", "dash"),)) + figure.html()
-
-
-def _held_for(inputs: Inputs) -> Floats:
-    """How long each input was held [s]; an old one is unknown."""
-    longest = WindowRules().unknown_after
-    return np.minimum(np.diff(inputs.t, append=inputs.t[-1]), longest)
+    heatmap = {
+        "type": "heatmap",
+        "x": numbers(0.5 * (v_edges[:-1] + v_edges[1:])),
+        "y": numbers(0.5 * (omega_edges[:-1] + omega_edges[1:])),
+        "z": numbers(np.where(seconds > 0.0, np.log10(np.maximum(seconds, _SHORTEST)), np.nan).T),
+        "customdata": numbers(seconds.T),
+        "colorscale": SEQUENTIAL,
+        "reversescale": True,
+        "colorbar": _colour_bar(seconds),
+        "hoverongaps": False,
+        "hovertemplate": "V %{x:.2f} m/s, ω %{y:.2f} rad/s<br>%{customdata:.1f} s<extra></extra>",
+    }
+    return Figure(
+        key="coverage",
+        heading="Time driven [s]",
+        label="Time spent at each speed and yaw rate",
+        traces=[heatmap],
+        layout={
+            "margin": TOP_BAR_MARGIN,
+            "xaxis": axis("speed V [m/s]"),
+            "yaxis": axis("yaw rate ω [rad/s]"),
+            "shapes": [_box(contents)],
+        },
+        height=HEIGHT,
+        caption=f"{held.sum():.0f} s in all; dashed: range of the model",
+    )
 
 
 def _range(values: Floats) -> tuple[float, float]:

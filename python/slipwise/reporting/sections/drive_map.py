@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The map of the drive, one for each run and frame."""
+"""Maps of the drives, one for each run and frame."""
 
 from __future__ import annotations
 
@@ -12,12 +12,19 @@ from slipwise.logs.log import Floats, Run
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import TOP_BAR_MARGIN, Figure, axis, numbers, top_colour_bar
-from slipwise.reporting.markup import missing, paragraph
 from slipwise.reporting.palette import MEASURED, SEQUENTIAL
 from slipwise.reporting.thinning import thinned, thinning_note
+from slipwise.reporting.timeline import Timeline
 
 _MOST_MAPS = 6
-_SIDES = ("top right", "bottom right", "top left", "bottom left")  # of the numbers: neighbours part
+HEIGHT = 235  # px, of a map and of a path
+_SIDES = {  # where a number may stand beside its start, and in which direction
+    "top right": (1.0, 1.0),
+    "bottom right": (1.0, -1.0),
+    "top left": (-1.0, 1.0),
+    "bottom left": (-1.0, -1.0),
+}
+_LABEL_AWAY = 0.06  # of the map's larger side, between a start and its number
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,32 +39,17 @@ class _Drive:
     y: Floats  # m
 
 
-class DriveMapSection:
-    """Where did the robot go?"""
-
-    title = "Where the robot drove"
-    explanation = (
-        "Measured positions relative to the first one, coloured by time; the numbers mark the starts of the "
-        "paths shown further down."
-    )
-
-    def html(self, contents: Contents) -> str:
-        """Return a map for each of the longest runs and frames."""
-        drives = [drive for place, run in enumerate(contents.log.runs) for drive in _drives(place, run)]
-        if not drives:
-            return missing("The log has no measured poses, so there is no map.")
-        longest = sorted(sorted(drives, key=lambda d: -len(d.t))[:_MOST_MAPS], key=lambda d: (d.run, d.t[0]))
-        chosen = choose_windows(contents)
-        one = len(longest) == 1
-        figures = [_figure(place, drive, chosen, one) for place, drive in enumerate(longest, start=1)]
-        note = ""
-        if len(drives) > _MOST_MAPS:
-            note = paragraph(
-                f"The {_MOST_MAPS} longest of {len(drives)} drives are shown; "
-                "poses are comparable only inside one frame."
-            )
-        kind = "one" if one else "wide-grid"
-        return f'<div class="{kind}">' + "".join(figure.html() for figure in figures) + "</div>" + note
+def drive_maps(contents: Contents) -> tuple[list[Figure], str]:
+    """Return a map for each of the longest runs and frames, the longest first, and what is not shown."""
+    drives = [drive for place, run in enumerate(contents.log.runs) for drive in _drives(place, run)]
+    chosen, timeline = choose_windows(contents), Timeline.of(contents.log)
+    longest = sorted(drives, key=lambda d: -len(d.t))[:_MOST_MAPS]
+    figures = [_figure(place, drive, chosen, timeline) for place, drive in enumerate(longest, start=1)]
+    if len(drives) <= _MOST_MAPS:
+        return figures, ""
+    note = f"The {_MOST_MAPS} longest of {len(drives)} drives are shown; "
+    note += "poses are comparable only inside one frame."
+    return figures, note
 
 
 def _drives(place: int, run: Run) -> list[_Drive]:
@@ -74,9 +66,10 @@ def _drives(place: int, run: Run) -> list[_Drive]:
     return drives
 
 
-def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], one: bool) -> Figure:
+def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], timeline: Timeline) -> Figure:
     keep = thinned(len(drive.t))
-    x, y, t = drive.x[keep], drive.y[keep], drive.t[keep] - drive.t[0]
+    x, y = drive.x[keep], drive.y[keep]
+    t = timeline.at(np.full(len(keep), drive.run), drive.t[keep])
     marker = {
         "size": 4,
         "color": numbers(t),
@@ -100,11 +93,10 @@ def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], one: bool) ->
         traces=[path, _starts(drive, chosen)],
         layout={
             "margin": TOP_BAR_MARGIN,
-            "xaxis": axis("x [m]"),
-            "yaxis": axis("y [m]", scaleanchor="x", scaleratio=1),
+            "xaxis": axis("x [m]", nticks=7),
+            "yaxis": axis("y [m]", scaleanchor="x", scaleratio=1, nticks=7),
         },
-        height=560 if one else 400,
-        aspect=float(np.ptp(drive.y) / max(np.ptp(drive.x), 1e-3)),
+        height=HEIGHT,
         caption=thinning_note(len(drive.t)),
     )
 
@@ -112,15 +104,31 @@ def _figure(place: int, drive: _Drive, chosen: list[ChosenWindow], one: bool) ->
 def _starts(drive: _Drive, chosen: list[ChosenWindow]) -> dict[str, object]:
     here = [c for c in chosen if c.run == drive.run and drive.t[0] <= c.t_start <= drive.t[-1]]
     at = np.array([c.t_start for c in here], dtype=np.float64)
+    x, y = np.interp(at, drive.t, drive.x), np.interp(at, drive.t, drive.y)
     return {
         "type": "scatter",
         "mode": "markers+text",
         "cliponaxis": False,
-        "x": numbers(np.interp(at, drive.t, drive.x)),
-        "y": numbers(np.interp(at, drive.t, drive.y)),
+        "x": numbers(x),
+        "y": numbers(y),
         "text": [str(c.number) for c in here],
-        "textposition": [_SIDES[c.number % len(_SIDES)] for c in here],
+        "textposition": _free_sides(np.column_stack((x, y)), max(np.ptp(drive.x), np.ptp(drive.y))),
         "textfont": {"size": 14, "color": MEASURED},
         "marker": {"size": 9, "color": "#ffffff", "line": {"color": MEASURED, "width": 2}},
         "hovertemplate": "start of path %{text}<extra></extra>",
     }
+
+
+def _free_sides(points: Floats, size: float) -> list[str]:
+    """Choose for each point [N, 2] the side of its number that is farthest from points and other numbers."""
+    taken = list(points)
+    sides = []
+    for point in points:
+        places = {side: point + _LABEL_AWAY * size * np.array(way) for side, way in _SIDES.items()}
+        room = {
+            side: min(float(np.linalg.norm(place - other)) for other in taken)
+            for side, place in places.items()
+        }
+        sides.append(max(room, key=lambda side: room[side]))
+        taken.append(places[sides[-1]])
+    return sides

@@ -12,6 +12,7 @@ from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import PLAIN, SIMPLE, Contents
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
 from slipwise.reporting.markup import legend, missing
+from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import stroke_of
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
 from slipwise.reporting.timeline import Timeline, with_breaks
@@ -22,8 +23,8 @@ class ErrorsSection:
 
     title = "Errors over time"
     explanation = (
-        "The error of each prediction at the time of its start, from the first window on: a model that "
-        "learns leaves the plain one behind within the first windows and stays below it."
+        "At the start of each prediction, from the first window on: a model that learns falls below "
+        "the baseline and stays there."
     )
 
     def html(self, contents: Contents) -> str:
@@ -35,11 +36,12 @@ class ErrorsSection:
             return missing("No window was predicted, so there is no error to show over time.")
         methods = contents.evaluation.methods
         keys = [
-            (part.method, stroke_of(part.method, methods).colour, _kind(part, contents)) for part in found
+            (label(part.method, contents), stroke_of(part.method, methods).colour, _kind(part, contents))
+            for part in found
         ]
         figures = (
-            _figure(contents, found, "position", f"position error after {horizon:g} s [m]"),
-            _figure(contents, found, "heading", f"heading error after {horizon:g} s [°]"),
+            _figure(contents, found, "position", "error [m]"),
+            _figure(contents, found, "heading", "error [°]"),
         )
         return (
             legend(keys) + '<div class="wide-grid">' + "".join(figure.html() for figure in figures) + "</div>"
@@ -56,7 +58,7 @@ def _figure(contents: Contents, found: list[Predictions], what: str, title: str)
     return Figure(
         key=f"error-{what}",
         label=f"The {what} error of each window over time",
-        heading=f"{what.capitalize()} error",
+        heading=f"{what.capitalize()} error after {found[0].horizon:g} s",
         traces=[_trace(contents, part, what, timeline) for part in found],
         layout={
             "xaxis": axis(timeline.title),
@@ -64,6 +66,7 @@ def _figure(contents: Contents, found: list[Predictions], what: str, title: str)
             "shapes": timeline.shapes(),
         },
         caption=thinning_note(max(len(part.t_start) for part in found), CURVE_POINTS),
+        height=205,
         log_scale=True,
     )
 
@@ -77,7 +80,7 @@ def _trace(contents: Contents, part: Predictions, what: str, timeline: Timeline)
     return {
         "type": "scatter",
         "mode": "lines+markers",
-        "name": plain_label(part.method),
+        "name": plain_label(label(part.method, contents)),
         "x": numbers(with_breaks(run, timeline.at(run, t))),
         "y": numbers(with_breaks(run, np.asarray(errors[keep]))),
         "line": {"color": stroke.colour, "dash": stroke.dash, "width": 1.5},

@@ -11,9 +11,7 @@ class LeftOutSection:
     """What is not in the figures above?"""
 
     title = "Data left out, and what was guessed"
-    explanation = (
-        "What is in the files and was not used, with the first place where it happens, and every assumption."
-    )
+    explanation = "What the files hold and was not used, with the first place, and every assumption."
 
     def html(self, contents: Contents) -> str:
         """Return the table of what was left out and the notes."""

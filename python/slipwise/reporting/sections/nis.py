@@ -13,10 +13,12 @@ from slipwise.calibration.statistics import nis_band
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.figure import Figure, axis, numbers
-from slipwise.reporting.markup import legend, missing
+from slipwise.reporting.markup import legend, missing, paragraph
+from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import LEARNED_STROKE, MEASURED, transparent
 from slipwise.reporting.thinning import thinned, thinning_note
 from slipwise.reporting.timeline import Timeline
+from slipwise.reporting.uncertainty import honesty_of
 from slipwise.student import ellipsoid_squared
 
 _MEAN_OVER = 20  # windows of the moving mean
@@ -25,7 +27,7 @@ _TRUE_MEAN = 3.0  # of the NIS of x, y, yaw
 _NORMAL_BAND = (0.2157952826, 9.3484036045)
 _BAND_ENDS = (0.025, 0.975)
 _MEAN_COLOUR = "#b8860b"
-_MEAN_BAND = "#e6d6ad"  # the same on white with an opacity of 0.35
+_MEAN_BAND = "#e6d6ad"  # the same on the paper with an opacity of 0.35
 Floats = NDArray[np.float64]
 
 
@@ -34,8 +36,8 @@ class NisSection:
 
     title = "Is the stated uncertainty true?"
     explanation = (
-        "The normalised innovation squared (NIS) of each window: its mean is 3 where the covariance is true, "
-        "higher where the model is too sure of itself, lower where it is too careful."
+        "NIS, the normalised innovation squared, is 3 on average where the covariance is true, more "
+        "where it is too small."
     )
 
     def html(self, contents: Contents) -> str:
@@ -44,7 +46,7 @@ class NisSection:
         figures = []
         predictions = contents.predictions(contents.learned_method, contents.longest_horizon)
         if predictions is not None:
-            heading = f"Predictions of {predictions.method} over {predictions.horizon:g} s"
+            heading = f"Predictions of {label(predictions.method, contents)} over {predictions.horizon:g} s"
             place = timeline.at(predictions.run, predictions.t_start)
             band = _band_of(predictions)
             figures.append(_figure(timeline, _Series("predictions", heading, place, _nis(predictions), band)))
@@ -56,7 +58,18 @@ class NisSection:
         drawn = [figure for figure in figures if figure is not None]
         if not drawn:
             return missing("No window has a predicted covariance, so its truth cannot be judged.")
-        return _legend() + '<div class="wide-grid">' + "".join(figure.html() for figure in drawn) + "</div>"
+        return (
+            _answer(contents)
+            + _legend()
+            + '<div class="wide-grid">'
+            + "".join(figure.html() for figure in drawn)
+            + "</div>"
+        )
+
+
+def _answer(contents: Contents) -> str:
+    honesty = honesty_of(contents.score(contents.learned_method, contents.longest_horizon))
+    return "" if honesty is None else paragraph(honesty.sentence, kind="answer")
 
 
 def _legend() -> str:
@@ -127,6 +140,7 @@ def _figure(timeline: Timeline, series: _Series) -> Figure | None:
                 *timeline.shapes(),
             ],
         },
+        height=195,
         caption=f"{caption} {thinning_note(len(y))}".strip(),
     )
 

@@ -1,67 +1,94 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measured, plain and predicted paths from chosen starts."""
+"""Where the robot drove, and measured and predicted paths from chosen starts."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.ellipse import ellipse
 from slipwise.reporting.figure import Figure, axis, numbers, plain_label
-from slipwise.reporting.markup import legend, missing, number, paragraph
+from slipwise.reporting.markup import details, legend, missing, number, paragraph
+from slipwise.reporting.method_names import BASELINE, label
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
+from slipwise.reporting.sections.drive_map import HEIGHT, drive_maps
 from slipwise.reporting.thinning import thinned
+from slipwise.reporting.timeline import Timeline
 from slipwise.reporting.window_paths import WindowPaths, window_paths
 
 _POINTS = 200  # of one path
+_SHOWN_AT_ONCE = 3  # beside the map; the others are folded away
 
 
 class PathsSection:
     """Does the predicted path follow the measured one?"""
 
-    title = "Measured and predicted paths"
+    title = "Where the robot drove, and what was predicted"
     explanation = (
-        "Drives of the longest horizon from starts chosen for the variety of their motion, seen from the "
-        "robot at the start; arrow heads point where it does, and the ellipse should hold the measured "
-        "end in 95 of 100 cases."
+        "Numbers on the map are starts of paths, seen from the robot there. An ellipse should hold 95 of 100 "
+        "ends."
     )
 
     def html(self, contents: Contents) -> str:
-        """Return one small figure per chosen window."""
-        method = contents.learned_method
-        predictions = contents.predictions(method, contents.longest_horizon)
-        chosen = choose_windows(contents)
-        if predictions is None or method is None or not chosen:
-            return missing(
-                "No window was predicted at the longest horizon, so there are no paths to compare."
-            )
-        drawn = window_paths(contents, chosen)
-        if not drawn:
-            return missing(
-                "The poses or inputs of the predicted windows are not in the log, so no path is drawn."
-            )
-        figures = "".join(
-            _figure(contents, window, path, predictions).html() for window, path in drawn.items()
-        )
-        return _legend(contents, method) + f'<div class="grid">{figures}</div>' + _notes(list(drawn.values()))
+        """Return the map of the longest drive beside a small figure for each chosen window."""
+        drawn, note = drive_maps(contents)
+        maps = [figure.html() for figure in drawn]
+        text, paths = _paths(contents)
+        first = maps[0] if maps else missing("The log has no measured poses, so there is no map.")
+        shown = _grid([f'<div class="double">{first}</div>', *paths[:_SHOWN_AT_ONCE]])
+        folded = _folded((paths[_SHOWN_AT_ONCE:], "paths"), (maps[1:], "maps"))
+        return text + shown + folded + (paragraph(note, kind="note") if note else "")
+
+
+def _grid(figures: Sequence[str]) -> str:
+    return f'<div class="fine-grid">{"".join(figures)}</div>'
+
+
+def _folded(*kinds: tuple[Sequence[str], str]) -> str:
+    """Fold away the figures that are not shown at once, counted by kind."""
+    counted = " and ".join(f"{len(figures)} more {what}" for figures, what in kinds if figures)
+    figures = [figure for some, _ in kinds for figure in some]
+    return details(counted, _grid(figures)) if figures else ""
+
+
+def _paths(contents: Contents) -> tuple[str, list[str]]:
+    """Return legend and notes, and the figures."""
+    method = contents.learned_method
+    predictions = contents.predictions(method, contents.longest_horizon)
+    chosen = choose_windows(contents)
+    if predictions is None or method is None or not chosen:
+        return missing(
+            "No window was predicted at the longest horizon, so there are no paths to compare."
+        ), []
+    drawn = window_paths(contents, chosen)
+    if not drawn:
+        absent = "The poses or inputs of the predicted windows are not in the log, so no path is drawn."
+        return missing(absent), []
+    timeline = Timeline.of(contents.log)
+    figures = [
+        _figure(contents, window, path, (predictions, timeline)).html()
+        for window, path in sorted(drawn.items(), key=lambda item: item[0].number)
+    ]
+    return _legend(contents, method) + _notes(list(drawn.values())), figures
 
 
 def _legend(contents: Contents, method: str) -> str:
     methods = contents.evaluation.methods
-    ours = stroke_of(method, methods).colour
+    ours, name = stroke_of(method, methods).colour, label(method, contents)
     return legend(
         (
             ("measured", MEASURED, "line"),
-            (f"{PLAIN}: without slip", stroke_of(PLAIN, methods).colour, "dash"),
-            ("predicted by the model", ours, "line"),
-            (f"95 % ellipse of the scored prediction of {method}", ours, "area"),
+            (BASELINE, stroke_of(PLAIN, methods).colour, "dash"),
+            (name, ours, "line"),
+            (f"95 % ellipse of {name}", ours, "area"),
         )
     )
 
@@ -76,34 +103,38 @@ def _notes(drawn: list[WindowPaths]) -> str:
         text = (
             f"{causal} of {len(drawn)} predicted paths use what was known at their start, others at the end."
         )
-    return paragraph(text)
+    return paragraph(text, kind="note")
 
 
-def _figure(contents: Contents, window: ChosenWindow, path: WindowPaths, predictions: Predictions) -> Figure:
-    methods = contents.evaluation.methods
+def _figure(
+    contents: Contents, window: ChosenWindow, path: WindowPaths, known: tuple[Predictions, Timeline]
+) -> Figure:
+    predictions, timeline = known
+    methods, name = contents.evaluation.methods, plain_label(label(predictions.method, contents))
     plain, ours = stroke_of(PLAIN, methods), stroke_of(predictions.method, methods)
     end, measured = predictions.pose[window.row], predictions.measured[window.row]
     traces = [
         *_ellipse(predictions, window.row, ours.colour),
-        _line(path.plain, PLAIN, plain.colour, "dash", 2.0),
+        _line(path.plain, BASELINE, plain.colour, "dash", 2.0),
         _line(path.measured, "measured", MEASURED, "solid", 2.5),
-        _line(path.predicted, "predicted", ours.colour, "solid", 2.0),
-        _arrow(path.plain[-1], f"{PLAIN} end", plain.colour),
+        _line(path.predicted, name, ours.colour, "solid", 2.0),
+        _arrow(path.plain[-1], f"{BASELINE}: end", plain.colour),
         _arrow(measured, "measured end", MEASURED),
-        _arrow(end, f"scored prediction of {plain_label(predictions.method)}", ours.colour),
+        _arrow(end, f"{name}: scored end", ours.colour),
     ]
+    start, end_time = (timeline.seconds(window.run, t) for t in (window.t_start, window.t_end))
     run = f"{contents.log.runs[window.run].name}, " if len(contents.log.runs) > 1 else ""
     return Figure(
         key=f"path-{window.number}",
-        label=f"Measured, plain and predicted path number {window.number}",
-        heading=f"{window.number}: {run}{window.t_start:.1f} s to {window.t_end:.1f} s",
+        label=f"Measured and predicted path number {window.number}",
+        heading=f"{window.number}: {run}{start:.1f} s to {end_time:.1f} s",
         traces=traces,
         layout={
-            "xaxis": axis("forward x [m]", nticks=7),
-            "yaxis": axis("left y [m]", scaleanchor="x", scaleratio=1, nticks=7),
+            "xaxis": axis("forward x [m]", nticks=5),
+            "yaxis": axis("left y [m]", scaleanchor="x", scaleratio=1, nticks=5),
         },
-        height=300,
-        caption=f"End off by {_off(end, measured)}, without slip by {_off(path.plain[-1], measured)}.",
+        height=HEIGHT,
+        caption=f"{_off(end, measured)} off; baseline {_off(path.plain[-1], measured)}",
     )
 
 
@@ -143,7 +174,7 @@ def _off(pose: NDArray[np.float64], measured: NDArray[np.float64]) -> str:
     """Say how far a pose is from the measured one."""
     error = pose - measured
     angle = math.degrees(abs(_core.wrap_angle(float(error[2])))) if np.isfinite(error[2]) else math.nan
-    return f"{number(float(np.hypot(error[0], error[1])), 2)} m and {number(angle, 2)}°"
+    return f"{number(float(np.hypot(error[0], error[1])), 2)} m, {number(angle, 2)}°"
 
 
 def _ellipse(predictions: Predictions, row: int, colour: str) -> list[dict[str, Any]]:

@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 
+from slipwise.number_text import DASH
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.markup import details, escape, paragraph, table
 
@@ -12,8 +14,8 @@ from slipwise.reporting.markup import details, escape, paragraph, table
 class ProvenanceSection:
     """How can these results be made again?"""
 
-    title = "Provenance"
-    explanation = "What is needed to make the same results again: same log, settings and version, same bytes."
+    title = "How to make this again"
+    explanation = "The same log, settings and version give the same bytes, on the same machine and build."
 
     def html(self, contents: Contents) -> str:
         """Return the facts, the logs, the settings and the model file."""
@@ -28,15 +30,20 @@ class ProvenanceSection:
                 "learned from",
                 f"{provenance.learned_seconds:.1f} s of driving, {provenance.learned_windows} windows",
             ),
-            ("scored methods", ", ".join(contents.evaluation.methods) or "none"),
+            ("scored methods", ", ".join(contents.evaluation.methods) or DASH),
         ]
         settings = json.dumps(provenance.settings, indent=2, sort_keys=True, ensure_ascii=False, default=str)
         return (
-            table(("fact", "value"), facts, kind="facts")
+            _listed(facts)
             + _logs(contents)
             + details("Settings", f"<pre>{escape(settings)}</pre>")
             + details("Model file", f"<pre>{escape(model.to_yaml())}</pre>")
         )
+
+
+def _listed(facts: Sequence[tuple[str, str]]) -> str:
+    rows = "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in facts)
+    return f'<dl class="facts">{rows}</dl>'
 
 
 def _logs(contents: Contents) -> str:

@@ -1,50 +1,66 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The learned slip over speed and yaw rate, as surfaces and as maps."""
+"""The learned slip over speed and yaw rate, and where the log holds both."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
 from slipwise import _core
 from slipwise.models.model import Model
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.markup import legend, missing, paragraph
+from slipwise.reporting.figure import Figure
+from slipwise.reporting.markup import details, missing, paragraph
+from slipwise.reporting.sections.coverage import coverage_figure
 from slipwise.reporting.slip_figures import CHANNELS, NODES, SlipGrid, contour_map, turnable_surface
 
 
 class SurfacesSection:
-    """What slip did the model learn?"""
+    """What slip did the model learn, and where?"""
 
-    title = "Learned slip"
+    title = "Learned slip, and the speeds and yaw rates driven"
     explanation = (
-        "The slip rates that the model adds to the commanded motion on level ground, within the speeds and "
-        "yaw rates of the log; red takes away, blue adds, and the grey sheets lie one standard deviation "
-        "above and below."
+        "Rates added to the motion on level ground: red takes away, blue adds. Not known outside the dashed "
+        "box."
     )
 
     def html(self, contents: Contents) -> str:
-        """Return a surface to be turned and a contour map for each channel of slip."""
-        model = contents.calibration.model
-        if not model.motion.slip_size:
-            return missing("The model has no slip terms, so there are no slip surfaces.")
-        speed, yaw_rate = model.content.range.speed, model.content.range.yaw_rate
-        if speed[1] - speed[0] < 1e-6 or yaw_rate[1] - yaw_rate[0] < 1e-6:
-            return missing("The log holds one speed or one yaw rate only, so slip cannot be drawn over both.")
-        grid = _grid(model)
-        basis = model.motion.basis
-        terms = (basis.lon, basis.lat, basis.ang)
-        drawn = [channel for channel in range(len(CHANNELS)) if terms[channel]]
-        surfaces = "".join(turnable_surface(grid, channel).html() for channel in drawn)
-        maps = "".join(contour_map(grid, channel).html() for channel in drawn)
-        names = [name for (name, _, _), given in zip(CHANNELS, terms, strict=True) if not given]
-        absent = (missing(f"The model has no terms for {name} slip.") for name in names)
-        keys = (("± 1 sigma", "#7b8794", "area"),)
-        return (
-            paragraph("Drag to turn a surface, pinch or use the wheel to zoom.", kind="explanation")
-            + legend(keys)
-            + f'<div class="grid">{surfaces}</div><div class="grid">{maps}</div>'
-            + "".join(absent)
+        """Return a map for each channel of slip, the histogram of inputs, and surfaces to be turned."""
+        driven = coverage_figure(contents)
+        name = "wheel speeds" if contents.evaluation.input == "wheel" else "commands"
+        absent = [] if driven else [f"The log has no {name}, so there is no plane of inputs to cover."]
+        maps, surfaces, sentences = _slip(contents.calibration.model)
+        shown = [*maps, *([driven] if driven else [])]
+        sheets = paragraph(
+            "Drag to turn a surface, pinch or use the wheel to zoom. The grey sheets lie one standard "
+            "deviation above and below.",
+            kind="explanation",
         )
+        folded = details("Surfaces to be turned", sheets + _side_by_side(surfaces)) if surfaces else ""
+        return _side_by_side(shown) + "".join(missing(text) for text in (*sentences, *absent)) + folded
+
+
+def _side_by_side(figures: Sequence[Figure]) -> str:
+    return f'<div class="grid">{"".join(figure.html() for figure in figures)}</div>' if figures else ""
+
+
+def _slip(model: Model) -> tuple[list[Figure], list[Figure], list[str]]:
+    """Return maps and surfaces of the channels that have slip terms, and sentences about the others."""
+    if not model.motion.slip_size:
+        return [], [], ["The model has no slip terms, so there are no maps of slip."]
+    speed, yaw_rate = model.content.range.speed, model.content.range.yaw_rate
+    if speed[1] - speed[0] < 1e-6 or yaw_rate[1] - yaw_rate[0] < 1e-6:
+        return [], [], ["The log holds one speed or one yaw rate only, so slip cannot be drawn over both."]
+    grid, basis = _grid(model), model.motion.basis
+    terms = (basis.lon, basis.lat, basis.ang)
+    drawn = [channel for channel in range(len(CHANNELS)) if terms[channel]]
+    names = [name for (name, _, _), given in zip(CHANNELS, terms, strict=True) if not given]
+    return (
+        [contour_map(grid, channel) for channel in drawn],
+        [turnable_surface(grid, channel) for channel in drawn],
+        [f"The model has no terms for {name} slip." for name in names],
+    )
 
 
 def _grid(model: Model) -> SlipGrid:

@@ -30,7 +30,7 @@ def test_parameter_that_explains_most_comes_first_with_its_band() -> None:
 
 def test_weights_of_all_bases_are_stacked() -> None:
     figure = figures_of(ConvergenceSection().html(contents_of(make_results())))["figure-weights"]
-    assert [trace["name"] for trace in figure["data"]] == ["none", "edd-2", "drive-5"]
+    assert [trace["name"] for trace in figure["data"]] == ["no slip", "edd-2", "drive-5"]
     assert np.allclose(np.sum([trace["y"] for trace in figure["data"]], axis=0), 1.0, atol=1e-5)
 
 
@@ -79,13 +79,13 @@ def test_lag_is_shown_in_seconds() -> None:
     html = ConvergenceSection().html(contents_of(learned))
     assert "lag_v" in html
     assert np.allclose(figures_of(html)["figure-parameter-3"]["data"][1]["y"], 0.8)
-    assert "In the model: 0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
+    assert "0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
 
 
 def test_batch_fit_shows_the_values_and_says_why_no_course() -> None:
     text = text_of(ConvergenceSection().html(contents_of(without_history(make_results()))))
     assert "fitted to the whole log at once" in text
-    assert "lon.V m/s per V −0.04900 0.0040 0.30 0.013 yes" in text
+    assert "lon.V −0.049 ± 0.004 m/s per V yes" in text
 
 
 def test_smoothed_parameters_have_figures_of_their_own_with_or_without_a_history() -> None:
@@ -141,21 +141,23 @@ def _without_slip(results: Results) -> Results:
     return with_model(results, slip=Slip(basis="none", lon=[], lat=[], ang=[]), parameters=[], covariance=[])
 
 
-def test_changes_of_ground_are_told_and_marked() -> None:
+def test_changes_of_terrain_are_said_in_times_from_the_start_and_marked() -> None:
     results = make_results()
     history = results.calibration.history
     assert history is not None
     html = ConvergenceSection().html(contents_of(results))
-    assert "The ground seems to change 2 times" in text_of(html)
+    assert "The terrain seems to change 2 times, marked by an orange line: at 52.5 s, 55.0 s." in text_of(
+        html
+    )
     shapes = figures_of(html)["figure-parameter-1"]["layout"]["shapes"]
     marks = [shape["x0"] for shape in shapes if shape["line"]["color"] == ALARM_COLOUR]
     assert np.allclose(marks, history.t[history.alarm] - history.t[0] + 2.5)
 
 
-def test_one_ground_is_told_too() -> None:
+def test_one_terrain_is_said_too() -> None:
     results = make_results()
     history = results.calibration.history
     assert history is not None
     quiet = replace(history, alarm=np.zeros_like(history.alarm))
     same = replace(results, calibration=replace(results.calibration, history=quiet))
-    assert "No change of ground was found." in text_of(ConvergenceSection().html(contents_of(same)))
+    assert "No change of terrain was found." in text_of(ConvergenceSection().html(contents_of(same)))

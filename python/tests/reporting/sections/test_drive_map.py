@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The section of the map."""
+"""The maps of the drives."""
 
 from __future__ import annotations
 
@@ -10,18 +10,24 @@ from reporting.page_parts import contents_of, figures_of
 from reporting.synthetic_results import make_results
 
 from slipwise.logs.log import Log, empty_poses
-from slipwise.reporting.sections.drive_map import DriveMapSection
+from slipwise.reporting.chosen_windows import MOST_WINDOWS
+from slipwise.reporting.sections.drive_map import _SIDES, _free_sides
+from slipwise.reporting.sections.paths import PathsSection
+
+
+def _maps(html: str) -> list[str]:
+    return [name for name in figures_of(html) if name.startswith("figure-map")]
 
 
 def test_map_has_equal_axes_and_starts_at_the_first_pose() -> None:
-    figure = figures_of(DriveMapSection().html(contents_of(make_results())))["figure-map-1"]
+    figure = figures_of(PathsSection().html(contents_of(make_results())))["figure-map-1"]
     assert figure["layout"]["yaxis"]["scaleanchor"] == "x"
     assert (figure["data"][0]["x"][0], figure["data"][0]["y"][0]) == (0, 0)
 
 
 def test_starts_of_the_shown_paths_are_marked_by_their_numbers() -> None:
-    figure = figures_of(DriveMapSection().html(contents_of(make_results())))["figure-map-1"]
-    assert figure["data"][1]["text"] == [str(n) for n in range(1, 13)]
+    figure = figures_of(PathsSection().html(contents_of(make_results())))["figure-map-1"]
+    assert figure["data"][1]["text"] == [str(n) for n in range(1, MOST_WINDOWS + 1)]
 
 
 def test_every_run_and_frame_has_a_map_of_its_own() -> None:
@@ -29,14 +35,14 @@ def test_every_run_and_frame_has_a_map_of_its_own() -> None:
     first = results.log.runs[0]
     frame = np.repeat(np.array([0, 1]), len(first.poses) // 2)
     split = replace(first, poses=replace(first.poses, frame=frame))
-    html = DriveMapSection().html(contents_of(replace(results, log=Log(runs=(split, results.log.runs[1])))))
-    assert list(figures_of(html)) == ["figure-map-1", "figure-map-2", "figure-map-3"]
+    html = PathsSection().html(contents_of(replace(results, log=Log(runs=(split, results.log.runs[1])))))
+    assert _maps(html) == ["figure-map-1", "figure-map-2", "figure-map-3"]
     assert "field 0, frame 1" in html
 
 
 def test_many_drives_show_the_longest_and_say_so() -> None:
-    html = DriveMapSection().html(contents_of(make_results(runs=8)))
-    assert len(figures_of(html)) == 6
+    html = PathsSection().html(contents_of(make_results(runs=8)))
+    assert len(_maps(html)) == 6
     assert "The 6 longest of 8 drives are shown" in html
 
 
@@ -45,7 +51,7 @@ def test_far_away_poses_keep_their_shape() -> None:
     run = results.log.runs[0]
     far = replace(run, poses=replace(run.poses, x=run.poses.x + 5.4e6))
     near, moved = (
-        figures_of(DriveMapSection().html(contents_of(replace(results, log=Log(runs=(r,))))))["figure-map-1"]
+        figures_of(PathsSection().html(contents_of(replace(results, log=Log(runs=(r,))))))["figure-map-1"]
         for r in (run, far)
     )
     assert np.allclose(near["data"][0]["x"], moved["data"][0]["x"], atol=1e-4)
@@ -54,4 +60,20 @@ def test_far_away_poses_keep_their_shape() -> None:
 def test_log_without_poses_gives_a_sentence() -> None:
     results = make_results()
     bare = replace(results, log=Log(runs=(replace(results.log.runs[0], poses=empty_poses()),)))
-    assert "no measured poses" in DriveMapSection().html(contents_of(bare))
+    assert "no measured poses" in PathsSection().html(contents_of(bare))
+
+
+def test_times_of_a_later_run_count_from_the_start_of_the_log() -> None:
+    results = make_results(runs=2)
+    figures = figures_of(PathsSection().html(contents_of(results)))
+    times = sorted(figures[name]["data"][0]["customdata"][0] for name in ("figure-map-1", "figure-map-2"))
+    assert np.allclose(times, [0.0, 119.9], atol=1e-3)
+
+
+def test_numbers_of_starts_keep_clear_of_each_other() -> None:
+    points = np.array([[0.0, 0.0], [0.06, 0.06], [-0.06, 0.06], [0.06, -0.06], [10.0, 0.0]])
+    sides = _free_sides(points, 1.0)
+    assert sides[0] == "bottom left"
+    places = points + 0.06 * np.array([_SIDES[side] for side in sides])
+    apart = np.linalg.norm(places[:, None] - places[None], axis=2) + np.eye(len(places))
+    assert apart.min() > 0.05

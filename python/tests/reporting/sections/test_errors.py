@@ -11,12 +11,18 @@ from reporting.synthetic_results import make_results
 
 from slipwise.reporting.sections.errors import ErrorsSection
 
+NAMES = ["kinematic baseline", "edd-2", "slipwise"]
+
 
 def test_plain_simple_and_learned_errors_are_drawn_over_time() -> None:
     contents = contents_of(make_results())
     figures = figures_of(ErrorsSection().html(contents))
     assert list(figures) == ["figure-error-position", "figure-error-heading"]
-    assert [trace["name"] for trace in figures["figure-error-heading"]["data"]] == ["none", "edd-2", "auto"]
+    assert [trace["name"] for trace in figures["figure-error-heading"]["data"]] == [
+        "kinematic baseline",
+        "edd-2",
+        "slipwise",
+    ]
     auto = contents.predictions("auto", 5.0)
     assert auto is not None
     shown = figures["figure-error-heading"]["data"][2]["y"]

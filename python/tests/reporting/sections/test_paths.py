@@ -9,16 +9,21 @@ import numpy as np
 from reporting.page_parts import contents_of, figures_of, text_of
 from reporting.synthetic_results import make_results, without_history
 
+from slipwise.logs.log import Run
+from slipwise.reporting.chosen_windows import MOST_WINDOWS, choose_windows
 from slipwise.reporting.sections.paths import PathsSection
+from slipwise.reporting.timeline import Timeline
+
+NAMES = ["kinematic baseline", "measured", "slipwise"]
 
 
 def test_each_chosen_window_shows_ellipse_plain_measured_and_predicted() -> None:
     html = PathsSection().html(contents_of(make_results()))
-    figures = figures_of(html)
-    assert len(figures) == 12
+    figures = {name: f for name, f in figures_of(html).items() if name.startswith("figure-path")}
+    assert len(figures) == MOST_WINDOWS
     for figure in figures.values():
         assert figure["data"][0]["fill"] == "toself"
-        assert [trace["name"] for trace in figure["data"][1:4]] == ["none", "measured", "predicted"]
+        assert [trace["name"] for trace in figure["data"][1:4]] == NAMES
     assert "nothing measured later is in it" in text_of(html)
 
 
@@ -46,14 +51,44 @@ def test_covariance_that_is_none_leaves_the_ellipse_out() -> None:
     html = PathsSection().html(
         contents_of(replace(results, evaluation=replace(results.evaluation, predictions=parts)))
     )
-    assert [trace["name"] for trace in figures_of(html)["figure-path-1"]["data"][:3]] == [
-        "none",
-        "measured",
-        "predicted",
-    ]
+    assert [trace["name"] for trace in figures_of(html)["figure-path-1"]["data"][:3]] == NAMES
 
 
 def test_evaluation_without_predictions_gives_a_sentence() -> None:
     results = make_results()
     bare = replace(results, evaluation=replace(results.evaluation, predictions=()))
     assert "no paths to compare" in PathsSection().html(contents_of(bare))
+
+
+def test_headings_give_times_from_the_start_of_the_log() -> None:
+    results = make_results(runs=2)
+    epoch = 1.7e9  # s, as in the stamps of a bag
+
+    def later(run: Run) -> Run:
+        assert run.commands is not None
+        commands = replace(run.commands, t=run.commands.t + epoch)
+        return replace(run, commands=commands, poses=replace(run.poses, t=run.poses.t + epoch))
+
+    parts = tuple(
+        replace(p, t_start=p.t_start + epoch, t_end=p.t_end + epoch) for p in results.evaluation.predictions
+    )
+    stamped = replace(
+        without_history(results),
+        log=replace(results.log, runs=tuple(map(later, results.log.runs))),
+        evaluation=replace(results.evaluation, predictions=parts),
+    )
+    contents = contents_of(stamped)
+    text = text_of(PathsSection().html(contents))
+    assert "17000" not in text
+    timeline = Timeline.of(stamped.log)
+    for window in choose_windows(contents):
+        start = timeline.seconds(window.run, window.t_start)
+        assert 0.0 <= start < 240.0
+        assert f"{window.number}: field {window.run}, {start:.1f} s to {start + 5.0:.1f} s" in text
+
+
+def test_most_various_paths_are_shown_at_once_whatever_their_run() -> None:
+    html = PathsSection().html(contents_of(make_results(runs=3)))
+    shown, folded = html.split("<details>")
+    assert [n for n in figures_of(shown) if "path" in n] == [f"figure-path-{n}" for n in (1, 2, 3)]
+    assert "6 more paths and 2 more maps" in folded

@@ -21,25 +21,34 @@ def _methods(html: str) -> list[str]:
 
 
 def test_main_methods_come_first_and_the_others_are_folded_away() -> None:
-    shown, folded = _html().split("<details>")[:2]
-    assert _methods(shown) == ["none", "vendor", "edd-2", "auto"]
-    assert _methods(folded.split("</details>")[0]) == ["odd-even-10", "batch"]
+    shown, folded = _html().split("<details>")
+    main = ["kinematic baseline", "vendor multiplier", "edd-2", "slipwise"]
+    assert _methods(shown) == main
+    assert _methods(folded) == 2 * [*main, "odd-even-10", "batch"]
+    assert "All figures, and 2 other methods" in folded
+
+
+def test_each_method_is_explained_where_it_first_stands() -> None:
+    text = text_of(_html().split("<details>")[0])
+    assert "kinematic baseline the robot follows the commands at once: no slip, lag or delay 1." in text
+    assert "edd-2 two fitted factors, of speed and of yaw rate, with lag and delay 0." in text
 
 
 def test_longest_horizon_comes_first() -> None:
-    assert re.findall(r"<h3>(After .*?) \(", _html()) == ["After 5 s", "After 2 s"]
+    assert re.findall(r">(after .*?) \(", _html()) == ["after 5 s", "after 2 s"]
+    assert re.findall(r"<td>(\d s)</td>", _html()) == 6 * ["5 s"] + 6 * ["2 s"]
 
 
 def test_method_that_saw_the_windows_is_marked() -> None:
     batch = _html().split(">batch<")[1].split("</tr>")[0]
     assert "not causal" in text_of(batch)
-    assert _html().count("not causal") == 2
+    assert _html().count("not causal") == 2  # at both horizons
 
 
-def test_in_sample_column_is_named_as_too_optimistic() -> None:
+def test_in_sample_column_stands_once_and_is_named_as_too_optimistic() -> None:
     text = text_of(_html())
-    assert "thesis-style, in-sample: too optimistic" in text
-    assert "0.0123" in text
+    assert text.count("in-sample: too optimistic") == 1
+    assert "0.0123 m, 0.573°" in text
 
 
 def test_table_shows_nis_with_its_band_and_the_coverage() -> None:

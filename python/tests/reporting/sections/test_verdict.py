@@ -10,6 +10,7 @@ from reporting.page_parts import contents_of, text_of
 from reporting.synthetic_results import make_results, with_model, with_verdict
 
 from slipwise.calibration.result import Verdict
+from slipwise.models.summary import summarise
 from slipwise.reporting.sections.verdict import VerdictSection
 
 
@@ -18,6 +19,7 @@ from slipwise.reporting.sections.verdict import VerdictSection
     [
         (Verdict(True, "Fine."), "good"),
         (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "partly"),
+        (Verdict(True, "Fine.", reservations=("Its stated uncertainty is too small.",)), "reserved"),
         (Verdict(False, "No.", ("lat.w",)), "bad"),
     ],
 )
@@ -29,8 +31,8 @@ def test_colour_follows_the_verdict(verdict: Verdict, state: str) -> None:
 def test_verdict_names_what_is_not_determined_and_the_drive_that_would() -> None:
     verdict = Verdict(True, "Fine.", ("lat.w", "ang.V"), ("Turn on the spot.",))
     text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
-    assert "This log does not determine: lat.w, ang.V." in text
-    assert "What to do: Turn on the spot." in text
+    assert "Not identifiable from this log: lat.w, ang.V." in text
+    assert "What to do Turn on the spot. Check it on another day" in text
 
 
 def test_errors_stand_beside_those_of_the_plain_model() -> None:
@@ -38,10 +40,10 @@ def test_errors_stand_beside_those_of_the_plain_model() -> None:
     contents = contents_of(results)
     plain, auto = (results.evaluation.score(name, 5.0) for name in ("none", "auto"))
     text = text_of(VerdictSection().html(contents))
-    less = round(100 * (1 - auto.position.mean / plain.position.mean))
+    times = round(plain.position.mean / auto.position.mean)
     assert (
-        f"{auto.position.mean:.4f} m instead of {plain.position.mean:.2f} m without slip: {less} % less"
-        in text
+        f"Position error after 5 s {auto.position.mean:.4f} m "
+        f"kinematic baseline: {plain.position.mean:.2f} m, {times} times as much" in text
     )
 
 
@@ -53,7 +55,27 @@ def test_errors_are_those_of_the_method_that_was_calibrated() -> None:
     contents = contents_of(with_model(results, provenance=provenance))
     assert contents.learned_method == "odd-even-10"
     error = results.evaluation.score("odd-even-10", 5.0).position.mean
-    assert f"{error:.4f} m instead of" in text_of(VerdictSection().html(contents))
+    assert f"Position error after 5 s {error:.4f} m" in text_of(VerdictSection().html(contents))
+
+
+def test_what_was_learned_is_said_in_the_words_of_the_summary() -> None:
+    results = make_results()
+    text = text_of(VerdictSection().html(contents_of(results)))
+    sentences = summarise(results.calibration.model).sentences
+    assert sentences
+    assert all(sentence in text for sentence in sentences)
+
+
+def test_bad_model_is_not_to_be_used_or_exported() -> None:
+    verdict = Verdict(False, "No.", (), ("Record wheel speeds.",))
+    text = text_of(VerdictSection().html(contents_of(with_verdict(make_results(), verdict))))
+    assert "What to do Do not use this model. Record wheel speeds." in text
+    assert "slipwise export" not in text
+
+
+def test_truth_of_the_stated_uncertainty_is_answered() -> None:
+    text = text_of(VerdictSection().html(contents_of(make_results())))
+    assert "Is the stated uncertainty true? Yes" in text
 
 
 def test_verdict_without_scores_is_still_a_verdict() -> None:
@@ -61,4 +83,4 @@ def test_verdict_without_scores_is_still_a_verdict() -> None:
     bare = replace(results, evaluation=replace(results.evaluation, scores=()))
     text = text_of(VerdictSection().html(contents_of(bare)))
     assert "The learned model misses by 0.1 m after 5 s." in text
-    assert "There are no held-out scores" in text
+    assert "There are no held-out errors beside those of the kinematic baseline." in text

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.reporting.ellipse import ellipse
+from slipwise.ellipse import ellipse
 from slipwise.student import ellipse_squared
 
 

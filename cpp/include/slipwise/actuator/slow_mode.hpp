@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which part of a measured speed a channel's slow mode holds (derivations.md, section 4).
+#pragma once
+
+#include <algorithm>
+
+#include "slipwise/actuator/channel_response.hpp"
+
+namespace slipwise {
+
+/// A channel where its whole speed was measured. `T` is a number, or one with derivatives.
+template <typename T>
+struct MeasuredChannel {
+  T left;      ///< of the measured speed, what the fast mode does not explain
+  T modelled;  ///< the slow mode, as the inputs alone drive it
+  T settled;   ///< what the slow mode settles at under the input that acts now
+  T carried;   ///< the measured speed without what the fast mode settles at
+};
+
+inline double value_of(double number) { return number; }
+
+/// The slow mode holds what is left, within the range of the other three: so a constant input carries the speed from
+/// the measured one to its own, and not beyond.
+template <typename T>
+T slow_mode(const MeasuredChannel<T>& channel) {
+  const auto by_value = [](const T& a, const T& b) { return value_of(a) < value_of(b); };
+  const T low = std::min({channel.modelled, channel.settled, channel.carried}, by_value);
+  const T high = std::max({channel.modelled, channel.settled, channel.carried}, by_value);
+  return std::clamp(channel.left, low, high, by_value);
+}
+
+}  // namespace slipwise

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What is fuzzed: each reader, called with a file of given bytes; all but a plain refusal is a finding."""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from slipwise.errors import SlipwiseError
+from slipwise.logs import LogOptions, open_log, save_log
+
+OPTIONS = LogOptions(most_unpacked=16.0)
+_ENDINGS = {
+    "rosbag1": ".bag",
+    "calibrate": ".csv",
+    "model": ".yaml",
+    "map": ".yaml",
+    "image": ".pgm",
+    "settings": ".toml",
+}
+_CONVERTED = 7  # every so many logs are written again too
+
+
+class Target:
+    """A reader with a file to read from, in memory where the system allows."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        shared = Path("/dev/shm")
+        self._folder = tempfile.TemporaryDirectory(dir=shared if shared.is_dir() else None)
+        self._path = Path(self._folder.name) / f"input{_ENDINGS.get(name, '.' + name)}"
+        self._read = _READERS.get(name, _read_log)
+        warnings.simplefilter("error", RuntimeWarning)
+        if name == "map":
+            (self._path.parent / "map.pgm").write_bytes(b"P5\n6 4\n255\n" + bytes([254] * 24))
+
+    def run(self, data: bytes) -> str:
+        """Read the bytes; return what a plain refusal said, or nothing.
+
+        Raises:
+            Exception: anything that is not a plain refusal of one line: a finding.
+        """
+        self._path.write_bytes(data)
+        try:
+            self._read(self._path)
+        except SlipwiseError as error:
+            line = str(error)
+            if "\n" in line or "Traceback" in line:
+                raise AssertionError("a refusal is one line") from error
+            return line
+        finally:
+            left = {item.name for item in self._path.parent.iterdir()} - {"map.pgm", self._path.name}
+            if left:
+                raise AssertionError(f"files are left behind: {left}")
+        return ""
+
+    def run_unread(self, data: bytes) -> None:
+        """Run without a result, as libFuzzer wants it."""
+        self.run(data)
+
+
+def _read_log(path: Path) -> None:
+    log = open_log(path, options=OPTIONS)
+    for run in log.runs:
+        assert np.isfinite(run.poses.x).all()
+    if sum(len(run.poses) for run in log.runs) % _CONVERTED == 1:
+        written = path.with_name("written.mcap")
+        try:
+            save_log(log, written)
+            open_log(written)
+        finally:
+            written.unlink(missing_ok=True)
+
+
+def _learn(path: Path) -> None:
+    from slipwise.calibration import calibrate, make_settings
+
+    result = calibrate(open_log(path, options=OPTIONS), settings=make_settings({"basis": "edd-2"}))
+    assert np.isfinite(result.model.mean).all()
+
+
+def _read_model(path: Path) -> None:
+    from slipwise.models import load_model
+    from slipwise.prediction import predict
+
+    model = load_model(path)
+    found = predict(model, [(0.0, 1.0, 0.3)], horizon=1.0)
+    assert np.isfinite(found.poses).all()
+
+
+def _read_map(path: Path) -> None:
+    from slipwise.planning import load_map
+
+    load_map(path, most_cells=1_000_000).clearance_at([[0.0, 0.0], [1e9, -1e9]])
+
+
+def _read_image(path: Path) -> None:
+    from slipwise.planning.pgm import read_pgm
+
+    assert np.isfinite(read_pgm(path, most_pixels=1_000_000)).all()
+
+
+def _read_settings(path: Path) -> None:
+    from slipwise.calibration import load_settings
+
+    settings = load_settings(path)
+    settings.bases()
+    settings.filter_settings()
+
+
+_READERS: dict[str, Callable[[Path], None]] = {
+    "calibrate": _learn,
+    "model": _read_model,
+    "map": _read_map,
+    "image": _read_image,
+    "settings": _read_settings,
+}

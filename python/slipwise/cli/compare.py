@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise compare`: what differs between two models, and which predicts a log better."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from slipwise.cli.options import Json, takes_log_options
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from slipwise.cli.output import Output
+    from slipwise.evaluation import Evaluation
+    from slipwise.evaluation.head_to_head import HeadToHead
+    from slipwise.logs import LogOptions
+    from slipwise.models import Model
+    from slipwise.models.difference import Difference
+
+
+@takes_log_options
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A.yaml", show_default=False, help="A model file.")],
+    second: Annotated[Path, typer.Argument(metavar="B.yaml", show_default=False, help="Another one.")],
+    log_options: LogOptions,
+    logs: Annotated[
+        list[Path] | None,
+        typer.Argument(metavar="[LOG...]", show_default=False, help="Logs to predict with both."),
+    ] = None,
+    json: Json = None,
+) -> int:
+    """Say what differs between two models beyond their uncertainty, and which predicts a log better.
+
+    Numbers differ where they lie three standard deviations of both together apart. Which model predicts
+    better is decided on the second half of the log's segments; give a log that neither has learned from.
+
+    \b
+    Examples:
+      slipwise compare monday.yaml tuesday.yaml
+      slipwise compare grass.yaml asphalt.yaml wednesday.mcap
+    """  # noqa: D301
+    from slipwise.cli.model_names import named_models
+    from slipwise.cli.output import Output
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.models.difference import differences
+
+    out = Output(json)
+    refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), log_options.poses))
+    models = named_models([first, second])
+    rows = differences(*models.values())
+    evaluation = _predicted(models, logs, log_options) if logs else None
+    out.document(_document(models, rows, evaluation))
+    _show_differences(out, models, rows)
+    if evaluation is not None:
+        _show_predictions(out, evaluation)
+    return 0
+
+
+def _predicted(models: dict[str, Model], logs: Sequence[Path], options: LogOptions) -> Evaluation:
+    from slipwise.cli.progress import progress_bar
+    from slipwise.evaluation import EvaluationOptions, evaluate
+    from slipwise.logs import open_log
+
+    with progress_bar("reading") as update:
+        return evaluate(
+            open_log(*logs, options=options),
+            options=EvaluationOptions(methods=("none", *models), model=models),
+            progress=lambda name, share: update(f"method {name}", share),
+        )
+
+
+def _document(
+    models: dict[str, Model], rows: Sequence[Difference], evaluation: Evaluation | None
+) -> dict[str, Any]:
+    from slipwise.cli.document import evaluation_part, head
+    from slipwise.evaluation.head_to_head import head_to_head
+    from slipwise.models.difference import same_logs, same_terms
+
+    document = head("compare") | {
+        "exit_code": 0,
+        "models": list(models),
+        "same_logs": same_logs(*models.values()),
+        "same_terms": same_terms(*models.values()),
+        "differences": [asdict(row) | {"z": row.z, "different": row.different} for row in rows],
+    }
+    if evaluation is None:
+        return document
+    match = head_to_head(evaluation, *models)
+    return document | {"predictions": asdict(match) | {"better": match.better}} | evaluation_part(evaluation)
+
+
+def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Difference]) -> None:
+    from slipwise.cli.output import Column
+    from slipwise.models.difference import DIFFERENT, same_logs, same_terms
+
+    both = [row for row in rows if row.first is not None and row.second is not None]
+    different = [row for row in both if row.different]
+    agree = (
+        f"{len(both) - len(different)} of {len(both)} numbers agree within {DIFFERENT:g} standard deviations"
+    )
+    out.line(f"{agree}." if different else f"Nothing differs: {agree}.")
+    shown = sorted(different, key=lambda row: -abs(row.z)) + [row for row in rows if row not in both]
+    cells = [(row.name, _cell(row.first), _cell(row.second), row.unit, _z_text(row.z)) for row in shown]
+    if cells:
+        heads = [Column("number", whole=True), *(Column(name, True) for name in models)]
+        out.table("What differs", (*heads, Column("unit"), Column("z", True, whole=True)), cells)
+    if not same_terms(*models.values()):
+        out.line("The models have different slip terms: only gains, times and limits are compared.")
+    if same_logs(*models.values()):
+        out.line(
+            "Both have learned from the same log: their errors are alike, and z is smaller than it says."
+        )
+
+
+def _show_predictions(out: Output, evaluation: Evaluation) -> None:
+    from slipwise.cli.tables import show_left_out, show_notes, show_scores
+
+    show_notes(out, evaluation.notes)
+    show_left_out(out, evaluation.left_out)
+    show_scores(out, evaluation)
+    for sentence in comparison_sentences(evaluation):
+        out.line(sentence)
+
+
+def comparison_sentences(evaluation: Evaluation) -> list[str]:
+    """Say for each further model file whether it predicts better than the first."""
+    from slipwise.evaluation.head_to_head import head_to_head
+
+    first, *others = evaluation.models
+    sentences = [_sentence(head_to_head(evaluation, first, other)) for other in others]
+    seen = [name for name in evaluation.models if not evaluation.score(name, max(evaluation.horizons)).causal]
+    if seen:
+        sentences.append(f"{' and '.join(seen)} learned from this very log: compare on another drive.")
+    return sentences
+
+
+def _sentence(match: HeadToHead) -> str:
+    winner = "Neither predicts clearly better" if match.better is None else f"{match.better} predicts better"
+    return (
+        f"{winner}: after {match.horizon:g} s {match.second} misses by {_ratio(match.position)} times what "
+        f"{match.first} does in position, and {_ratio(match.heading)} times in heading "
+        f"({match.windows} held-out segments, 95 % intervals)."
+    )
+
+
+def _ratio(ratio: tuple[float, float, float]) -> str:
+    from slipwise.number_text import number_text
+
+    value, low, high = (number_text(part, 2) for part in ratio)
+    return f"{value} ({low} to {high})"
+
+
+def _cell(estimate: tuple[float, float] | None) -> str:
+    from slipwise.number_text import DASH, estimate_text
+
+    return DASH if estimate is None else estimate_text(*estimate)
+
+
+def _z_text(z: float) -> str:
+    import math
+
+    from slipwise.number_text import DASH
+
+    return f"{z:+.1f}" if math.isfinite(z) else DASH if math.isnan(z) else f"{z:+}"

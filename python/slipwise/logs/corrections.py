@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a user knows to be wrong in a log is put right: scales and signs of inputs, the heading of poses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from slipwise.logs.log import Inputs, Log, Poses
+from slipwise.logs.motion_windows import wrapped
+from slipwise.logs.options import LogOptions
+
+_AS_IT_IS = (1.0, 1.0)
+
+
+def scaled_inputs(log: Log, options: LogOptions) -> Log:
+    """Return the log with the scales of the options applied to its inputs; each is noted."""
+    given = (("commands", options.command_scale), ("wheels", options.wheel_scale))
+    notes = [
+        f"{name}: speed times {factors[0]:g}, yaw rate times {factors[1]:g}, as given"
+        for name, factors in given
+        if factors != _AS_IT_IS
+    ]
+    if not notes:
+        return log
+    runs = tuple(
+        replace(
+            run,
+            commands=_scaled(run.commands, options.command_scale),
+            wheels=_scaled(run.wheels, options.wheel_scale),
+        )
+        for run in log.runs
+    )
+    return replace(log, runs=runs, notes=(*log.notes, *notes))
+
+
+def turned_poses(log: Log, options: LogOptions) -> Log:
+    """Return the log with its poses turned as the options say, which is noted."""
+    offset = options.pose_yaw_offset
+    if offset == 0.0:
+        return log
+    runs = tuple(replace(run, poses=_turned(run.poses, offset)) for run in log.runs)
+    return replace(
+        log, runs=runs, notes=(*log.notes, f"poses: {offset:.6g} rad added to every heading, as given")
+    )
+
+
+def _scaled(inputs: Inputs | None, factors: tuple[float, float]) -> Inputs | None:
+    if inputs is None or factors == _AS_IT_IS:
+        return inputs
+    speed, yaw_rate = factors
+    return replace(inputs, v=inputs.v * speed, vy=inputs.vy * speed, omega=inputs.omega * yaw_rate)
+
+
+def _turned(poses: Poses, offset: float) -> Poses:
+    """Poses of the robot from those of a sensor that is turned on it; roll and pitch are turned with it."""
+    yaw = wrapped(poses.yaw + offset)
+    if poses.roll is None or poses.pitch is None:
+        return replace(poses, yaw=yaw)
+    down_x, down_y = np.sin(poses.pitch), -np.cos(poses.pitch) * np.sin(poses.roll)
+    turned_x = np.cos(offset) * down_x + np.sin(offset) * down_y
+    turned_y = np.cos(offset) * down_y - np.sin(offset) * down_x
+    roll = np.arctan2(-turned_y, np.cos(poses.pitch) * np.cos(poses.roll))
+    return replace(poses, yaw=yaw, roll=roll, pitch=np.arcsin(np.clip(turned_x, -1.0, 1.0)))

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What differs between two models beyond the uncertainty that they state, in physical units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from slipwise.errors import ModelError
+from slipwise.models.model import Model
+from slipwise.models.parameter_table import PhysicalParameter, known, physical_parameters
+from slipwise.models.slip_words import Gain, slip_gains
+
+#: Standard deviations of a difference from which on two models differ.
+DIFFERENT = 3.0
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One number in two models; None where a model does not have it."""
+
+    name: str
+    unit: str
+    first: tuple[float, float] | None  # value and standard deviation
+    second: tuple[float, float] | None
+
+    @property
+    def z(self) -> float:
+        """Second minus first, in standard deviations of both together; NaN where one is missing."""
+        if self.first is None or self.second is None:
+            return math.nan
+        change, std = self.second[0] - self.first[0], math.hypot(self.first[1], self.second[1])
+        if std == 0.0:
+            return 0.0 if change == 0.0 else math.copysign(math.inf, change)
+        return change / std
+
+    @property
+    def different(self) -> bool:
+        """Whether both have it, and it differs beyond the stated uncertainty."""
+        return abs(self.z) >= DIFFERENT
+
+
+def differences(first: Model, second: Model) -> tuple[Difference, ...]:
+    """Compare gains of the body, parameters and limits.
+
+    Gains can be compared whatever the bases are. Slip terms are compared where both have the same ones,
+    since a term means something else beside others.
+
+    Raises:
+        ModelError: one was learned from commands, the other from wheel speeds.
+    """
+    if first.content.input != second.content.input:
+        raise ModelError(
+            f"one model was learned from {first.content.input}s, the other from {second.content.input}s",
+            advice="compare models that were learned from the same input",
+        )
+    rows = [_paired(*gains) for gains in zip(_gains(first), _gains(second), strict=True)]
+    tables = [{p.name: p for p in _comparable(model, first, second)} for model in (first, second)]
+    for name in dict.fromkeys((*tables[0], *tables[1])):
+        one, other = (table.get(name) for table in tables)
+        unit = (one or other or tables[0][name]).unit
+        rows.append(Difference(name, unit, _estimate(one), _estimate(other)))
+    return tuple(row for row in rows if row.first is not None or row.second is not None)
+
+
+def same_logs(first: Model, second: Model) -> bool:
+    """Whether both have learned from one log: then their errors are alike, and differences look smaller."""
+    hashes = [{log.sha256 for log in model.content.provenance.logs} for model in (first, second)]
+    return bool(hashes[0] & hashes[1])
+
+
+def same_terms(first: Model, second: Model) -> bool:
+    """Whether both have the same slip terms."""
+    slips = [model.content.slip for model in (first, second)]
+    return all(getattr(slips[0], name) == getattr(slips[1], name) for name in ("lon", "lat", "ang"))
+
+
+def _comparable(model: Model, first: Model, second: Model) -> tuple[PhysicalParameter, ...]:
+    parameters = physical_parameters(model)
+    return parameters if same_terms(first, second) else parameters[model.motion.slip_size :]
+
+
+def _gains(model: Model) -> list[tuple[str, Gain]]:
+    gains = slip_gains(model)
+    return [
+        ("speed gain", gains.speed),
+        ("yaw-rate gain", gains.yaw_rate),
+        ("separation multiplier", gains.separation),
+    ]
+
+
+def _paired(first: tuple[str, Gain], second: tuple[str, Gain]) -> Difference:
+    one, other = ((g.value, g.std) if known(g.value, g.std) else None for _, g in (first, second))
+    return Difference(first[0], "-", one, other)
+
+
+def _estimate(parameter: PhysicalParameter | None) -> tuple[float, float] | None:
+    return None if parameter is None else (parameter.value, parameter.std)

@@ -1,0 +1,349 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments with which every function of the compiled core works; a new binding may need a line here."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from bindings.stub_calls import Bound, bound_functions
+
+from slipwise import _core
+
+SIZE = 3  # parameters of the model below: two of slip, and the clock offset
+ROWS = 60
+T = np.arange(ROWS) * 0.1
+
+
+def _model() -> _core.MotionModel:
+    return _core.MotionModel(_core.named_basis("edd-2"), False, True)
+
+
+def _inputs() -> _core.InputTrack:
+    return _core.InputTrack(T, np.sin(T), np.zeros(ROWS), np.cos(T))
+
+
+def _segment() -> _core.Segment:
+    return _core.Segment(1.0, 2.0, _core.Pose2(0.5, 0.1, 0.2), _core.BodyTwist(0.5, 0.0, 0.1), 0.0, 0.0)
+
+
+def _estimate() -> _core.Estimate:
+    return _core.Estimate(np.full(SIZE, 0.01), 0.01 * np.eye(SIZE))
+
+
+def _law() -> _core.WanderLaw:
+    return _core.WanderLaw([_core.SlipWander(0.1, 0.1, 5.0)], np.ones(1))
+
+
+def _noise() -> _core.MotionNoise:
+    return _core.MotionNoise([1e-4] * 3, [1e-4] * 3, [0.01] * 3, 0.01, 0.01)
+
+
+def _belief() -> _core.MotionBelief:
+    return _core.MotionBelief(_model(), _estimate(), np.ones(SIZE), _noise(), np.ones(3))
+
+
+def _now() -> _core.SlipNow:
+    return _core.ColouredSlip(_law()).now(_belief(), _inputs(), [_segment()])
+
+
+def _expected() -> _core.ExpectedPose:
+    return _core.ColouredSlip(_law()).predict(_belief(), _inputs(), _now(), _segment())
+
+
+def _steady() -> _core.SteadySegment:
+    times = np.array([0.0, 1.0, 2.0])
+    rng = np.random.default_rng(1)
+    return _core.SteadySegment(_core.BodyTwist(1.0, 0.0, 0.2), times, rng.normal(size=(3, 3)) * 0.1)
+
+
+def _noise_group() -> _core.NoiseGroup:
+    rng = np.random.default_rng(2)
+    return _core.NoiseGroup(
+        _core.BodyTwist(1.0, 0.0, 0.2), [1.0, 2.0], list(rng.normal(size=(9, 3, 2)) * 0.1)
+    )
+
+
+def _fit() -> _core.LeastSquaresFit:
+    return _core.fit_least_squares(_features(), T, np.ones(ROWS))
+
+
+def _features() -> np.ndarray:
+    return np.column_stack([np.ones(ROWS), np.sin(T)])
+
+
+def _regression() -> _core.BayesianRegression:
+    regression = _core.BayesianRegression(np.ones(2), 0.1, 1.0)
+    regression.add(_example())
+    return regression
+
+
+def _example() -> _core.RegressionExample:
+    return _core.RegressionExample(np.array([1.0, 0.5]), 0.3, 1.0)
+
+
+def _limits() -> _core.CommandLimits:
+    lane = _core.LaneLimits(0.01, 2.0, 1.0, 1.5)
+    return _core.CommandLimits(lane, lane, lane, 0.5, 1.0, 1.0)
+
+
+def _record() -> _core.DriveRecord:
+    wheels = np.column_stack([T, np.sin(T - 0.2), np.cos(T - 0.2)])
+    return _core.DriveRecord(_inputs(), wheels)
+
+
+def _mppi() -> _core.Mppi:
+    settings = _core.MppiSettings()
+    settings.rollouts, settings.periods = 16, 8
+    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None)], settings)
+
+
+def _drive_start() -> _core.DriveStart:
+    return _core.DriveStart(_core.BodyTwist(0.1, 0.0, 0.0), _core.BodyTwist(0.1, 0.0, 0.0), None)
+
+
+def _planner() -> _core.TrajectoryPlanner:
+    limits = _core.DriveLimits(1.0, 1.0, 1.0, 1.0)
+    return _core.TrajectoryPlanner(
+        _model(), np.full(SIZE, 0.01), limits, _core.TrajectorySettings(), _drive_start(), None
+    )
+
+
+def _uncertain() -> _core.UncertainModel:
+    model, spread = _model(), (0.01 * np.eye(SIZE), _noise(), np.ones(3), 1.0, _law(), np.ones(SIZE))
+    return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, 0.0, 0.0, None)
+
+
+def _following() -> _core.FollowingEstimator:
+    return _core.FollowingEstimator("iekf", _model(), _core.CausalFilterSettings(), _core.EstimatorSettings())
+
+
+def _average() -> _core.ModelAverage:
+    settings = (_core.CausalFilterSettings(), _core.ModelAverageSettings())
+    return _core.ModelAverage("auto", [_core.named_basis("edd-2")], True, False, False, *settings)
+
+
+def _chain_learner() -> _core.ChainLearner:
+    return _core.ChainLearner(_core.CausalFilterSettings())
+
+
+def _slip_ratios() -> _core.SlipRatioFilterSettings:
+    settings = _core.SlipRatioFilterSettings()
+    settings.noise = _noise()
+    return settings
+
+
+def _estimator_settings() -> _core.EstimatorSettings:
+    settings = _core.EstimatorSettings()
+    settings.noise = _noise()
+    return settings
+
+
+def _small_mppi() -> _core.MppiSettings:
+    settings = _core.MppiSettings()
+    settings.rollouts, settings.periods = 16, 8
+    return settings
+
+
+OBJECTS: dict[str, Callable[[], Any]] = {
+    "AverageState": lambda: _average().state(),
+    "BayesianRegression": _regression,
+    "Basis": lambda: _core.named_basis("edd-2"),
+    "ChainLearner": _chain_learner,
+    "ColouredSlip": lambda: _core.ColouredSlip(_law()),
+    "CommandLimits": _limits,
+    "CostmapView": lambda: _core.CostmapView(np.zeros((4, 5), np.float32), 0.5, 0.0, 0.0, 100.0),
+    "DriveLimits": lambda: _core.DriveLimits(1.0, 1.0, 1.0, 1.0),
+    "DriveRecord": _record,
+    "DriveStart": _drive_start,
+    "Estimate": _estimate,
+    "Estimator": lambda: _core.make_estimator("iekf", _model(), _estimate(), _estimator_settings()),
+    "ExpectedPose": _expected,
+    "FollowingEstimator": _following,
+    "Gpu": lambda: None,
+    "InputTrack": _inputs,
+    "Integrator": lambda: _core.Integrator.Exact,
+    "LeastSquaresFit": _fit,
+    "LimitSearch": lambda: None,
+    "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
+    "MotionBelief": _belief,
+    "MotionModel": _model,
+    "MotionNoise": _noise,
+    "Mppi": _mppi,
+    "MppiSettings": _small_mppi,
+    "NoiseGroup": _noise_group,
+    "RegressionExample": _example,
+    "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, 0.0, 0.0, None),
+    "ScatterCentre": lambda: _core.ScatterCentre.Mean,
+    "SeenPoses": lambda: _core.SeenPoses([0.8, 0.9, 1.0], np.zeros((3, 3))),
+    "Segment": _segment,
+    "SegmentJacobian": lambda: _core.SegmentJacobian.Thesis,
+    "SegmentLinearization": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()),
+    "SegmentPath": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()).path,
+    "SlipNow": _now,
+    "SlipRatioFilterSettings": _slip_ratios,
+    "StartLaw": lambda: _core.StartLaw([0.0, 1.0], np.array([0.5, 0.5])),
+    "StartList": lambda: _core.StartList(np.zeros((1, 5)), np.zeros((1, 1, 2))),
+    "Status": lambda: _core.Status.Converged,
+    "SteadyNoise": lambda: _core.SteadyNoise(np.full(3, 0.01), np.full(3, 0.01), np.full(3, 0.01)),
+    "SteadySegment": _steady,
+    "TrajectoryPlanner": _planner,
+    "TrajectoryStatus": lambda: _core.TrajectoryStatus.Reached,
+    "UncertainModel": _uncertain,
+    "WanderLaw": _law,
+    "WanderingTerms": lambda: _core.wandering_terms(_model(), np.ones(SIZE)),
+}
+
+_square, _list3 = 0.01 * np.eye(SIZE), [0.01, 0.01, 0.01]
+ARGUMENTS: dict[str, Callable[[], Any]] = {
+    "ChainLearner.__init__ waiting": lambda: 0,
+    "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
+    "DriveRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
+    "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None)],
+    "Mppi.step past": lambda: np.zeros((2, 2)),
+    "Mppi.step reference": lambda: np.zeros((8, 3)),
+    "NoiseGroup.__init__ residuals": lambda: list(np.ones((9, 3, 2))),
+    "NoiseGroup.__init__ times": lambda: [1.0, 2.0],
+    "SeenPoses.__init__ poses": lambda: np.zeros((3, 3)),
+    "SeenPoses.__init__ stamps": lambda: [0.8, 0.9, 1.0],
+    "StartLaw.__init__ memories": lambda: [0.0, 1.0],
+    "StartLaw.__init__ weights": lambda: np.array([0.5, 0.5]),
+    "StartList.__init__ past": lambda: np.zeros((1, 1, 2)),
+    "StartList.__init__ starts": lambda: np.zeros((1, 5)),
+    "SteadySegment.__init__ poses": lambda: np.zeros((3, 3)),
+    "SteadySegment.__init__ times": lambda: np.array([0.0, 1.0, 2.0]),
+    "InputTrack.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),
+    "FollowingEstimator.__init__ name": lambda: "iekf",
+    "WanderLaw.__init__ weights": lambda: np.ones(1),
+    "fits_all_segments name": lambda: "iekf",
+    "learns_overlapping_segments name": lambda: "iekf",
+    "slip_rate_covariance covariance": lambda: 0.01 * np.eye(2),
+    "batch_fit noise": lambda: [0.01 * np.eye(3)],
+    "common_log_scores covariances": lambda: [np.eye(3), np.eye(3)],
+    "common_log_scores innovations": lambda: [np.ones(3), np.ones(3)],
+    "distance_field occupied": lambda: np.eye(6, dtype=np.uint8),
+    "fit_least_squares design": _features,
+    "fit_log_variance drive": lambda: np.column_stack([T, np.sin(T)]),
+    "fit_slip_rates segments": lambda: [_steady(), _steady()],
+    "iekf_update noise": lambda: 0.01 * np.eye(3),
+    "make_estimator name": lambda: "iekf",
+    "rollout_batch costs": lambda: None,
+    "rollout_covariance out": lambda: np.zeros((6, 4, 2)),
+    "rts_smooth noise": lambda: [0.01 * np.eye(3)],
+    "sample_futures out": lambda: np.zeros((3, 5, 4, 2)),
+    "thesis_std_coefficients design": _features,
+    "undetermined_directions terms": lambda: ["one", "sine"],
+    "ChainLearner.learn end": lambda: 2.0,
+    "ChainLearner.learn start": lambda: 1.0,
+    "Segment.__init__ end": lambda: 2.0,
+    "Basis.__init__ ang": lambda: ["w"],
+    "Basis.__init__ lat": lambda: ["V*w"],
+    "Basis.__init__ lon": lambda: ["V"],
+}
+NAMES: dict[str, Callable[[], Any]] = {
+    "alpha": lambda: np.full(2, 0.01),
+    "bases": lambda: [_core.named_basis("edd-2")],
+    "commands": lambda: np.full((2, 4, 2), 0.3),
+    "end": lambda: None,
+    "features": lambda: np.array([1.0, 0.5]),
+    "filter": _core.CausalFilterSettings,
+    "iekf": _core.IekfSettings,
+    "least": lambda: 0.9,
+    "level": lambda: "portable",
+    "learned": _square.copy,
+    "limits": lambda: None,
+    "log_scores": lambda: np.zeros(2),
+    "map": lambda: None,
+    "mean": lambda: np.full(SIZE, 0.01),
+    "name": lambda: "edd-2",
+    "of_drive": lambda: None,
+    "output": T.copy,
+    "parameters": lambda: np.full(SIZE, 0.01),
+    "path": lambda: None,
+    "prior": lambda: np.full(2, 0.5),
+    "prior_std": lambda: np.ones(SIZE),
+    "relative_std": lambda: np.ones(ROWS),
+    "seed": lambda: 1,
+    "slip": lambda: np.full(3, 0.01),
+    "tangent": lambda: np.full(3, 0.1),
+    "threads": lambda: 2,
+    "times": lambda: np.array([0.5, 1.0]),
+    "weight_std": lambda: np.ones(2),
+    "weights": lambda: np.full(2, 0.5),
+}
+
+
+def sound(bound: Bound, parameter: str, annotation: str) -> Any:
+    """Return a value of this parameter with which the function works."""
+    if make := ARGUMENTS.get(f"{bound.title} {parameter}"):
+        return make()
+    if annotation.endswith(" | None") and "NDArray" not in annotation:
+        return None
+    if annotation in OBJECTS or hasattr(_core, annotation):
+        return of_type(annotation)
+    if inner := re.fullmatch(r"Sequence\[(\w+)\]", annotation):
+        return _list3 if inner[1] == "float" else [of_type(inner[1])]
+    if "NDArray" in annotation:
+        return _array(bound, parameter, annotation)
+    plain = {"float": 0.5, "int": 2, "bool": True, "tuple[float, float]": (0.1, 0.1)}
+    return plain[annotation] if annotation in plain else NAMES[parameter]()
+
+
+def of_type(name: str) -> Any:
+    """Return a sound object of this type."""
+    if name in OBJECTS:
+        return OBJECTS[name]()
+    makers = [b for b in bound_functions() if b.owner == name and b.name == "__init__"]
+    return getattr(_core, name)(*(sound(makers[0], *parameter) for parameter in makers[0].parameters))
+
+
+def _array(bound: Bound, parameter: str, annotation: str) -> Any:
+    shape = re.search(r"shape=\(?([^)]*?)\)?,? ?(?:order|device|writable|\))", annotation)
+    sizes = [part.strip() for part in (shape[1] if shape else "None").split(",") if part.strip()]
+    kind = "float32" if "float32" in annotation else "float64"
+    if parameter in ("covariance", "parameters", "learned") and sizes == ["None", "None"]:
+        return _square.copy()
+    if sizes == ["None", "None"] and parameter == "features":
+        return _features()
+    if parameter in NAMES:
+        value = NAMES[parameter]()
+        return value if value is None else np.asarray(value, kind)
+    return np.full([3 if size == "None" else int(size) for size in sizes], 0.1, kind)
+
+
+def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
+    """Yield objects of this type that are sound by themselves, of other sizes or times than those above."""
+    nan, zero = float("nan"), np.zeros(1)
+    larger = _core.MotionModel.with_response(_core.named_basis("odd-even-10"), True).with_mount(True)
+    path = _core.linearize_segment(larger, np.zeros(larger.size), _inputs(), _segment())
+    wide = _core.Segment(1.0, 2.0, _core.Pose2(nan, 0.0, 0.0), None, nan, 0.0)
+    late = _core.Segment(1e6, 1e6 + 1.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    backward = _core.Segment(2.0, 1.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    long = _core.Segment(-1e9, 1e9, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+    others: dict[str, list[Any]] = {
+        "Basis": [_core.named_basis("odd-even-10"), _core.Basis("none", [], [], [])],
+        "BayesianRegression": [_core.BayesianRegression(np.ones(5), 0.1, 1.0)],
+        "BodyTwist": [_core.BodyTwist(nan, nan, nan), _core.BodyTwist(1e300, 1e300, 1e300)],
+        "CommandChain": [
+            _core.CommandChain(nan, nan, nan, nan, nan),
+            _core.CommandChain(1e300, 0, 1e300, 0, 0),
+        ],
+        "Estimate": [_core.Estimate(np.zeros(9), np.eye(9)), _core.Estimate(zero[:0], np.zeros((0, 0)))],
+        "InputTrack": [_core.InputTrack(zero, zero, zero, zero), _core.InputTrack(*[zero[:0]] * 4)],
+        "LeastSquaresFit": [_core.fit_least_squares(np.ones((9, 5)), np.ones(9), np.ones(9))],
+        "MotionModel": [larger, _core.MotionModel(_core.Basis("none", [], [], []), False, False)],
+        "Pose2": [_core.Pose2(nan, nan, nan), _core.Pose2(1e300, -1e300, 1e300)],
+        "RegressionExample": [_core.RegressionExample(np.ones(5), nan, 1.0)],
+        "SeenPoses": [
+            _core.SeenPoses([], np.zeros((0, 3))),
+            _core.SeenPoses([nan, 1.0], np.full((2, 3), nan)),
+        ],
+        "Segment": [wide, late, backward, long, _core.Segment(nan, nan, _core.Pose2(0, 0, 0), None, 0, 0)],
+        "SegmentLinearization": [path],
+        "SegmentPath": [path.path],
+        "SteadySegment": [_core.SteadySegment(_core.BodyTwist(1, 0, 0), zero[:0], np.zeros((0, 3)))],
+        "WanderLaw": [_core.WanderLaw([], zero[:0])],
+    }
+    yield from ((f"another {kind} {number}", other) for number, other in enumerate(others.get(kind, [])))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: Apache-2.0
+"""No argument ends the interpreter, hangs or is read beyond its end: wrong shapes throw, in every binding."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from bindings.sound_arguments import of_type, sound
+from bindings.stub_calls import bound_functions
+
+from slipwise import _core
+
+PART = 30  # functions to a process
+STATE = _core.SlipState(1.0, 0.2, 0.0, 0.0)
+EDD_2 = _core.named_basis("edd-2")
+MODEL = _core.MotionModel(EDD_2, False, True)
+
+
+@pytest.mark.parametrize("shape", [(0, 0), (0, 1), (1, 1), (2, 3), (3, 3)])
+def test_a_covariance_of_another_size_is_refused(shape: tuple[int, int]) -> None:
+    with pytest.raises(ValueError, match="the covariance of slip rates needs 2 rows and columns"):
+        _core.slip_rate_covariance(EDD_2, np.zeros(shape), STATE)
+    law = _core.WanderLaw([], np.zeros(0))
+    with pytest.raises(ValueError, match="the covariance of a model needs 3 rows and columns"):
+        _core.covariance_over(MODEL, np.zeros((shape[0] + 1, shape[1] + 2)), law, np.ones(3), 1.0)
+
+
+@pytest.mark.parametrize("count", [0, 1, 3, 1000])
+def test_parameters_of_another_number_are_refused(count: int) -> None:
+    with pytest.raises(ValueError, match=f"a slip rate needs 2 numbers, got {count}"):
+        _core.slip_rate(EDD_2, np.zeros(count), STATE)
+    with pytest.raises(ValueError, match=f"takes 3 parameters, got {count + 1 if count == 3 else count}"):
+        MODEL.chain(np.zeros(count + 1 if count == 3 else count))
+
+
+def test_pairs_of_a_matrix_that_is_no_covariance_are_refused() -> None:
+    with pytest.raises(ValueError, match="a covariance needs 3 rows and columns, got 3 by 10"):
+        _core.correlated_pairs(np.zeros((3, 10)), 1.0)
+
+
+def test_a_list_of_inputs_in_which_one_is_missing_is_refused() -> None:
+    segment, noise = [of_type("Segment")], [np.eye(3)]
+    settings = (_core.DriftSettings(), _core.IekfSettings())
+    with pytest.raises(ValueError, match="each segment needs inputs, got None"):
+        _core.rts_smooth(MODEL, of_type("Estimate"), [None], segment, noise, *settings)  # type: ignore[list-item]
+
+
+def test_stamps_that_are_not_numbers_are_refused() -> None:
+    start = _core.StartPose(_core.StartPoseSettings())
+    seen = _core.SeenPoses([float("nan"), 1.0], np.zeros((2, 3)))
+    with pytest.raises(ValueError, match="stamps of poses before a start must increase"):
+        start.offset(of_type("MotionBelief"), of_type("InputTrack"), seen, of_type("Segment"))
+
+
+@pytest.mark.parametrize("number", range(len(bound_functions())))
+def test_every_binding_works_with_its_sound_arguments(number: int) -> None:
+    """What the test below changes one by one; a new binding may need a line in `sound_arguments`."""
+    bound = bound_functions()[number]
+    given = [sound(bound, *parameter) for parameter in bound.parameters]
+    if bound.title == "Gpu.__init__":
+        pytest.skip("there may be no GPU")
+    if bound.name == "__init__":
+        getattr(_core, bound.owner)(*given)
+    elif bound.owner:
+        getattr(of_type(bound.owner), bound.name)(*given)
+    else:
+        getattr(_core, bound.name)(*given)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(0, len(bound_functions()), PART))
+def test_no_wrong_argument_ends_the_interpreter(first: int) -> None:
+    script = Path(__file__).with_name("hostile_arguments.py")
+    done = subprocess.run(
+        [sys.executable, str(script), str(first), str(first + PART)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    lines = done.stdout.splitlines()
+    assert done.returncode == 0, f"ended with {done.returncode} at: {lines[-1:]}\n{done.stderr[-2000:]}"
+    assert lines[lines.index("-" * 20) + 1 :] == []

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A method beats the baseline only if no error is worse on the segments seen, and one is better for sure."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+from judgements import BETTER, judged
+
+from slipwise.calibration.judgement import Ratio
+
+NAN = (math.nan,) * 3
+
+
+@pytest.mark.parametrize(
+    ("position", "heading", "beats"),
+    [
+        (BETTER, BETTER, True),
+        (BETTER, (1.0, 0.8, 1.2), True),  # heading is as before
+        (BETTER, (1.005, 0.8, 1.2), True),  # the same, as it prints
+        (BETTER, (1.1, 0.8, 1.4), False),  # worse on the segments seen, be it by chance
+        (BETTER, (1.3, 1.1, 1.5), False),  # clearly worse
+        ((1.54, 0.6, 3.0), (0.1, 0.05, 0.2), False),  # five metres in the place of three, with few segments
+        ((0.95, 0.8, 1.1), (0.97, 0.9, 1.05), False),  # nothing beyond chance
+        ((1.0, 1.0, 1.0), (1.0, 1.0, 1.0), False),
+        (NAN, BETTER, True),  # the baseline's position is never wrong, nor is this one's
+        (NAN, NAN, False),
+    ],
+)
+def test_the_baseline_is_beaten_only_beyond_chance(position: Ratio, heading: Ratio, beats: bool) -> None:
+    assert judged(position, heading).beats_baseline is beats
+    assert bool(judged(position, heading).fault()) is not beats
+
+
+def test_errors_that_are_shown_are_not_worse_either() -> None:
+    judgement = judged(BETTER, BETTER)
+    shown = judgement.held_out.model_copy(update={"position": 1.2})
+    assert replace(judgement, held_out=shown).worse == ("position",)
+
+
+def test_what_the_start_gains_is_told_from_what_the_model_gains() -> None:
+    judgement = judged((1.0, 0.9, 1.1), (1.0, 0.9, 1.1))
+    shown = judgement.held_out.model_copy(update={"position": 0.7})
+    assert replace(judgement, held_out=shown).gains_by_start
+    assert "from the same measured pose" in replace(judgement, held_out=shown).fault()
+    assert not judged(BETTER, BETTER).gains_by_start
+
+
+def test_fewer_than_four_segments_are_too_few() -> None:
+    assert judged(BETTER, BETTER, windows=3).too_short
+    assert not judged(BETTER, BETTER, windows=4).too_short
+
+
+def test_an_error_that_is_much_worse_is_told_from_one_by_chance() -> None:
+    assert judged((1.3, 0.8, 2.0), BETTER).much_worse
+    assert judged((1.1, 1.05, 1.2), BETTER).much_worse
+    assert not judged((1.1, 0.9, 1.3), BETTER).much_worse
+    assert not judged(BETTER, BETTER).much_worse

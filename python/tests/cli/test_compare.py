@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise compare` says what differs between two models, and which predicts a log better."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from cli.conftest import Result
+from sample_models import make_model, named
+
+Slipwise = Callable[..., Result]
+
+
+@pytest.fixture
+def models(folder: Path) -> tuple[Path, Path]:
+    """Models of the drive in `drive_csv` from wheel speeds: one that is right, and one that is not."""
+    right, wrong = named("edd-2", lon__V=-0.1, ang__w=-0.3), named("edd-2", lon__V=-0.1, ang__w=-0.1)
+    return make_model(right).save(folder / "right.yaml"), make_model(wrong).save(folder / "wrong.yaml")
+
+
+def test_differences_stand_with_both_values_and_z(slipwise: Slipwise, models: tuple[Path, Path]) -> None:
+    result = slipwise("compare", *models)
+    assert (result.code, result.err) == (0, "")
+    assert "2 of 5 numbers agree within 3 standard deviations." in result.out
+    row = next(line for line in result.out.splitlines() if line.strip().startswith("ang.w"))
+    assert row.split() == [
+        "ang.w",
+        "-0.300",
+        "±",
+        "0.010",
+        "-0.100",
+        "±",
+        "0.010",
+        "rad/s",
+        "per",
+        "w",
+        "+14.1",
+    ]
+    assert "Both have learned from the same log" in result.out
+
+
+def test_models_that_agree_are_said_to(slipwise: Slipwise, folder: Path, models: tuple[Path, Path]) -> None:
+    again = make_model(named("edd-2", lon__V=-0.1, ang__w=-0.31)).save(folder / "again.yaml")
+    assert "Nothing differs: 5 of 5 numbers agree" in slipwise("compare", models[0], again).out
+
+
+def test_a_log_decides_which_predicts_better(
+    slipwise: Slipwise, drive_csv: Path, models: tuple[Path, Path]
+) -> None:
+    result = slipwise("compare", *models, drive_csv, "--json", "out.json")
+    assert result.code == 0
+    assert "right.yaml predicts better: after 5 s wrong.yaml misses by" in result.out
+    document = slipwise("compare", *models, drive_csv, "--json", "-").json
+    assert document["predictions"]["better"] == "right.yaml"
+    assert document["predictions"]["position"][1] > 1.0
+    assert [row["name"] for row in document["differences"] if row["different"]]
+
+
+def test_models_that_cannot_be_compared_are_one_line(
+    slipwise: Slipwise, folder: Path, models: tuple[Path, Path]
+) -> None:
+    other = make_model(replace(named("edd-2"), commands=True)).save(folder / "commands.yaml")
+    result = slipwise("compare", models[0], other)
+    assert result.code == 2
+    assert "one model was learned from wheels, the other from commands" in result.line
+    assert slipwise("compare", models[0], models[0]).line.startswith("a model file is given twice")
+
+
+def test_the_result_replaces_none_of_the_models(slipwise: Slipwise, models: tuple[Path, Path]) -> None:
+    before = models[1].read_bytes()
+    assert slipwise("compare", *models, "--json", models[1]).code == 2
+    assert models[1].read_bytes() == before
+
+
+def test_evaluate_takes_several_models_and_judges_the_first(
+    slipwise: Slipwise, drive_csv: Path, models: tuple[Path, Path]
+) -> None:
+    given = [part for path in models for part in ("--model", path)]
+    result = slipwise("evaluate", drive_csv, *given, "--methods", "right.yaml,wrong.yaml", "--horizons", "2")
+    assert result.code == 0
+    assert "right.yaml predicts better" in result.out
+    assert "Next: export it:" in result.out
+    assert "slipwise export" in result.out

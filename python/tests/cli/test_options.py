@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every command that reads a log takes the same options, on the command line or in a settings file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from cli.conftest import Columns, Result, write_csv
+
+Slipwise = Callable[..., Result]
+
+
+def own_names(folder: Path, columns: Columns) -> Path:
+    """The log with other names of its columns."""
+    names = {"t": "time", "cmd_v": "vx"}
+    return write_csv(folder / "own.csv", {names.get(name, name): v for name, v in columns.items()})
+
+
+def tum_of(folder: Path, columns: Columns, away: float) -> Path:
+    half, zero = 0.5 * columns["yaw"], np.zeros(len(columns["t"]))
+    rows = [columns["t"] - away, columns["x"], columns["y"], zero, zero, zero, np.sin(half), np.cos(half)]
+    np.savetxt(folder / "poses.txt", np.column_stack(rows), fmt="%.9f")
+    return folder / "poses.txt"
+
+
+@pytest.mark.parametrize("command", ["inspect", "calibrate", "evaluate", "convert"])
+def test_every_command_that_reads_a_log_takes_its_options(slipwise: Slipwise, command: str) -> None:
+    text = " ".join(slipwise(command, "--help").out.split())
+    for option in ("--poses", "--pose-clock-offset", "--start", "--end", "--columns", "--settings"):
+        assert option in text, option
+
+
+def test_columns_and_a_span_are_taken_from_the_command_line(
+    slipwise: Slipwise, folder: Path, columns: Columns
+) -> None:
+    own_names(folder, columns)
+    given = ("--columns", "t=time,cmd_v=vx", "--start", "10", "--end", "20")
+    result = slipwise("convert", "own.csv", "-o", "cut.csv", *given)
+    assert result.code == 0, result.err
+    assert "only 10 s to 20 s of 90.0 s are used" in result.out
+    kept = np.genfromtxt(folder / "cut.csv", delimiter=",", names=True)
+    assert (kept["t"][0], kept["t"][-1]) == (10.0, 20.0)
+
+
+def test_a_settings_file_says_it_once_and_the_command_line_goes_before(
+    slipwise: Slipwise, folder: Path, columns: Columns
+) -> None:
+    own_names(folder, columns)
+    text = '[log]\nstart = 10.0\nend = 20.0\ncolumns = { t = "time", cmd_v = "vx" }\n'
+    (folder / "log.toml").write_text(text)
+    result = slipwise("convert", "own.csv", "-o", "cut.csv", "--settings", "log.toml", "--end", "30")
+    assert result.code == 0, result.err
+    assert "only 10 s to 30 s of 90.0 s are used" in result.out
+
+
+def test_poses_beside_a_log_find_its_clock_on_the_command_line(
+    slipwise: Slipwise, folder: Path, columns: Columns
+) -> None:
+    tum_of(folder, columns, away=1077.0)
+    inputs = {name: v for name, v in columns.items() if name not in ("x", "y", "yaw")}
+    write_csv(folder / "inputs.csv", inputs)
+    given = ("--poses", "poses.txt", "--pose-clock-offset")
+    line = slipwise("convert", "inputs.csv", "-o", "a.csv", "--poses", "poses.txt").line
+    assert "no pose lies within the log" in line
+    assert "--pose-clock-offset auto" in line
+    found = slipwise("convert", "inputs.csv", "-o", "a.csv", *given, "auto")
+    assert (found.code, "s are added to the stamps of poses.txt" in found.out) == (0, True)
+    assert slipwise("convert", "inputs.csv", "-o", "a.csv", *given, "1077").code == 0
+    kept = np.genfromtxt(folder / "a.csv", delimiter=",", names=True)
+    np.testing.assert_allclose(kept["x"][np.isfinite(kept["x"])], columns["x"], atol=1e-6)
+
+
+def test_the_file_of_poses_is_never_replaced(slipwise: Slipwise, folder: Path, drive_csv: Path) -> None:
+    poses = folder / "poses.csv"
+    poses.write_text("t,x,y,yaw\n0,0,0,0\n1,1,0,0\n")
+    before = poses.read_text()
+    assert slipwise("convert", drive_csv, "--poses", "poses.csv", "-o", "poses.csv").code == 2
+    assert slipwise("inspect", drive_csv, "--poses", "poses.csv", "--json", "poses.csv").code == 2
+    assert poses.read_text() == before
+
+
+def test_a_wrong_option_is_one_line_that_names_it(slipwise: Slipwise, drive_csv: Path) -> None:
+    def refused(*given: str) -> str:
+        return slipwise("convert", drive_csv, "-o", "a.csv", *given).line
+
+    assert refused("--pose-clock-offset", "soon").startswith(
+        "--pose-clock-offset must be a number of seconds"
+    )
+    assert refused("--start", "9", "--end", "3").startswith("--end (3 s) is not after --start (9 s)")
+    assert refused("--columns", "t").startswith("'t' is no pair of names (--columns)")
+    assert refused("--wheelbase", "-1").startswith("--wheelbase must be a positive number of metres")

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs for tests whose poses and inputs cannot both be right, each made from a sound one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core
+from slipwise.logs import Inputs, Log, Poses, Run
+from slipwise.logs.dead_reckoning import dead_reckoned
+
+#: A robot that turns 60 % of what its wheels say and answers commands late: real, and no contradiction.
+SKID_STEERED = Drive(
+    seconds=60.0, basis=_core.named_basis("edd-2"), alpha=(-0.05, -0.4), lag=0.2, speeds=(-0.2, 1.5)
+)
+
+
+def sound_log(drive: Drive = SKID_STEERED) -> Log:
+    """The log that the others are made from."""
+    return simulated_log(drive)
+
+
+def with_runs(log: Log, change: Callable[[Run], Run]) -> Log:
+    """Return the log with every run changed."""
+    return replace(log, runs=tuple(map(change, log.runs)))
+
+
+def scaled(log: Log, name: str, factor: float) -> Log:
+    """Multiply the speed of the commands or the wheels."""
+
+    def change(run: Run) -> Run:
+        inputs = getattr(run, name)
+        assert isinstance(inputs, Inputs)
+        return replace(run, **{name: replace(inputs, v=inputs.v * factor)})
+
+    return with_runs(log, change)
+
+
+def turned(log: Log, angle: float, since: float = 0.0) -> Log:
+    """Turn the heading of every pose by `angle` [rad], from the time `since` [s] on."""
+    return with_poses(log, lambda p: replace(p, yaw=p.yaw + angle * (p.t >= since)))
+
+
+def stopped(log: Log, since: float, jitter: float = 0.0) -> Log:
+    """Hold the poses from the time `since` [s] on, but for `jitter` [m] of noise."""
+    rng = np.random.default_rng(3)
+
+    def change(p: Poses) -> Poses:
+        at = np.minimum(np.arange(len(p)), int(np.searchsorted(p.t, since)))
+        x, y = (column[at] + jitter * rng.standard_normal(len(p)) for column in (p.x, p.y))
+        return replace(p, x=x, y=y, yaw=p.yaw[at] + 0.3 * jitter * rng.standard_normal(len(p)))
+
+    return with_poses(log, change)
+
+
+def circular(log: Log) -> Log:
+    """Put the wheels' own path in the place of the poses."""
+
+    def change(run: Run) -> Run:
+        assert run.wheels is not None
+        return replace(run, poses=dead_reckoned(run.wheels))
+
+    return with_runs(log, change)
+
+
+def with_poses(log: Log, change: Callable[[Poses], Poses]) -> Log:
+    """Return the log with the poses of every run changed."""
+    return with_runs(log, lambda run: replace(run, poses=change(run.poses)))

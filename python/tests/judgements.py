@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Held-out comparisons made by hand, for tests of what a verdict makes of them."""
+
+from __future__ import annotations
+
+from slipwise.calibration.consistency import Consistency
+from slipwise.calibration.judgement import Judgement, Ratio
+from slipwise.models.schema import HeldOut
+
+BETTER: Ratio = (0.5, 0.4, 0.6)
+TRUE = Consistency(nis=3.1, segments=30, band=(2.2, 3.9), inside=0.95)
+
+
+def judged(
+    position: Ratio, heading: Ratio, consistency: Consistency | None = None, *, windows: int = 9
+) -> Judgement:
+    """A judgement with these ratios to a baseline that errs by 1 m and 1 rad after 5 s."""
+    errors = [0.0 if ratio[0] != ratio[0] else ratio[0] for ratio in (position, heading)]
+    baseline = [0.0 if ratio[0] != ratio[0] else 1.0 for ratio in (position, heading)]
+    held_out = HeldOut(
+        horizon=5.0,
+        windows=windows,
+        position=errors[0],
+        heading=errors[1],
+        plain_position=baseline[0],
+        plain_heading=baseline[1],
+    )
+    return Judgement(held_out, position, heading, consistency)

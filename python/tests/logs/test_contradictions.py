@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Poses and inputs that contradict each other are found, and no robot that only slips or lags is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from contradictory_logs import (
+    SKID_STEERED,
+    circular,
+    scaled,
+    sound_log,
+    stopped,
+    turned,
+    with_poses,
+)
+from sample_logs import Drive, steady_run
+
+from slipwise import _core
+from slipwise.logs import Log, LogOptions, Poses, open_log
+from slipwise.logs.contradictions import contradictions
+
+HALF = 30.0  # s
+SOUND = sound_log()
+CONTRADICTORY: dict[str, tuple[Log, str, str, str]] = {  # log, input, kind, what cures it
+    "stopped": (stopped(SOUND, 0.0), "command", "does-not-move", "emergency stop"),
+    "stopped, with noise": (stopped(SOUND, 0.0, 0.01), "wheel", "does-not-move", "localiser"),
+    "stopped at half": (stopped(SOUND, HALF), "command", "does-not-move", "30."),
+    "commands in rad/s": (
+        scaled(SOUND, "commands", 1 / 0.15),
+        "command",
+        "unlikely-speed",
+        "--command-scale 0.1",
+    ),
+    "wheels in rad/s": (scaled(SOUND, "wheels", 1 / 0.3), "wheel", "unlikely-speed", "--wheel-scale 0.2"),
+    "commands flipped": (
+        scaled(SOUND, "commands", -1.0),
+        "command",
+        "backward-poses",
+        "--command-scale -1,1",
+    ),
+    "wheels flipped": (scaled(SOUND, "wheels", -1.0), "wheel", "backward-poses", "--wheel-scale -1,1"),
+    "turned by 180": (turned(SOUND, np.pi), "wheel", "backward-poses", "--pose-yaw-offset 3.1416"),
+    "turned by 90": (turned(SOUND, 0.5 * np.pi), "wheel", "turned-poses", "--pose-yaw-offset -1.5708"),
+    "turned by 40": (turned(SOUND, np.radians(40.0)), "wheel", "turned-poses", "--pose-yaw-offset -0."),
+    "heading jumps": (turned(SOUND, np.pi, HALF), "command", "heading-jump", "two logs"),
+    "no heading": (
+        with_poses(SOUND, lambda p: replace(p, yaw=0.0 * p.yaw)),
+        "wheel",
+        "constant-heading",
+        "yaw",
+    ),
+    "circular": (circular(SOUND), "command", "repeated-wheels", "lidar"),
+}
+
+
+@pytest.mark.parametrize("name", CONTRADICTORY)
+def test_each_contradiction_is_named_with_what_cures_it(name: str) -> None:
+    log, input_name, kind, cure = CONTRADICTORY[name]
+    found = contradictions(log, input_name)
+    assert [each.kind for each in found] == [kind]
+    assert found[0].spoils
+    assert cure in " ".join(found[0].advice)
+
+
+def test_a_stopped_robot_is_said_in_these_words() -> None:
+    found = contradictions(stopped(sound_log(), 0.0), "command")
+    assert found[0].sentence.startswith("the robot does not move although it is commanded, for ")
+
+
+def test_a_flipped_sign_is_told_from_a_turned_frame_by_the_other_input() -> None:
+    flipped, both = scaled(sound_log(), "commands", -1.0), turned(sound_log(), np.pi)
+    assert "--pose-yaw-offset" not in " ".join(contradictions(flipped, "command")[0].advice)
+    assert contradictions(flipped, "wheel") == ()
+    assert "--pose-yaw-offset" in contradictions(both, "command")[0].advice[0]
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        SKID_STEERED,
+        replace(SKID_STEERED, lag=1.5, delay=0.4),  # sluggish
+        replace(SKID_STEERED, alpha=(-0.5, -0.85)),  # on ice
+        replace(SKID_STEERED, pose_std=(0.05, 0.03)),  # bad poses
+        replace(SKID_STEERED, pose_std=(0.0, 0.0), slip_psd=(0.0, 0.0, 0.0)),  # a simulator's
+        Drive(seconds=60.0, speeds=(0.0, 0.0)),  # turns on the spot
+        Drive(seconds=60.0, speeds=(1.0, 1.0), yaw_rates=(0.0, 0.0)),  # straight on
+        Drive(seconds=60.0, basis=_core.named_basis("edd-2"), alpha=(0.0, -0.02), pose_std=(0.001, 0.0005)),
+    ],
+)
+@pytest.mark.parametrize("input_name", ["command", "wheel"])
+def test_slip_lag_and_noise_are_no_contradiction(drive: Drive, input_name: str) -> None:
+    assert contradictions(sound_log(drive), input_name) == ()
+
+
+def test_a_short_stop_is_said_but_spoils_nothing() -> None:
+    log = sound_log(replace(SKID_STEERED, seconds=120.0, speeds=(0.8, 1.5)))
+    at = (log.runs[0].poses.t > 50.0) & (log.runs[0].poses.t < 60.0)
+    hold = int(np.argmax(at))
+
+    def held(p: Poses) -> Poses:
+        x, y, yaw = (np.where(at, column[hold], column) for column in (p.x, p.y, p.yaw))
+        return replace(p, x=x, y=y, yaw=yaw)
+
+    found = contradictions(with_poses(log, held), "wheel")
+    assert [(each.kind, each.spoils) for each in found] == [("does-not-move", False)]
+    assert "It stands still from 51.0 to 58.5 s." in found[0].advice
+
+
+def test_a_sensor_that_is_known_to_be_turned_is_no_contradiction() -> None:
+    log = turned(sound_log(), 0.5 * np.pi)
+    assert contradictions(log, "wheel", sensor_yaw=0.5 * np.pi) == ()
+
+
+def test_a_log_without_the_input_or_without_motion_has_none() -> None:
+    still = Log(runs=(steady_run(v=0.0),))
+    assert contradictions(still, "command") == ()
+    assert contradictions(replace(still, runs=(replace(still.runs[0], wheels=None),)), "wheel") == ()
+
+
+@pytest.mark.slow
+def test_no_real_robot_contradicts_its_inputs(real_log_dir: Path) -> None:
+    for path in sorted(real_log_dir.glob("*/*.csv.gz")):
+        log = open_log(path, options=LogOptions(wheelbase=0.32 if path.parent.name == "f1tenth" else None))
+        for name in ("command", "wheel"):
+            assert contradictions(log, name) == (), (path.name, name)

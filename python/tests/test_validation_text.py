@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Wrong documents are refused in slipwise's words; those of the checking library never reach a user."""
+
+import re
+from typing import Any
+
+import pytest
+
+from slipwise.calibration import make_settings
+from slipwise.errors import SettingsError
+
+FOREIGN = re.compile(
+    r"pydantic|Value error|Input should|Extra inputs|valid (number|string)|http", re.IGNORECASE
+)
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ({"estimator": "magic"}, "estimator: unknown estimator 'magic'; known are average"),
+        ({"filter": {"iterations": 0}}, "filter.iterations: must be at least 1, not 0"),
+        ({"filter": {"iterations": 2.5}}, "filter.iterations: must be a whole number, not 2.5"),
+        ({"filter": {"tolerance": -1.0}}, "filter.tolerance: must be more than 0, not -1.0"),
+        ({"filter": {"tolerance": "much"}}, "filter.tolerance: must be a number, not 'much'"),
+        ({"filter": {"tolerance": float("inf")}}, "filter.tolerance: must be a finite number, not inf"),
+        ({"filter": 3}, "filter: must be a table of keys, not 3"),
+        ({"auto": {"bases": []}}, "auto.bases: needs at least 1 entries"),
+        ({"auto": {"bases": "edd-2"}}, "auto.bases: must be a list, not 'edd-2'"),
+        ({"auto": {"cascade": "perhaps"}}, "auto.cascade: must be true or false, not 'perhaps'"),
+        (
+            {"smoothing": {"drift": "up"}},
+            "smoothing.drift: must be 'mean-reverting' or 'random-walk', not 'up'",
+        ),
+        ({"noise": {"psd_time": [1.0]}}, "noise.psd_time: needs at least 3 entries"),
+        ({"colour": 1}, "colour: there is no such key"),
+        ({"basis": 3}, "basis: must be text, not 3"),
+    ],
+)
+def test_wrong_settings_are_named_in_plain_words(content: dict[str, Any], words: str) -> None:
+    with pytest.raises(SettingsError) as caught:
+        make_settings(content)
+    assert caught.value.what.startswith(words)
+    assert caught.value.advice
+    assert not FOREIGN.search(str(caught.value))
+
+
+def test_a_long_wrong_value_is_shortened() -> None:
+    with pytest.raises(SettingsError) as caught:
+        make_settings({"auto": {"cascade": "x" * 500}})
+    assert len(caught.value.what) < 120
