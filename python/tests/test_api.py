@@ -9,6 +9,7 @@ import pickle
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -138,7 +139,7 @@ def test_models_and_results_are_pickled(
 def test_a_result_writes_its_report(tmp_path: Path, result: sw.Calibration) -> None:
     written = result.report(tmp_path / "x.html")
     assert written == tmp_path / "x.html"
-    assert result.verdict.sentence in written.read_text(encoding="utf-8")
+    assert escape(result.verdict.sentence) in written.read_text(encoding="utf-8")
 
 
 def test_a_path_is_drawn_with_its_ellipses(path: sw.Path) -> None:

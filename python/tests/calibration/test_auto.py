@@ -13,6 +13,7 @@ from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.settings import AUTO_BASES
 from slipwise.evaluation import EvaluationOptions, evaluate
+from slipwise.logs import Log
 
 TRUTHS = {
     "none": (),
@@ -74,11 +75,23 @@ def test_weight_goes_to_the_true_basis() -> None:
     assert history.basis_weight[-20:, history.bases.index("none")].max() < 0.01
 
 
-def test_little_data_leaves_the_model_near_the_plain_one() -> None:
-    """Two windows of a robot that slips half its turn: the model moves towards it, and is not sure."""
-    drive = Drive(seconds=2.2, basis=basis_of("edd-2"), alpha=(0.0, -0.5))
-    few = calibrate(simulated_log(drive), input="wheel").model
-    content = few.content
+def test_little_data_leaves_the_kinematic_baseline() -> None:
+    content = calibrate(two_windows(), input="wheel").model.content
+    assert content.weights["none"] == 1.0
+    assert content.parameters == []
+    assert not content.verdict.good
+
+
+def two_windows() -> Log:
+    """Of a robot that slips half its turn."""
+    return simulated_log(Drive(seconds=2.2, basis=basis_of("edd-2"), alpha=(0.0, -0.5)))
+
+
+def test_little_data_leaves_the_average_of_bases_near_the_baseline() -> None:
+    """The model moves towards the slip, and is not sure."""
+    settings = make_settings({"auto": {"baseline": False}})
+    content = calibrate(two_windows(), input="wheel", settings=settings).model.content
+    assert content.parameters
     assert all(abs(p.value) <= 2.0 * p.prior_std for p in content.parameters)
     assert max(content.weights.values()) < 0.5
     assert not content.verdict.good

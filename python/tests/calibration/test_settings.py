@@ -64,6 +64,8 @@ learning_rate = 0.7
 share = 0.01
 richest = 0.3
 cascade = false
+direct = false
+baseline = false
 limits = false
 
 [coloured]
