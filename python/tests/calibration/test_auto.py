@@ -40,6 +40,7 @@ def errors(truth: str) -> dict[str, np.ndarray]:
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("truth", TRUTHS)
 def test_auto_is_near_the_best_basis_whatever_the_truth(truth: str) -> None:
     best = np.min([errors(truth)[basis] for basis in AUTO_BASES], axis=0)

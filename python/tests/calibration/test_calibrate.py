@@ -48,6 +48,7 @@ def truth_of(basis: str, input_name: str) -> np.ndarray:
     return np.array(TRUTHS[basis] + chain)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("estimator", ["average", "delayed-state", "batch"])
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 @pytest.mark.parametrize("basis", TRUTHS)

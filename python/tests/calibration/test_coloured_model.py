@@ -46,6 +46,7 @@ def held_out(seed: int, seconds: float) -> list[WindowSet]:
     return [collect_windows(each, seconds, SETTINGS.rules()) for each in drives]
 
 
+@pytest.mark.slow
 def test_the_file_says_that_slip_wanders_and_how_far(models: dict[int, Model]) -> None:
     for model in models.values():
         coloured = model.content.coloured
@@ -56,6 +57,7 @@ def test_the_file_says_that_slip_wanders_and_how_far(models: dict[int, Model]) -
         assert stds == pytest.approx(0.1, rel=0.4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [2.0, 5.0])
 def test_held_out_ellipsoids_hold_their_share(models: dict[int, Model], seconds: float) -> None:
     inside, without = [], []

@@ -218,6 +218,7 @@ def test_what_fails_is_looked_for_again_but_ever_more_rarely() -> None:
     assert gaps[-1] > 1.2 * gaps[0]
 
 
+@pytest.mark.slow
 def test_limits_that_change_are_found_again() -> None:
     commands, half = steps_drive(3, 2.0 * SECONDS), SECONDS
     slower = _core.CommandLimits(FREE, FREE, _core.LaneLimits(0.12, 0.8, 0.6, 2.0), TRACK, 1.0, 1.0)

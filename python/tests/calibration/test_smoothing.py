@@ -72,6 +72,7 @@ def test_the_chain_is_the_robots_and_is_taken_as_learned() -> None:
     assert course.mean.mean(axis=0) == pytest.approx(AFTER, abs=0.03)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["average", *_core.estimator_names()])
 def test_the_model_of_every_estimator_can_be_smoothed(name: str) -> None:
     course = learned(estimator=name).smoothed

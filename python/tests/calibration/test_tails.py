@@ -20,6 +20,7 @@ def squared_lengths(rng: np.random.Generator, dof: float, scale: float, count: i
     return scale * rng.chisquare(3.0, count) / mixing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dof", [3.0, 6.0, np.inf])
 @pytest.mark.parametrize("scale", [0.3, 1.0, 3.0])
 def test_ellipsoids_hold_their_share_whatever_the_tails(dof: float, scale: float) -> None:

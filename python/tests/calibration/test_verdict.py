@@ -82,6 +82,7 @@ def test_what_the_average_of_poses_gains_is_not_the_model_s_merit() -> None:
     assert "It gains by averaging the last poses, not by what it learned." in learned.verdict.sentence
 
 
+@pytest.mark.slow
 def test_claims_about_perfect_robots_are_as_rare_as_chance() -> None:
     drives = [Drive(seconds=90.0, seed=s, pose_std=(0.02, 0.01), slip_psd=(0.0, 0.0, 0.0)) for s in range(30)]
     assert sum(verdict_of(drive, "edd-2").verdict.good for drive in drives) <= 3

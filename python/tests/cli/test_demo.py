@@ -12,6 +12,7 @@ from cli.conftest import Result
 pytest.importorskip("mujoco")
 
 
+@pytest.mark.slow
 def test_the_demo_ends_with_its_table_and_paths(slipwise: Callable[..., Result], folder: Path) -> None:
     result = slipwise("demo", "--output", "shown", "--duration", "90")
     assert (result.code, result.err) == (0, "")

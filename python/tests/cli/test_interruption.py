@@ -15,6 +15,8 @@ import numpy as np
 import pytest
 from cli.conftest import Columns, Result, left_in, write_csv
 
+pytestmark = pytest.mark.slow
+
 Slipwise = Callable[..., Result]
 
 STOPPED = "stopped by the user; no half-written file is left"

@@ -10,6 +10,8 @@ import pytest
 from slipwise import load_model, open_log
 from slipwise.demo import DemoOptions, DemoResult, run_demo
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("mujoco")
 
 

@@ -98,6 +98,7 @@ def exhibit_keys_written(key: str) -> bool:
     return key in texts or any(key.startswith(s) and s and key.removeprefix(s) in texts for s in starts)
 
 
+@pytest.mark.slow
 def test_every_exhibit_named_is_made_under_the_number_of_its_row() -> None:
     named = [(key, row[0]) for row in ROWS for key in EXHIBIT.findall(row[2])]
     assert len(named) > 25

@@ -120,6 +120,7 @@ def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: s
                 same(there, i, here, j)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 @pytest.mark.parametrize("at_start", [False, True])
 def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_the_start(
@@ -140,6 +141,7 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
         assert not np.array_equal(whole["auto", 2.0].measured[i], spoilt["auto", 2.0].measured[i])
 
 
+@pytest.mark.slow
 def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
     whole = by_name(evaluate(log, input="command", options=options))
@@ -154,6 +156,7 @@ def test_predictions_from_commands_use_no_wheel_speed_after_their_start(log: Log
             same(predictions, i, spoilt[key], i)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
@@ -173,6 +176,7 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
             same(predictions, i, spoilt[key], i)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_stated_times_lie_before_the_start_and_those_of_parameters_before_the_embargo(
     log: Log, input_name: str

@@ -43,6 +43,7 @@ def needs_scikit_learn(method: str) -> None:
         pytest.importorskip("sklearn", reason="the Gaussian process needs scikit-learn")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [*LINEAR, PROCESS])
 @pytest.mark.parametrize("input_name", ["wheel", "command"])
 def test_a_surface_learns_slip_beside_lag_and_comes_near_the_filter_of_its_terms(

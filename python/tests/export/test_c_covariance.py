@@ -18,6 +18,8 @@ from slipwise.export import export_model
 from slipwise.models import Model
 from slipwise.prediction import predict
 
+pytestmark = pytest.mark.slow
+
 DRIVER = r"""
 #include <stdio.h>
 #include "model.h"

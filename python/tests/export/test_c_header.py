@@ -22,6 +22,8 @@ from slipwise.export.c_header import c_header
 from slipwise.models import Model
 from slipwise.prediction import predict
 
+pytestmark = pytest.mark.slow
+
 Floats = NDArray[np.float64]
 
 STRICT = ("-Wall", "-Wextra", "-Werror", "-pedantic", "-fno-math-errno")

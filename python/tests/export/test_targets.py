@@ -103,6 +103,7 @@ def test_an_unknown_target_is_refused() -> None:
         export_model(make_model(FITTING["amcl"]), "spot", name="m.yaml")
 
 
+@pytest.mark.slow
 def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
     settings = make_settings({"basis": "full-linear-6"})

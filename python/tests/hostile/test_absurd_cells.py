@@ -28,6 +28,7 @@ def with_cell(columns: Columns, name: str, row: int, value: float) -> Columns:
     return changed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [90.0, -1e6, 1e15, 9.2e18])
 @pytest.mark.parametrize(("name", "source"), [("cmd_v", "command"), ("odo_omega", "wheel")])
 def test_an_absurd_speed_is_as_good_as_an_empty_cell(
@@ -41,6 +42,7 @@ def test_an_absurd_speed_is_as_good_as_an_empty_cell(
     assert kinds["absurd-speed"] == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [1e3, -1e6, 1e15])
 @pytest.mark.parametrize("name", ["x", "y", "yaw"])
 def test_an_absurd_pose_is_as_good_as_an_empty_cell(

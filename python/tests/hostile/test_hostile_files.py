@@ -83,6 +83,7 @@ def test_a_table_that_unpacks_to_gigabytes_is_refused(folder: Path, kind: str) -
     assert "the table unpacks to more than 512 MiB" in bounded(folder, "inspect", "bomb.csv").line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["log.csv", "log.mcap", "model.yaml", "map.yaml", "settings.toml"])
 def test_a_pipe_that_nobody_writes_to_is_refused(folder: Path, drive_csv: Path, name: str) -> None:
     model = folder / "sound.yaml"

@@ -80,6 +80,7 @@ def opened_or_refused(path: Path) -> tuple[Log, LogError | None]:
         return Log(runs=()), error
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", [0.5, 0.9, 0.99])
 def test_a_cut_off_mcap_is_read_as_far_as_it_goes_and_counted(tmp_path: Path, part: float) -> None:
     folder = drive_along_x(Bag(), count=20_000).write(tmp_path / "a.mcap")

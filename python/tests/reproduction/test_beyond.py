@@ -17,6 +17,8 @@ from slipwise.reproduction.monte_carlo import ESTIMATORS, Feeding, judged, known
 from slipwise.reproduction.real_log_scores import METHODS, mean_ratios, warthog_names
 from slipwise.reproduction.real_logs import SHORT, real_log_exhibits
 
+pytestmark = pytest.mark.slow
+
 SLIP = _core.named_basis("full-linear-6")
 
 

@@ -18,6 +18,8 @@ from slipwise.reproduction.chapter5 import chapter5_exhibits
 from slipwise.reproduction.chapter5_examples import examples_of, husky_examples
 from slipwise.surfaces import BayesianSurface, GaussianProcessSurface, LeastSquaresSurface, as_basis_model
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("mujoco")
 pytest.importorskip("sklearn")
 

@@ -29,6 +29,8 @@ from slipwise.reproduction.chapter6_table import (
     order_findings,
 )
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("mujoco")
 
 Exhibits = dict[str, Exhibit]

@@ -15,6 +15,8 @@ from slipwise.reproduction.chapter3 import chapter3_exhibits
 from slipwise.reproduction.chapter4 import chapter4_exhibits
 from slipwise.reproduction.chapter4_husky import husky_curves, husky_rates
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("mujoco")
 
 Exhibits = dict[str, Exhibit]

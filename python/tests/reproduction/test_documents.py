@@ -17,6 +17,8 @@ from slipwise.reproduction.draw_page import draw_page
 from slipwise.reproduction.draw_png import LARGEST, draw_png
 from slipwise.reproduction.markdown import markdown
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("matplotlib")
 
 

@@ -12,6 +12,8 @@ from slipwise.errors import SettingsError
 from slipwise.reproduction import CHAPTERS, SMALL, reproduce
 from slipwise.reproduction.reproduce import BenchPlan, chosen_chapters
 
+pytestmark = pytest.mark.slow
+
 PLAN = BenchPlan(size=SMALL)
 
 

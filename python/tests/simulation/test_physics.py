@@ -14,6 +14,8 @@ from slipwise.simulation.physics import GROUNDS, Sampling, World, run_physics, w
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
 
+pytestmark = pytest.mark.slow
+
 
 def drive(commands: Inputs, duration: float, ground: str = "tyre-force") -> Truth:
     world = World(LandTamer(), ground, TyreLaw())

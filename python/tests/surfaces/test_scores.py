@@ -17,6 +17,8 @@ from slipwise.surfaces import (
 )
 from slipwise.surfaces.scores import central_probability
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ("z", "freedom", "probability"),
