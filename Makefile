@@ -136,7 +136,7 @@ $(STAMPS)/thesis: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/thesis.txt
 	@touch $@
 
-$(STAMPS)/fuzz: $(STAMPS)/run
+$(STAMPS)/fuzz: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what fuzzing needs"
 	@$(PYTHON_IN) tools/requirements.py fuzz > $(STAMPS)/fuzz.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/fuzz.txt
