@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import hashlib
+import re
 from importlib.metadata import version
 
 from slipwise.models.model import Model
@@ -46,6 +47,7 @@ def origin_lines(model: Model, name: str) -> list[str]:
 def one_line(text: str) -> str:
     """Return the text without anything that could end a comment, in YAML or in C."""
     plain = "".join(c if c.isprintable() else " " for c in text)
-    for mark in ("*/", "/*", "??"):
+    for mark in ("*/", "/*"):
         plain = plain.replace(mark, " ".join(mark))
+    plain = re.sub(r"\?(?=\?)", "? ", plain)  # of three marks, too, no two stay together
     return " ".join(plain.split())[:_WIDTH]

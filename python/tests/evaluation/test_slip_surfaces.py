@@ -84,10 +84,14 @@ def test_the_gaussian_process_predicts_from_the_past_alone() -> None:
     needs_scikit_learn(PROCESS)
     whole = judged(slipping(), (PROCESS,))
     until = float(whole.predictions[0].t_end[80])
+    there = by_name(whole)
     part = by_name(judged(cut_off(slipping(), until), (PROCESS,)))
+    assert part.keys() == there.keys()
     for key, here in part.items():
-        for i in range(len(here) - 1):
-            same(by_name(whole)[key], i, here, i)
+        before_cut = len(here) - 1  # the last pose may stand in for a nearer one behind the cut
+        assert before_cut >= 30
+        for i in range(before_cut):
+            same(there[key], i, here, i)
 
 
 @pytest.mark.parametrize("method", [*LINEAR, PROCESS])

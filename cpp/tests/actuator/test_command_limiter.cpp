@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ramp of one lane, and the four lanes of a drive together: how long they take, and what they give meanwhile.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <stdexcept>
+
+#include "slipwise/actuator/command_limiter.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr LaneLimits kLane{.dead_band = 0.1, .top = 2.0, .acceleration = 1.0, .braking = 4.0};
+
+LaneRamp ramp_at(const LaneLimits& limits, double state, double command) {
+  LaneRamp ramp(limits);
+  ramp.aim(command);
+  ramp.place(state);
+  return ramp;
+}
+
+TEST_CASE("a lane brakes to zero and then speeds up the other way, each at its own rate") {
+  const LaneRamp ramp = ramp_at(kLane, 1.0, -2.0);
+  CHECK(ramp.seconds_to(-2.0) == doctest::Approx(1.0 / 4.0 + 2.0 / 1.0));
+  LaneRamp moving = ramp;
+  // 0.125 m while it brakes, then -0.5 * 0.25^2 m.
+  CHECK(moving.mean_over(0.5, 0.5) * 0.5 == doctest::Approx(0.125 - 0.03125));
+  CHECK(moving.state() == doctest::Approx(-0.25));
+}
+
+TEST_CASE("the mean over a piece is that of its parts") {
+  for (const double command : {2.0, 0.5, 0.05, -2.0}) {
+    LaneRamp whole = ramp_at(kLane, 1.0, command);
+    LaneRamp parts = whole;
+    const double distance = whole.mean_over(0.6, 0.6) * 0.6;
+    double sum = 0.0;
+    for (const double seconds : {0.1, 0.35, 0.15}) {
+      sum += parts.mean_over(seconds, seconds) * seconds;
+    }
+    CHECK(sum == doctest::Approx(distance).epsilon(1e-12));
+    CHECK(parts.state() == doctest::Approx(whole.state()).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("a piece that is cut short keeps the mean of the whole, and the lane stands where the cut was") {
+  LaneRamp cut = ramp_at(kLane, 0.0, 2.0);
+  LaneRamp whole = cut;
+  CHECK(cut.mean_over(0.4, 0.1) == doctest::Approx(whole.mean_over(0.4, 0.4)));
+  CHECK(cut.state() == doctest::Approx(0.1));
+}
+
+TEST_CASE("a lane without rates is there at once, and one that only brakes slowly speeds up at once") {
+  LaneRamp free({.top = 2.0});
+  free.aim(5.0);
+  CHECK(free.state() == 2.0);
+  LaneRamp coasting({.braking = 0.5});
+  coasting.aim(1.0);
+  CHECK(coasting.state() == 1.0);
+  CHECK_FALSE(coasting.ramps_to(2.0));
+  CHECK(coasting.ramps_to(0.0));
+  coasting.aim(-1.0);  // zero comes first, and takes its time
+  CHECK(coasting.state() == 1.0);
+  CHECK(coasting.seconds_to(-1.0) == doctest::Approx(2.0));
+}
+
+TEST_CASE("after the seconds that it says are left, a drive gives its target") {
+  const CommandLimits limits{.speed = {.acceleration = 1.0, .braking = 2.0},
+                             .yaw_rate = {.acceleration = 1.5, .braking = 1.5},
+                             .side = {.top = 1.2, .acceleration = 0.8, .braking = 0.8},
+                             .track = 0.6};
+  CommandLimiter limiter(limits);
+  limiter.settle({.v = -0.5, .vy = 0.0, .omega = 0.2});
+  limiter.tell({.v = 1.0, .vy = 0.3, .omega = -1.0});
+  CHECK(limiter.ramps());
+  const double left = limiter.seconds_left();
+  CHECK(left > 0.5 / 2.0 + 1.0 / 1.0);
+  constexpr int kPieces = 400;
+  for (int i = 0; i < kPieces; ++i) {
+    limiter.mean_over(1.1 * left / kPieces, 1.1 * left / kPieces);
+  }
+  CHECK(limiter.seconds_left() == doctest::Approx(0.0));
+  const BodyTwist given = limiter.mean_over(0.1, 0.1);
+  CHECK(given.v == doctest::Approx(limiter.target().v));
+  CHECK(given.omega == doctest::Approx(limiter.target().omega));
+  CHECK(given.vy == 0.3);
+}
+
+TEST_CASE("a drive that is placed at what it gives goes on giving it, also behind gains of its sides") {
+  const CommandLimits limits{
+      .side = {.acceleration = 1.0, .braking = 1.0}, .track = 0.5, .gain_v = 0.8, .gain_omega = 0.5};
+  CommandLimiter limiter(limits);
+  limiter.place({.v = 0.7, .vy = 0.0, .omega = 0.3});
+  CHECK(limiter.seconds_left() == doctest::Approx(0.0));
+  const BodyTwist given = limiter.mean_over(0.2, 0.2);
+  CHECK(given.v == doctest::Approx(0.7));
+  CHECK(given.omega == doctest::Approx(0.3));
+}
+
+TEST_CASE("sides at their top keep what is left of speed and turn") {
+  const CommandLimits limits{.side = {.top = 1.0}, .track = 1.0};
+  const BodyTwist given = settled(limits, {.v = 0.8, .vy = 0.0, .omega = 1.0});  // sides 0.3 and 1.3
+  CHECK(given.v == doctest::Approx(0.65));
+  CHECK(given.omega == doctest::Approx(0.7));
+}
+
+TEST_CASE("a limiter of limits that are none is refused") {
+  CHECK_THROWS_AS(CommandLimiter({.speed = {.top = -1.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(settled({.side = {.top = 1.0}, .track = 0.0}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(settled({.yaw_rate = {.acceleration = 0.0}}, {}), std::invalid_argument);
+  CHECK(settled({.speed = {.top = kNone}}, {.v = 9.0}).v == 9.0);
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers of a robot that make no sense are refused, with the option and what would make sense."""
+
+import math
+
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.export.options import ExportOptions
+
+
+def test_the_defaults_and_the_bounds_themselves_are_taken() -> None:
+    assert ExportOptions().wheel_separation is None
+    assert ExportOptions(horizon=1000.0, wheel_separation=0.001).horizon == 1000.0
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("horizon", "give 0.01 to 1000 s"),
+        ("wheel_separation", "give 0.001 to 100 m"),
+        ("logged_separation_multiplier", "give 0.01 to 100"),
+        ("logged_radius_multiplier", "give 0.01 to 100"),
+        ("min_turning_radius", "give 0.001 to 10000 m"),
+    ],
+)
+@pytest.mark.parametrize("value", [0.0, -1.0, 1e300, math.nan, math.inf])
+def test_a_number_out_of_bounds_is_refused_with_its_option(name: str, advice: str, value: float) -> None:
+    with pytest.raises(SettingsError) as caught:
+        ExportOptions(**{name: value})
+    assert f"--{name.replace('_', '-')}" in str(caught.value)
+    assert str(caught.value).rstrip(".").endswith(advice)
+
+
+def test_an_unknown_version_of_nav2_is_refused_with_those_that_are_known() -> None:
+    with pytest.raises(SettingsError, match=r"'humble'.*rolling, kilted"):
+        ExportOptions(nav2="humble")  # type: ignore[arg-type]

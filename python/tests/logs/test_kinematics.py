@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Body twists from wheel speeds, curvatures and steering angles."""
+
+import numpy as np
+import pytest
+
+from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, twist_from_wheels
+
+
+def test_equal_wheels_drive_straight_and_opposite_ones_turn_on_the_spot() -> None:
+    left, right = np.array([10.0, -10.0]), np.array([10.0, 10.0])
+    v, omega = twist_from_wheels(left, right, wheel_radius=0.1, track=0.5)
+    np.testing.assert_allclose(v, [1.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(omega, [0.0, 4.0], atol=1e-15)
+
+
+def test_a_faster_right_side_turns_to_the_left() -> None:
+    _, omega = twist_from_wheels(np.array([5.0]), np.array([6.0]), wheel_radius=0.2, track=0.8)
+    assert omega[0] == pytest.approx(0.2 * 1.0 / 0.8)
+
+
+def test_a_curvature_turns_backwards_when_the_robot_backs_up() -> None:
+    np.testing.assert_allclose(
+        omega_from_curvature(np.array([2.0, -2.0, 0.0]), np.array([0.5, 0.5, 9.0])), [1.0, -1.0, 0.0]
+    )
+
+
+def test_a_steered_car_turns_about_the_point_that_its_wheelbase_and_angle_give() -> None:
+    steer = np.array([0.3, -0.3, 0.0])
+    omega = omega_from_steering(np.full(3, 4.0), steer, wheelbase=2.5)
+    np.testing.assert_allclose(omega, 4.0 * np.tan(steer) / 2.5, atol=1e-15)
