@@ -28,7 +28,7 @@ LimitSearch search(const CommandLimits& limits, unsigned seed, const std::option
   return find_limits(records, {}, 1.0, {}, before);
 }
 
-const FoundLimit* found(const LimitSearch& search, Lane lane, LimitKind kind) {
+const FoundLimit* found(const LimitSearch& search, LimitedAxis lane, LimitKind kind) {
   const auto at = std::ranges::find_if(
       search.found, [&](const FoundLimit& limit) { return limit.lane == lane && limit.kind == kind; });
   return at == search.found.end() ? nullptr : &*at;
@@ -37,13 +37,13 @@ const FoundLimit* found(const LimitSearch& search, Lane lane, LimitKind kind) {
 TEST_CASE("limits of the sides are found within three standard deviations, and no others") {
   const LimitSearch result = search(kSides, 11);
   for (const LimitKind kind : {LimitKind::Top, LimitKind::Acceleration, LimitKind::Braking}) {
-    const FoundLimit* limit = found(result, Lane::Side, kind);
+    const FoundLimit* limit = found(result, LimitedAxis::Side, kind);
     REQUIRE(limit != nullptr);
     CHECK(std::abs(limit->value - limit_of(kSides.side, kind)) <= 3.0 * limit->std);
     CHECK(limit->std < 0.2 * limit->value);
     CHECK(limit->gain > LimitSearchSettings{}.least_gain);
   }
-  CHECK(std::ranges::all_of(result.found, [](const FoundLimit& limit) { return limit.lane == Lane::Side; }));
+  CHECK(std::ranges::all_of(result.found, [](const FoundLimit& limit) { return limit.lane == LimitedAxis::Side; }));
   CHECK(result.drive.limits.track == doctest::Approx(kLimitedTrack).epsilon(0.1));
   CHECK(result.track_std > 0.0);
 }
@@ -51,7 +51,7 @@ TEST_CASE("limits of the sides are found within three standard deviations, and n
 TEST_CASE("a limit of the commanded speed alone is found as one of the speed, and the track is not asked for") {
   const LimitSearch result = search(kSpeed, 12);
   REQUIRE(result.found.size() == 1);
-  CHECK(found(result, Lane::Speed, LimitKind::Top) != nullptr);
+  CHECK(found(result, LimitedAxis::Speed, LimitKind::Top) != nullptr);
   CHECK(result.found.front().value == doctest::Approx(1.2).epsilon(0.03));
   CHECK(result.track_std == 0.0);
   CHECK(result.drive.limits.track == 1.0);

@@ -105,7 +105,7 @@ TEST_CASE("kinds and lanes of limits are places in them") {
   }
   CHECK(lane == LaneLimits{.dead_band = 0.7, .top = 0.7, .acceleration = 0.7, .braking = 0.7});
   CommandLimits limits;
-  lane_of(limits, Lane::Side).top = 0.4;
+  lane_of(limits, LimitedAxis::Side).top = 0.4;
   CHECK(limits.side.top == 0.4);
   CHECK(limits.speed.top == kFree);
   const CommandLimits sides{.track = 2.0, .gain_v = 0.5, .gain_omega = 3.0};

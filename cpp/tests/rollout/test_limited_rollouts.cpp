@@ -76,10 +76,13 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
   const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
   const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
   // The integrator leaves out inputs that are stamped after the end, even pieces of a ramp that began before. So the
-  // clock offset goes into the stamps.
+  // clock offset goes into the stamps, and so does a delay below zero.
   double offset = 0.0;
   if (model.learned().clock_offset) {
     std::swap(offset, parameters[parameters.size() - 1]);
+  } else if (model.learned().delays) {
+    offset = std::min(parameters.tail<2>().minCoeff(), 0.0);
+    parameters.tail<2>().array() -= offset;
   }
   const double piece = kPeriod / static_cast<double>(program.pieces());
   Worst worst;
