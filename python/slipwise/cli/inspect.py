@@ -168,12 +168,18 @@ def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
 
 
 def _show_learnability(out: Output, item: Learnability) -> None:
+    from slipwise.models.parameter_table import physical_name
+
+    for contradiction in item.contradictions:
+        out.line(f"Poses and {item.input}s contradict each other: {contradiction.sentence}")
+        for advice in contradiction.advice:
+            out.line(f"  {advice}")
     if item.missing:
         out.line(f"From {item.input}s nothing can be learned: {item.missing}")
         return
-    known = [p.name for p in item.parameters if p.determined]
-    unknown = [p.name for p in item.parameters if not p.determined]
-    out.line(f"From {item.input}s: {item.windows} windows, {item.seconds:.0f} s of driving")
+    known = [physical_name(p.name) for p in item.parameters if p.determined]
+    unknown = [physical_name(p.name) for p in item.parameters if not p.determined]
+    out.line(f"From {item.input}s: {item.windows} segments, {item.seconds:.0f} s of driving")
     out.line(f"  determined: {', '.join(known) or 'nothing'}")
     if unknown:
         out.line(f"  not determined: {', '.join(unknown)}")

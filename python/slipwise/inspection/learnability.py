@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from slipwise.calibration.learner import Belief
 from slipwise.calibration.learning_run import start_learning
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
+from slipwise.logs.contradiction import Contradiction
+from slipwise.logs.contradictions import contradictions
 from slipwise.models.schema import UNDETERMINED_RATIO
 
 
@@ -45,6 +47,7 @@ class Learnability:
     left_out: tuple[LeftOut, ...]  # while windows were cut
     missing: str  # why nothing could be learned; empty where something could
     advice: tuple[str, ...]  # the drives that would determine the rest
+    contradictions: tuple[Contradiction, ...] = ()  # between the poses and these inputs
 
     def parameter(self, name: str) -> LearnableParameter | None:
         """Return a parameter, None where the model has no such."""
@@ -53,6 +56,11 @@ class Learnability:
 
 def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnability:
     """Learn as `calibrate` does and say what is determined; nothing to learn is no error."""
+    found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
+    return replace(_learned(log, input_name, settings), contradictions=found)
+
+
+def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     try:
         windows = learning_windows(prepare_drive(log, input_name), input_name, settings)
         refuse_empty(windows, log)

@@ -98,3 +98,12 @@ def test_late_poses_of_a_real_log_are_seen(real_log_dir: Path) -> None:
     assert offset.determined
     assert 0.03 < offset.seconds < 0.35
     assert np.isfinite(offset.std)
+
+
+def test_poses_whose_heading_is_turned_are_said_with_the_option_that_cures_them() -> None:
+    log = simulated_log(Drive(seconds=60.0))
+    turned = [replace(run, poses=replace(run.poses, yaw=run.poses.yaw + np.pi / 2)) for run in log.runs]
+    assert inspect_log(log).learned[0].contradictions == ()
+    found = inspect_log(replace(log, runs=tuple(turned))).learned[0].contradictions
+    assert "turned by 90 deg" in found[0].sentence
+    assert "--pose-yaw-offset -1.57" in found[0].advice[0]
