@@ -130,7 +130,7 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
 
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:
-    from slipwise.cli.next_step import after_learning
+    from slipwise.calibration.next_step import after_learning
     from slipwise.cli.tables import (
         show_alarms,
         show_files,

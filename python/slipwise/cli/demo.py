@@ -76,7 +76,7 @@ def demo(
 
 
 def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
-    from slipwise.cli.next_step import after_learning
+    from slipwise.calibration.next_step import after_learning
     from slipwise.cli.output import Column
     from slipwise.cli.tables import show_files, show_summary, show_verdict
     from slipwise.demo.run_demo import VENDOR_TRACK_MULTIPLIER

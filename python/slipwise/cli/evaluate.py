@@ -147,7 +147,7 @@ def _options(
 
 def _next_step(evaluation: Evaluation, verdict: Verdict | None, models: Sequence[Path]) -> tuple[str, ...]:
     """What to do with a model file that was judged on a log it had not learned from."""
-    from slipwise.cli.next_step import after_checking
+    from slipwise.calibration.next_step import after_checking
 
     if verdict is None or not models or evaluation.models[0] not in evaluation.methods:
         return ()

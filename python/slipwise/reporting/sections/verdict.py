@@ -4,7 +4,9 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
+from slipwise.calibration.next_step import check_command, export_command
 from slipwise.calibration.result import Verdict
 from slipwise.models.summary import summarise
 from slipwise.reporting.contents import PLAIN, Contents
@@ -18,10 +20,6 @@ _STATES = {
     "reserved": "▲ Good, with reservations",
     "bad": "✕ Not good enough",
 }
-_NEXT_STEPS = (
-    "Check it on another day: slipwise evaluate OTHER_LOG --model model.yaml",
-    "Export it: slipwise export model.yaml --to all -o config",
-)
 
 
 class VerdictSection:
@@ -110,5 +108,7 @@ def _learned(contents: Contents) -> str:
 
 def _to_do(verdict: Verdict) -> str:
     if verdict.good:
-        return bullets((*verdict.advice, *_NEXT_STEPS))
+        model = Path("model.yaml")
+        steps = (f"Check it on another day: {check_command(model)}", f"Export it: {export_command(model)}")
+        return bullets((*verdict.advice, *steps))
     return bullets(("Do not use this model.", *verdict.advice))

@@ -6,7 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from slipwise.calibration import Verdict
-from slipwise.cli.next_step import after_checking, after_learning
+from slipwise.calibration.next_step import after_checking, after_learning
 
 
 def test_a_good_model_is_checked_on_another_day_and_then_exported() -> None:

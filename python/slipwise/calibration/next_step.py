@@ -5,30 +5,34 @@ from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from slipwise.calibration import Verdict
-    from slipwise.models.schema import VerdictSection
+from slipwise.calibration.result import Verdict
+from slipwise.models.schema import VerdictSection
+
+
+def check_command(model: Path) -> str:
+    """Return the command that judges a model on another log."""
+    return f"slipwise evaluate OTHER_LOG --model {quote(str(model))}"
+
+
+def export_command(model: Path) -> str:
+    """Return the command that writes files for other tools from a model."""
+    return f"slipwise export {quote(str(model))} --to all -o config"
 
 
 def after_learning(verdict: Verdict | VerdictSection, model: Path) -> tuple[str, ...]:
     """Say what to do with a model that was just learned, or with the robot."""
     if not verdict.good:
         return _instead(verdict)
-    name = quote(str(model))
-    return (
-        "Next: check it on another day, then export it:",
-        f"  slipwise evaluate OTHER_LOG --model {name}",
-        f"  slipwise export {name} --to all -o config",
-    )
+    steps = (f"  {check_command(model)}", f"  {export_command(model)}")
+    return ("Next: check it on another day, then export it:", *steps)
 
 
 def after_checking(verdict: Verdict | VerdictSection, model: Path) -> tuple[str, ...]:
     """Say what to do with a model file that was checked on a log it had not learned from."""
     if not verdict.good:
         return _instead(verdict)
-    return ("Next: export it:", f"  slipwise export {quote(str(model))} --to all -o config")
+    return ("Next: export it:", f"  {export_command(model)}")
 
 
 def _instead(verdict: Verdict | VerdictSection) -> tuple[str, ...]:
