@@ -6,13 +6,14 @@ ARGS ?=
 
 STAMPS := $(VENV)/.stamps
 PYTHON_IN := $(VENV)/bin/python
-PIP := $(PYTHON_IN) -m pip --disable-pip-version-check
+PIP := $(PYTHON_IN) -m pip
 DOCTEST := $(VENV)/include/third_party
 
 # Everything below uses the environment here, whatever other environment is active.
 export PATH := $(CURDIR)/$(VENV)/bin:$(PATH)
 export PYTHONNOUSERSITE := 1
 export PIP_USER := 0
+export PIP_DISABLE_PIP_VERSION_CHECK := 1
 export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
 
@@ -23,8 +24,8 @@ PYTHON_CHECKED := python/slipwise tools
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build demo fuzz test test-slow test-cpp test-python test-python-slow asan lint lint-python lint-types lint-layers lint-files \
-  lint-format lint-tidy format bench thesis clean distclean FORCE
+.PHONY: help env build demo fuzz test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+  lint-format lint-headers lint-tidy format bench thesis clean distclean FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
@@ -39,8 +40,8 @@ demo: build ## simulate a robot, learn its motion model, score it, write a repor
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-slow: ## run the slow tests: coverage, physics, browsers, compilers, sanitizers, the thesis
-	@$(MAKE) --no-print-directory -k test-python-slow asan
+test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ## run the slow tests: coverage, physics, browsers, compilers, the thesis
+	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
 
 test-cpp: build $(STAMPS)/doctest ## run the C++ tests
 	@cmake --preset package -DSLIPWISE_TESTS=ON > /dev/null
@@ -50,16 +51,13 @@ test-cpp: build $(STAMPS)/doctest ## run the C++ tests
 test-python: build $(STAMPS)/dev ## run the quick Python tests; ARGS="-k name" chooses
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m "not slow" $(ARGS)
 
-test-python-slow: build $(STAMPS)/dev $(STAMPS)/doctest
-	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
-
 asan: build $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
 	@cmake --preset asan > /dev/null
 	@cmake --build --preset asan
 	@ctest --preset asan
 
 lint: ## run all checks of style, types, layers and files
-	@$(MAKE) --no-print-directory -k lint-files lint-layers lint-python lint-types lint-format lint-tidy
+	@$(MAKE) --no-print-directory -k lint-files lint-layers lint-python lint-types lint-format lint-headers lint-tidy
 	@echo "lint: all checks passed"
 
 lint-files: $(STAMPS)/dev
@@ -78,6 +76,10 @@ lint-types: build $(STAMPS)/dev
 
 lint-format: $(STAMPS)/dev
 	@clang-format --dry-run -Werror $(CPP_FORMATTED)
+
+lint-headers: $(STAMPS)/dev
+	@cmake --preset headers > /dev/null
+	@cmake --build --preset headers
 
 lint-tidy: $(STAMPS)/dev
 	@cmake --preset tidy > /dev/null

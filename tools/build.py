@@ -16,7 +16,7 @@ from typing import TextIO
 
 ROOT = Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/package"
-PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install")
+PIP = (sys.executable, "-m", "pip", "install")
 NINJA_STEP = re.compile(r"^\[(\d+)/(\d+)\]")
 PIP_STEP = re.compile(r"^(?:Collecting|Downloading|Installing collected packages) *:? *([\w.-]*)")
 EVERY = 20.0  # s between lines where nobody watches; a terminal has one line that changes

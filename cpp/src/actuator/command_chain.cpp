@@ -99,9 +99,9 @@ class ChainWalk {
       approach({chain_start_.t - warm_up_, kFixed}, chain_start_);
     }
     if (window_.initial) {
-      start_at(cursor_v_, v_, &BodyTwist::v);
-      start_at(cursor_v_, vy_, &BodyTwist::vy);
-      start_at(cursor_omega_, omega_, &BodyTwist::omega);
+      start_at(cursor_v_, v_, window_.initial->v, &BodyTwist::v);
+      start_at(cursor_v_, vy_, window_.initial->vy, &BodyTwist::vy);
+      start_at(cursor_omega_, omega_, window_.initial->omega, &BodyTwist::omega);
     }
     if (window_.known && start_.t < chain_start_.t) {
       follow_measured(*window_.known->twist, result);
@@ -122,12 +122,11 @@ class ChainWalk {
   }
 
   /// The channel where the chain starts, as it was measured.
-  void start_at(const DelayedCursor& cursor, DriveChannel& channel, double BodyTwist::* part) const {
-    const double value = (*window_.initial).*part;
+  static void start_at(const DelayedCursor& cursor, DriveChannel& channel, double measured, double BodyTwist::* part) {
     if (cursor.before_first()) {
-      channel.keep(value);
+      channel.keep(measured);
     } else {
-      channel.measured(value, cursor.held().*part);
+      channel.measured(measured, cursor.held().*part);
     }
   }
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -42,10 +41,12 @@ double seconds_to_rest(const ChannelResponse& response, double fast, double slow
     return std::abs(lag_output(fast, 0.0, response.lag, seconds)) +
            std::abs(lag_output(slow, 0.0, response.slow_lag, seconds));
   };
+  const double stride = response.longest_lag();
   double late = 0.0;
-  for (double step = response.longest_lag(); step > kNoTime && left(late) > slowest; late += step) {
+  while (stride > kNoTime && left(late) > slowest) {
+    late += stride;
   }
-  double early = std::max(0.0, late - response.longest_lag());
+  double early = std::max(0.0, late - stride);
   while (late - early > kNoTime) {
     const double middle = 0.5 * (early + late);
     (left(middle) > slowest ? early : late) = middle;
@@ -193,30 +194,32 @@ Trajectory TrajectoryPlanner::to(const Pose2& goal, const DriveStart& start) con
   }
   guesses.insert(guesses.begin(), straight_guess(goal));
   int linearizations = 0;
-  std::optional<Reach> found;
+  bool found = false;
   double cruise = settings_.cruise;
   for (int slower = 0; slower < kSlower; ++slower, cruise *= 0.5) {
     const ReachProblem start_of_all = problem(start, cruise);
     ManoeuvreFrame frame = start_of_all.frame;
-    std::optional<Reach> nearest;
+    Reach nearest{.parameters = ManoeuvreVector::Zero()};
+    bool first = true;
     for (const ManoeuvreVector& guess : guesses) {
       ReachProblem at = start_of_all;
       const Reach reach = reach_at_rest(at, goal, guess, settings_);
       linearizations += reach.linearizations;
-      if (!nearest || better(reach, *nearest, goal)) {
+      if (first || better(reach, nearest, goal)) {
         nearest = reach;
         frame = at.frame;
       }
+      first = false;
       if (reach.reached && !loops(reach, goal)) {
         break;
       }
     }
-    if (!found || nearest->reached) {
-      found = nearest;
-      best = trajectory_of(*nearest, {start_of_all.model, frame, start_of_all.start, start_of_all.bounds});
+    if (!found || nearest.reached) {
+      found = true;
+      best = trajectory_of(nearest, {start_of_all.model, frame, start_of_all.start, start_of_all.bounds});
     }
     // Slower commands bend more only where the yaw rate is what limits them.
-    if (nearest->reached || limits_.curvature * start_of_all.frame.speeds.cruise <= limits_.yaw_rate) {
+    if (nearest.reached || limits_.curvature * start_of_all.frame.speeds.cruise <= limits_.yaw_rate) {
       break;
     }
   }
