@@ -69,10 +69,11 @@ StartDrive start_drive(const ChainSchedule& chain, const ChannelTiming& channel,
   const double warm_up = parts_warm_up(chain.v.response, chain.omega.response);
   const StartInputs<Command> inputs{channel, chain.period, oldest, keeping, command};
   const double settled = response.gain * inputs.now(), share = response.share();
-  const double slow = slow_mode<double>({.left = drive - response.fast_share() * inputs.lagged(response.lag, warm_up),
+  const MeasuredChannel<double> measured{.left = drive - response.fast_share() * inputs.lagged(response.lag, warm_up),
                                          .modelled = share * response.gain * inputs.lagged(response.slow_lag, warm_up),
                                          .settled = share * settled,
-                                         .carried = drive - (1.0 - share) * settled});
+                                         .carried = drive - (1.0 - share) * settled};
+  const double slow = slow_mode(measured);
   return {.told = keeping, .fast = drive - slow, .slow = slow};
 }
 
