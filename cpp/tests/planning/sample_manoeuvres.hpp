@@ -30,7 +30,17 @@ inline SampleModel sample_model(const Basis& basis, bool dynamics) {
   return {basis.name() + (dynamics ? " with chain" : ""), std::move(motion), std::move(parameters)};
 }
 
-/// The same with gains and a slow part that differ between the channels.
+/// Curvatures up to 0.8 1/m, lengths from 0.5 m to `longest`.
+inline ManoeuvreBounds sample_bounds(double longest) {
+  ManoeuvreBounds bounds;
+  bounds.low.setConstant(-0.8);
+  bounds.high.setConstant(0.8);
+  bounds.low[kLength] = 0.5;
+  bounds.high[kLength] = longest;
+  return bounds;
+}
+
+/// A sample model with gains and a slow part that differ between the channels.
 inline SampleModel responding_model(const Basis& basis) {
   MotionModel motion(basis, {.dynamics = true, .response = true});
   Eigen::VectorXd parameters(motion.size());

@@ -20,13 +20,7 @@ struct Sample {
   ReachProblem problem{.model = model,
                        .frame = {.speeds = {.start = 0.0, .cruise = 1.0, .end = 0.0}, .commands = 12},
                        .start = {},
-                       .bounds = {}};
-  Sample() {
-    problem.bounds.low.setConstant(-0.8);
-    problem.bounds.high.setConstant(0.8);
-    problem.bounds.low[kLength] = 0.5;
-    problem.bounds.high[kLength] = 5.0;
-  }
+                       .bounds = tests::sample_bounds(5.0)};
 };
 
 double apart(const Pose2& a, const Pose2& b) {

@@ -17,13 +17,7 @@ struct Sample {
   ReachProblem problem{.model = model,
                        .frame = {.speeds = {.start = 0.0, .cruise = 1.0, .end = 0.0}, .settling = 2.0},
                        .start = {},
-                       .bounds = {}};
-  Sample() {
-    problem.bounds.low.setConstant(-0.8);
-    problem.bounds.high.setConstant(0.8);
-    problem.bounds.low[kLength] = 0.5;
-    problem.bounds.high[kLength] = 6.0;
-  }
+                       .bounds = tests::sample_bounds(6.0)};
   ManoeuvreVector straight(double length) const {
     ManoeuvreVector guess = ManoeuvreVector::Zero();
     guess[kLength] = length;
