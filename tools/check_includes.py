@@ -19,6 +19,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("motion",),
     ("segment", "rollout"),
     ("estimate", "planning"),
+    ("identify", "hypotheses"),
     ("online",),
 )
 LEVEL = {folder: level for level, row in enumerate(LAYERS) for folder in row}

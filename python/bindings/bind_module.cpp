@@ -22,4 +22,5 @@ NB_MODULE(_core, m) {
   bind_regression(m);
   bind_estimators(m);
   bind_limits(m);
+  bind_online(m);
 }

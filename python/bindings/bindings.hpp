@@ -20,5 +20,6 @@ void bind_start_pose(nanobind::module_& m);
 void bind_limits(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
 void bind_estimators(nanobind::module_& m);
+void bind_online(nanobind::module_& m);
 
 }  // namespace slipwise::bindings

@@ -16,21 +16,21 @@
 namespace slipwise {
 namespace {
 
-SeenSlip see(const MotionBelief& belief, const WanderingTerms& terms, const InputTrack& inputs,
-             const Segment& segment) {
+SeenSlip see(const MotionPosterior& belief, const WanderingTerms& terms, const DrivenSegment& driven) {
+  const auto& [inputs, segment, known_at] = driven;
   const auto at = linearize_slip(belief.model, belief.estimate.mean, inputs, segment);
   Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
   innovation.z() = wrap_angle(innovation.z());
   return {segment.start, segment.end, innovation,
-          segment_noise(at.path, at.predicted, belief.shape, belief.noise_scale),
+          segment_noise(at.path, at.predicted, belief.noise, belief.noise_scale),
           at.by_parameter(Eigen::all, terms.places)};
 }
 
-std::vector<SeenSlip> see_all(const MotionBelief& belief, const WanderingTerms& terms, const InputTrack& inputs,
-                              std::span<const Segment> segments) {
+std::vector<SeenSlip> see_all(const MotionPosterior& belief, const WanderingTerms& terms,
+                              std::span<const DrivenSegment> segments) {
   std::vector<SeenSlip> seen;
-  for (const Segment& segment : segments) {
-    seen.push_back(see(belief, terms, inputs, segment));
+  for (const DrivenSegment& segment : segments) {
+    seen.push_back(see(belief, terms, segment));
   }
   return seen;
 }
@@ -92,14 +92,13 @@ ColouredSlip::ColouredSlip(WanderLaw law) : law_(std::move(law)) {
   prior_ = law_.weights;
 }
 
-void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now,
-                         const Segment& segment) {
+void ColouredSlip::learn(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment) {
   const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
   check_fits(now, law_, terms);
   if (terms.places.empty()) {
     return;
   }
-  const SeenSlip next = see(belief, terms, inputs, segment);
+  const SeenSlip next = see(belief, terms, segment);
   Eigen::VectorXd scores(law_.weights.size());
   for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
@@ -111,24 +110,25 @@ void ColouredSlip::learn(const MotionBelief& belief, const InputTrack& inputs, c
   ++seen_;
 }
 
-SlipNow ColouredSlip::now(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent) const {
+SlipNow ColouredSlip::now(const MotionPosterior& belief, std::span<const DrivenSegment> recent) const {
   const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
   SlipNow now;
   if (terms.places.empty() || law_.candidates.empty()) {
     return now;
   }
-  const std::vector<SeenSlip> seen = see_all(belief, terms, inputs, recent);
+  const std::vector<SeenSlip> seen = see_all(belief, terms, recent);
   for (const SlipWander& wander : law_.candidates) {
     now.of_candidates.push_back(followed(wander, terms, seen));
   }
   return now;
 }
 
-ExpectedPose ColouredSlip::predict(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now,
-                                   const Segment& segment) const {
-  const auto at = linearize_segment(belief.model, belief.estimate.mean, inputs, segment);
+ExpectedPose ColouredSlip::predict(const MotionPosterior& belief, const SlipNow& now,
+                                   const DrivenSegment& driven) const {
+  const Segment& segment = driven.segment;
+  const auto at = linearize_segment(belief.model, belief.estimate.mean, driven.inputs, segment);
   ExpectedPose expected{at.predicted.vector(),
-                        prediction_covariance(at, belief.estimate.covariance, belief.shape, belief.noise_scale)};
+                        prediction_covariance(at, belief.estimate.covariance, belief.noise, belief.noise_scale)};
   const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
   check_fits(now, law_, terms);
   const SeenSlip::ByDeviation h = at.by_parameter(Eigen::all, terms.places);

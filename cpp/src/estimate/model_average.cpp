@@ -177,6 +177,12 @@ void ModelAverage::doubt() {
   on_trial_ = settings_.change.trial;
 }
 
+void ModelAverage::forget(double fraction) {
+  for (CausalFilter& filter : filters_) {
+    filter.forget(fraction);
+  }
+}
+
 /// Keeps the models of the ground that predicted better.
 void ModelAverage::settle() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());

@@ -58,7 +58,7 @@ Segment stretch_before(const Segment& window, double since) {
   return before;
 }
 
-std::vector<Carried> carried_back(const MotionBelief& belief, const InputTrack& inputs, const SeenPoses& seen,
+std::vector<Carried> carried_back(const MotionPosterior& belief, const InputTrack& inputs, const SeenPoses& seen,
                                   const Segment& segment) {
   check_seen(seen, segment);
   std::vector<Carried> result;
@@ -127,7 +127,7 @@ StartPose::StartPose(StartLaw law) : law_(std::move(law)) {
   prior_ = law_.weights;
 }
 
-void StartPose::learn(const MotionBelief& belief, const InputTrack& inputs, const SeenPoses& seen,
+void StartPose::learn(const MotionPosterior& belief, const InputTrack& inputs, const SeenPoses& seen,
                       const Segment& segment, const ExpectedPose& expected) {
   const std::vector<Carried> carried = carried_back(belief, inputs, seen, segment);
   if (carried.empty()) {
@@ -145,7 +145,7 @@ void StartPose::learn(const MotionBelief& belief, const InputTrack& inputs, cons
   ++seen_;
 }
 
-Pose2 StartPose::offset(const MotionBelief& belief, const InputTrack& inputs, const SeenPoses& seen,
+Pose2 StartPose::offset(const MotionPosterior& belief, const InputTrack& inputs, const SeenPoses& seen,
                         const Segment& segment) const {
   const std::vector<Carried> carried = carried_back(belief, inputs, seen, segment);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();

@@ -22,11 +22,11 @@ constexpr std::ptrdiff_t kRecent = 12;
 const MotionNoise kNoise{.pose_std_xy = 0.02, .pose_std_yaw = 0.02};
 
 /// edd-2 (lon.V, ang.w), known but for what wanders.
-MotionBelief known_belief(const MotionModel& model) {
+MotionPosterior known_belief(const MotionModel& model) {
   return {.model = model,
           .estimate = {Eigen::Vector2d(-0.1, -0.3), Eigen::Matrix2d::Zero()},
           .prior_std = Eigen::Vector2d(0.3, 0.3),
-          .shape = kNoise,
+          .noise = kNoise,
           .noise_scale = Eigen::Vector3d::Ones()};
 }
 
@@ -50,15 +50,23 @@ std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdi
   return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first));
 }
 
-ExpectedPose expected(const ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
-                      std::span<const Segment> recent, const Segment& segment) {
-  return slip.predict(belief, inputs, slip.now(belief, inputs, recent), segment);
+std::vector<DrivenSegment> driven(const InputTrack& inputs, std::span<const Segment> segments) {
+  std::vector<DrivenSegment> all;
+  for (const Segment& segment : segments) {
+    all.push_back({.inputs = inputs, .segment = segment});
+  }
+  return all;
 }
 
-void learn(ColouredSlip& slip, const MotionBelief& belief, const InputTrack& inputs,
+ExpectedPose expected(const ColouredSlip& slip, const MotionPosterior& belief, const InputTrack& inputs,
+                      std::span<const Segment> recent, const Segment& segment) {
+  return slip.predict(belief, slip.now(belief, driven(inputs, recent)), {.inputs = inputs, .segment = segment});
+}
+
+void learn(ColouredSlip& slip, const MotionPosterior& belief, const InputTrack& inputs,
            const std::vector<Segment>& segments, std::ptrdiff_t i) {
-  const SlipNow now = slip.now(belief, inputs, before(segments, i));
-  slip.learn(belief, inputs, now, segments[static_cast<std::size_t>(i)]);
+  const SlipNow now = slip.now(belief, driven(inputs, before(segments, i)));
+  slip.learn(belief, now, {.inputs = inputs, .segment = segments[static_cast<std::size_t>(i)]});
 }
 
 struct Followed {
@@ -68,7 +76,7 @@ struct Followed {
   double nis = 0.0;          ///< mean over the second half
 };
 
-Followed follow(const MotionBelief& belief, const InputTrack& inputs, const std::vector<Segment>& segments) {
+Followed follow(const MotionPosterior& belief, const InputTrack& inputs, const std::vector<Segment>& segments) {
   Followed found{.slip = ColouredSlip(ColouredSlipSettings{})};
   for (std::ptrdiff_t i = 0; i < std::ssize(segments); ++i) {
     const Segment& next = segments[static_cast<std::size_t>(i)];
@@ -93,7 +101,7 @@ struct Setting {
 
 TEST_CASE("slip that holds still is not said to wander, and predictions stay as they were") {
   const Setting s;
-  const MotionBelief belief = known_belief(s.model);
+  const MotionPosterior belief = known_belief(s.model);
   const auto segments = drive(s.model, s.inputs, 300, [](int) { return Eigen::Vector2d(-0.1, -0.3); });
   const Followed found = follow(belief, s.inputs, segments);
   CHECK(found.slip.law().weights[0] > 0.7);
@@ -103,7 +111,7 @@ TEST_CASE("slip that holds still is not said to wander, and predictions stay as 
 
 TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted better, with a true covariance") {
   const Setting s;
-  const MotionBelief belief = known_belief(s.model);
+  const MotionPosterior belief = known_belief(s.model);
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   std::vector<double> wander{0.0};
@@ -126,7 +134,7 @@ TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted
 
 TEST_CASE("what was seen is let go with time, and the covariance comes back to what is usual") {
   const Setting s;
-  const MotionBelief belief = known_belief(s.model);
+  const MotionPosterior belief = known_belief(s.model);
   const auto segments = drive(s.model, s.inputs, 12, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
   const ColouredSlip slip(ColouredSlipSettings{.fractions = {0.3}, .time_constants = {20.0}, .white = 1e-6});
   const std::vector<double> start{0.0}, v{1.0}, vy{0.0}, omega{0.5};
@@ -145,7 +153,7 @@ TEST_CASE("what was seen is let go with time, and the covariance comes back to w
 TEST_CASE("a model without linear terms is predicted as it is") {
   const Setting s;
   const MotionModel plain(Basis("none", {}, {}, {}), {});
-  const MotionBelief belief{
+  const MotionPosterior belief{
       plain, {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)}, Eigen::VectorXd(0), kNoise, Eigen::Vector3d::Ones()};
   const auto segments = drive(s.model, s.inputs, 13, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
   ColouredSlip slip(ColouredSlipSettings{});
@@ -156,7 +164,7 @@ TEST_CASE("a model without linear terms is predicted as it is") {
 
 TEST_CASE("a law that is read back predicts to the last bit as the one learned, and what is usual is its covariance") {
   const Setting s;
-  const MotionBelief belief = known_belief(s.model);
+  const MotionPosterior belief = known_belief(s.model);
   const auto segments = drive(s.model, s.inputs, 40, [](int i) { return Eigen::Vector2d(-0.1, i < 20 ? -0.3 : -0.2); });
   ColouredSlip slip(ColouredSlipSettings{});
   for (std::ptrdiff_t i = 0; i < 39; ++i) {
@@ -171,11 +179,12 @@ TEST_CASE("a law that is read back predicts to the last bit as the one learned, 
   }
   const auto at = linearize_segment(s.model, belief.estimate.mean, s.inputs, segments.back());
   const Eigen::MatrixXd over = covariance_over(s.model, belief.estimate.covariance, slip.law(), belief.prior_std, 1.0);
-  const Eigen::Matrix3d stated = prediction_covariance(at, over, belief.shape, belief.noise_scale);
+  const Eigen::Matrix3d stated = prediction_covariance(at, over, belief.noise, belief.noise_scale);
   const ExpectedPose usual = expected(read, belief, s.inputs, {}, segments.back());
   CHECK((usual.covariance - stated).norm() < 1e-12 * stated.norm());
   CHECK(usual.pose == at.predicted.vector());
-  CHECK_THROWS_AS(read.predict(belief, s.inputs, {}, segments.back()), std::invalid_argument);
+  CHECK_THROWS_AS(read.predict(belief, SlipNow{}, {.inputs = s.inputs, .segment = segments.back()}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("sizes that are no sizes are refused") {

@@ -24,11 +24,11 @@ struct Setting {
   std::mt19937_64 random{5};
   MotionModel model{named_basis("edd-2"), {}};
   InputTrack inputs = tests::random_inputs(random, 620.0, 0.05);
-  MotionBelief belief{.model = model,
-                      .estimate = {Eigen::Vector2d(-0.1, -0.3), Eigen::Matrix2d::Zero()},
-                      .prior_std = Eigen::Vector2d(0.3, 0.3),
-                      .shape = {.pose_std_xy = 0.02, .pose_std_yaw = 0.01},
-                      .noise_scale = Eigen::Vector3d::Ones()};
+  MotionPosterior belief{.model = model,
+                         .estimate = {Eigen::Vector2d(-0.1, -0.3), Eigen::Matrix2d::Zero()},
+                         .prior_std = Eigen::Vector2d(0.3, 0.3),
+                         .noise = {.pose_std_xy = 0.02, .pose_std_yaw = 0.01},
+                         .noise_scale = Eigen::Vector3d::Ones()};
 };
 
 enum class Noise : std::uint8_t { None, White };
@@ -69,7 +69,7 @@ Segment window(const Drive& drive, int first, int last) {
 ExpectedPose expected(const Setting& s, const Segment& segment) {
   const auto at = linearize_segment(s.model, s.belief.estimate.mean, s.inputs, segment);
   return {at.predicted.vector(),
-          prediction_covariance(at, s.belief.estimate.covariance, s.belief.shape, s.belief.noise_scale)};
+          prediction_covariance(at, s.belief.estimate.covariance, s.belief.noise, s.belief.noise_scale)};
 }
 
 struct Learned {

@@ -64,10 +64,10 @@ class StartPass:
             self._coloured.learn(known, track, now, segment)
 
 
-def motion_belief(belief: Belief, shape: _core.MotionNoise) -> _core.MotionBelief:
+def motion_belief(belief: Belief, shape: _core.MotionNoise) -> _core.MotionPosterior:
     """Return the belief as the core takes it; `shape` is that of the noise where the belief has none."""
     estimate = _core.Estimate(belief.mean, belief.covariance)
-    return _core.MotionBelief(
+    return _core.MotionPosterior(
         belief.motion, estimate, belief.prior_std, belief.noise or shape, belief.noise_scale
     )
 

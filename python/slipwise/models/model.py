@@ -204,11 +204,11 @@ class Model:
         return np.array([parameter.prior_std for parameter in self.content.parameters], dtype=np.float64)
 
     @cached_property
-    def belief(self) -> _core.MotionBelief:
+    def belief(self) -> _core.MotionPosterior:
         """What the core predicts from: parameters, how sure they are, and the noise."""
         estimate = _core.Estimate(self.mean, self.covariance)
         scale = np.array(self.content.noise.scale)
-        return _core.MotionBelief(self.motion, estimate, self.prior_std, self.noise, scale)
+        return _core.MotionPosterior(self.motion, estimate, self.prior_std, self.noise, scale)
 
     @cached_property
     def wander(self) -> _core.WanderLaw:

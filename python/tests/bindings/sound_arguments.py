@@ -41,8 +41,8 @@ def _noise() -> _core.MotionNoise:
     return _core.MotionNoise([1e-4] * 3, [1e-4] * 3, [0.01] * 3, 0.01, 0.01)
 
 
-def _belief() -> _core.MotionBelief:
-    return _core.MotionBelief(_model(), _estimate(), np.ones(SIZE), _noise(), np.ones(3))
+def _belief() -> _core.MotionPosterior:
+    return _core.MotionPosterior(_model(), _estimate(), np.ones(SIZE), _noise(), np.ones(3))
 
 
 def _now() -> _core.SlipNow:
@@ -168,7 +168,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "LeastSquaresFit": _fit,
     "LimitSearch": lambda: None,
     "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
-    "MotionBelief": _belief,
+    "MotionPosterior": _belief,
     "MotionModel": _model,
     "MotionNoise": _noise,
     "Mppi": _mppi,

@@ -53,7 +53,7 @@ def test_stamps_that_are_not_numbers_are_refused() -> None:
     start = _core.StartPose(_core.StartPoseSettings())
     seen = _core.SeenPoses([float("nan"), 1.0], np.zeros((2, 3)))
     with pytest.raises(ValueError, match="stamps of poses before a start must increase"):
-        start.offset(of_type("MotionBelief"), of_type("InputTrack"), seen, of_type("Segment"))
+        start.offset(of_type("MotionPosterior"), of_type("InputTrack"), seen, of_type("Segment"))
 
 
 @pytest.mark.parametrize("number", range(len(bound_functions())))

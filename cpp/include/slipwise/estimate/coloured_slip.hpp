@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/estimate/motion_posterior.hpp"
 #include "slipwise/estimate/slip_deviation.hpp"
 #include "slipwise/estimate/weighing.hpp"
-#include "slipwise/motion/motion_noise.hpp"
 #include "slipwise/motion/slip_wander.hpp"
+#include "slipwise/segment/driven_segment.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -21,15 +21,6 @@ struct ColouredSlipSettings {
   std::vector<double> time_constants = {5.0, 20.0};  ///< candidates [s]
   double white = 0.5;                                ///< weight beforehand of slip that does not wander [-]
   WeighingSettings weighing{.learning_rate = 1.0, .share = 0.01};
-};
-
-/// A model as it is believed before the segments that it is asked about.
-struct MotionBelief {
-  MotionModel model;
-  Estimate estimate;
-  Eigen::VectorXd prior_std;    ///< [parameters]
-  MotionNoise shape;            ///< of the noise
-  Eigen::Vector3d noise_scale;  ///< learned factor of its variances
 };
 
 /// Where a segment is expected to end: chart (x, y, theta) of T_start_end and its covariance.
@@ -56,13 +47,12 @@ class ColouredSlip {
 
   /// Weighs the candidates by `segment`, foretold from `now`, which is as `predict` takes it.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
-  void learn(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now, const Segment& segment);
+  void learn(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment);
   /// What `recent` segments, in the order of time, say of the slip after them; without any, what is usual.
-  SlipNow now(const MotionBelief& belief, const InputTrack& inputs, std::span<const Segment> recent) const;
+  SlipNow now(const MotionPosterior& belief, std::span<const DrivenSegment> recent) const;
   /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
-  ExpectedPose predict(const MotionBelief& belief, const InputTrack& inputs, const SlipNow& now,
-                       const Segment& segment) const;
+  ExpectedPose predict(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment) const;
 
   const WanderLaw& law() const { return law_; }
 

@@ -44,6 +44,9 @@ class ModelAverage {
   /// learned again less often, as those of a filter without weight are.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
 
+  /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
+  void forget(double fraction);
+
   const MotionModel& model() const { return model_; }
   AverageState state() const;
   /// The test of the last segment for a change of ground.

@@ -44,11 +44,11 @@ class StartPose {
   explicit StartPose(StartLaw law);
 
   /// Weighs the candidates by `segment`, whose end was `expected` from its measured start.
-  void learn(const MotionBelief& belief, const InputTrack& inputs, const SeenPoses& seen, const Segment& segment,
+  void learn(const MotionPosterior& belief, const InputTrack& inputs, const SeenPoses& seen, const Segment& segment,
              const ExpectedPose& expected);
   /// Where the sensor is at the start of `segment`, as seen from the pose measured there.
   /// \throws std::invalid_argument when the stamps do not increase to the segment's start, or a pose lacks its stamp.
-  Pose2 offset(const MotionBelief& belief, const InputTrack& inputs, const SeenPoses& seen,
+  Pose2 offset(const MotionPosterior& belief, const InputTrack& inputs, const SeenPoses& seen,
                const Segment& segment) const;
 
   const StartLaw& law() const { return law_; }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning from commands in two parts: the actuator model from wheel speeds, and the slip behind it from poses.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "slipwise/estimate/chain_learner.hpp"
+#include "slipwise/estimate/model_average.hpp"
+#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/segment/driven_segment.hpp"
+
+namespace slipwise {
+
+/// A stretch of commands and of the wheel speeds that follow them.
+struct WheelSegment {
+  InputTrack commands;
+  InputTrack wheels;
+  double start;  ///< [s] in input stamps
+  double end;    ///< [s]
+};
+
+/// Wheel speeds are what the actuator gives out and what the slip acts on: each part is learned from much more than the
+/// joint model has.
+class CascadedModel {
+ public:
+  /// `slip` has learned nothing yet; its inputs are wheel speeds.
+  CascadedModel(ModelAverage slip, const CausalFilterSettings& settings);
+
+  /// Learns the slip from a segment whose inputs are wheel speeds.
+  void learn_slip(const DrivenSegment& segment);
+  /// Learns the actuator model from commands and wheel speeds.
+  void learn_actuator(const WheelSegment& segment);
+  /// Predicts a segment of the commands by what was known when `refresh` was called last.
+  ScoredSegment predict(const DrivenSegment& segment);
+  /// Joins what is known of slip and actuator.
+  void refresh();
+  /// What was joined last.
+  const std::shared_ptr<const MotionPosterior>& posterior() const { return posterior_; }
+  /// The strongest test for a change of terrain since the last `refresh`.
+  const ChangeTest& change() const { return change_; }
+  /// Gives the slip parameters `fraction` of their prior variance back.
+  void forget(double fraction) { slip_.forget(fraction); }
+
+ private:
+  MotionModel model_;
+  MotionNoise noise_;
+  ModelAverage slip_;
+  ChainLearner actuator_;
+  PredictiveScore score_;
+  std::vector<Eigen::Index> places_of_slip_;  ///< of its parameters among the model's
+  std::vector<Eigen::Index> places_of_actuator_;
+  ChangeTest change_;
+  ChangeTest change_since_;
+  std::shared_ptr<const MotionPosterior> posterior_;
+};
+
+}  // namespace slipwise

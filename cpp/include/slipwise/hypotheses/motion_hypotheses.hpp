@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// How motion is explained: by slip, lag and delay, by less, or by wheel speeds too; whichever predicts better.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "slipwise/estimate/model_average.hpp"
+#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/segment/driven_segment.hpp"
+
+namespace slipwise {
+
+/// What is learned.
+struct HypothesisSettings {
+  std::vector<Basis> bases;  ///< averaged, or one
+  bool dynamics = true;      ///< inputs are commands: lag and delay are learned
+  bool clock_offset = true;  ///< learned, where inputs are wheel speeds
+  bool mount = false;        ///< where the pose sensor sits is learned
+  bool alternatives = true;  ///< also try simpler structures, and the cascaded one
+  CausalFilterSettings filter = {};
+  ModelAverageSettings average = {};
+};
+
+/// How one structure took a segment in.
+struct StructureUpdate {
+  double nis = 0.0;     ///< of the segment before it was learned
+  double weight = 1.0;  ///< how much it counted: 0 rejected
+  ChangeTest change = {};
+};
+
+/// Runs all structures causally and weights them by their predictive likelihood, as bases are weighted. Predictions are
+/// those of the heaviest: they have different parameters, which have no mean. How an actuator answers does not change
+/// with the terrain: a simpler structure that is refuted once is dropped for good.
+class MotionHypotheses {
+ public:
+  explicit MotionHypotheses(const HypothesisSettings& settings);
+
+  /// Whether there is more than one structure.
+  bool several() const;
+  /// Begins to learn one segment. `wheels_known` says whether wheel speeds came beside the commands so far.
+  void start(const DrivenSegment& segment, bool wheels_known);
+  /// Does a bounded piece of it; whether there is more to do.
+  bool advance();
+  /// Learns the parts of the cascaded structure.
+  void learn_slip(const DrivenSegment& segment);
+  void learn_actuator(const WheelSegment& segment);
+  /// Gives all slip parameters `fraction` of their prior variance back: another sensor says that the terrain changed.
+  void forget(double fraction);
+
+  /// What the heaviest structure knows.
+  std::shared_ptr<const MotionPosterior> posterior() const;
+  /// The same among structures with slip, which the baseline has not.
+  std::shared_ptr<const MotionPosterior> slip_posterior() const;
+  /// What one structure knows; nothing where it is not tried.
+  std::shared_ptr<const MotionPosterior> of(Structure structure) const;
+  /// Weight of each structure; 0 where it is not tried.
+  const std::array<double, kStructures>& weights() const { return weights_; }
+  /// How each structure took the last segment in.
+  const std::array<StructureUpdate, kStructures>& updates() const { return updates_; }
+  /// Segments learned.
+  std::size_t count() const { return count_; }
+
+ private:
+  using Active = std::array<bool, kStructures>;
+  bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }
+  double weight(Structure structure) const { return weights_[static_cast<std::size_t>(structure)]; }
+  bool may_predict(Structure structure) const;
+  void join_cascade();
+  ScoredSegment predict(Structure structure);
+  ScoredSegment learned(ModelAverage& average, Structure structure);
+  void update_weights();
+  void drop_refuted();
+  std::vector<Structure> structures() const;
+  std::shared_ptr<const MotionPosterior> posterior_of(const ModelAverage& average, Structure structure) const;
+
+  HypothesisSettings settings_;
+  ModelAverage joint_;
+  std::optional<ModelAverage> direct_;
+  std::vector<Eigen::Index> direct_bases_;  ///< their places among all bases
+  std::optional<CascadedModel> cascaded_;
+  PredictiveScore baseline_;
+  Active tried_{};
+  std::array<double, kStructures> weights_{};
+  std::array<double, kStructures> evidence_{};  ///< tempered log scores so far
+  std::array<StructureUpdate, kStructures> updates_{};
+  std::size_t count_ = 0;
+  std::optional<DrivenSegment> segment_;  ///< that is being learned
+  std::vector<Structure> to_predict_;     ///< it, in this order
+  std::vector<ScoredSegment> predicted_;  ///< so far
+};
+
+}  // namespace slipwise

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// How large and how heavy-tailed the errors of predictions are, beside what their covariance said.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+
+namespace slipwise {
+
+/// A multivariate Student t around a prediction.
+struct StudentT {
+  double inflation;  ///< factor of the covariance
+  double dof;        ///< degrees of freedom
+};
+
+/// Fits a Student t to the errors of predictions, one after another. The posterior over a grid of variance scale and
+/// degrees of freedom is a mixture of t; the t reported is the one with the mixture's 50 % and 95 % ellipsoids. How
+/// fast older errors are forgotten is weighted by how well each forgetting time predicted the errors so far
+/// (derivations.md, section 5).
+class StudentCalibration {
+ public:
+  StudentCalibration();
+  /// Takes in the squared Mahalanobis length of an error in its reported covariance.
+  void learn(double squared);
+  StudentT fitted() const;
+
+ private:
+  static constexpr std::size_t kForgettingTimes = 4;
+  std::array<Eigen::VectorXd, kForgettingTimes> evidence_;  ///< over the grid, logarithms
+  std::array<double, kForgettingTimes> predicted_{};        ///< log densities of all errors so far
+};
+
+}  // namespace slipwise

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Predictions held against what was measured, none of which they had learned.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <memory>
+#include <span>
+
+#include "slipwise/estimate/coloured_slip.hpp"
+#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/identify/student_calibration.hpp"
+#include "slipwise/segment/driven_segment.hpp"
+
+namespace slipwise {
+
+/// What was known at some time.
+struct Knowledge {
+  double until;                                     ///< stamp of what was measured last of all that was learned [s]
+  std::shared_ptr<const MotionPosterior> motion;    ///< of the structure that predicts
+  std::shared_ptr<const MotionPosterior> slip;      ///< of the best structure that has slip
+  std::shared_ptr<const ColouredSlip> disturbance;  ///< how slip differs from that now and then
+};
+
+/// A prediction of one horizon, and what was measured.
+struct HeldOutPrediction {
+  std::size_t run;             ///< in the order in which runs were started
+  std::size_t horizon;         ///< among the settings'
+  double start;                ///< [s]
+  double end;                  ///< [s]
+  Eigen::Vector3d pose;        ///< predicted T_start_end: x, y [m], yaw [rad]
+  Eigen::Matrix3d covariance;  ///< of a Student t, its inflation included
+  StudentT student;            ///< from the errors of earlier predictions
+  double nominal_nis;          ///< had nothing recent been known of the slip disturbance, and without inflation
+  Structure structure;         ///< that predicted
+  Eigen::Vector3d measured;    ///< what the poses say
+  Eigen::Vector3d baseline;    ///< what the kinematic baseline predicts
+  Eigen::Vector3d in_sample;   ///< the same model once it had learned the segment (thesis, Table 6.2)
+  double learned_until;        ///< stamp of the last measurement that the prediction uses [s]
+};
+
+/// Predicts a segment from what was known, and from `recent` segments before its start.
+ExpectedPose predict_segment(const Knowledge& known, std::span<const DrivenSegment> recent,
+                             const DrivenSegment& segment);
+
+/// The errors of one horizon: each structure's are a population of their own.
+class HorizonErrors {
+ public:
+  /// What is known of errors at some time.
+  struct Known {
+    double until;                                ///< stamp of the last error [s]
+    std::array<StudentT, kStructures> students;  ///< of predictions that follow recent segments
+  };
+
+  HorizonErrors();
+  /// What was known of errors at `t` [s].
+  const Known& before(double t) const;
+  /// Takes in an error that was known at `end` [s], by its squared lengths with and without recent segments.
+  void learn(double end, Structure structure, double squared, double nominal_squared);
+  /// The Student t without recent segments, from all errors.
+  StudentT nominal(Structure structure) const;
+  /// Stamps begin anew: all errors so far are known.
+  void restart_clock();
+
+ private:
+  std::deque<Known> known_;  ///< of late; the last is the newest
+  std::array<StudentCalibration, kStructures> recent_;
+  std::array<StudentCalibration, kStructures> nominal_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learns a motion model from one measurement at a time, live or from a log: the same thing.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/online/held_out.hpp"
+#include "slipwise/online/segment_stream.hpp"
+
+namespace slipwise {
+
+struct LearnerSettings {
+  StreamSettings stream = {};
+  HypothesisSettings hypotheses = {};
+  ColouredSlipSettings disturbance = {};
+  bool learn_disturbance = true;  ///< how slip differs from what was learned, now and then
+};
+
+/// What a learner has to say. Which fields are meant depends on the kind.
+struct LearnerEvent {
+  enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut };
+  Kind kind;
+  std::size_t run;  ///< in the order in which runs were started
+  double t;         ///< [s]
+  Stream stream = Stream::Pose;
+  Reason reason = Reason::NotFinite;
+  std::array<StructureUpdate, kStructures> updates = {};
+  std::array<double, kStructures> weights = {};
+  /// What each structure knows after the segment; nothing where it is not tried.
+  std::array<std::shared_ptr<const MotionPosterior>, kStructures> posteriors = {};
+  std::shared_ptr<const HeldOutPrediction> prediction = {};
+};
+
+/// A path that is predicted from now on.
+struct PredictedPath {
+  double start;                ///< [s]
+  std::vector<double> t;       ///< after the start, [N] s; the last is the horizon
+  std::vector<Pose2> poses;    ///< of the sensor in the frame of its pose at the start
+  Eigen::Vector3d pose;        ///< at the horizon
+  Eigen::Matrix3d covariance;  ///< there, of a Student t, its inflation included
+  StudentT student;            ///< of the nearest horizon whose errors are known
+  Structure structure;         ///< that predicts
+};
+
+/// What was learned so far.
+struct LearnedModel {
+  Knowledge known;
+  std::vector<StudentT> students;                        ///< per horizon, nothing recent being known
+  std::vector<std::vector<HeldOutPrediction>> held_out;  ///< per horizon, the last of them
+  std::array<double, kStructures> weights;               ///< of the structures
+  std::array<double, 4> range;                           ///< least and greatest speed, then yaw rate, of the inputs
+  double steepest;                                       ///< greatest roll or pitch [rad]
+  double seconds;                                        ///< of all segments learned
+  std::size_t segments;
+  RejectionCounts rejected;
+};
+
+/// Streams must be in order each; they may be late relative to each other by the latency of the settings. No push
+/// throws for what was measured: what is wrong is rejected, counted, and said as an event.
+class MotionLearner {
+ public:
+  /// \throws std::invalid_argument when a setting is impossible.
+  explicit MotionLearner(const LearnerSettings& settings);
+
+  /// The run so far is complete and another begins: nothing is joined across runs; what was learned stays.
+  void start_run();
+  /// Nothing more comes of this run: what waits for later measurements is learned.
+  void end_run();
+  void push_command(double t, const BodyTwist& twist);
+  void push_wheels(double t, const BodyTwist& twist);
+  void push_pose(const MeasuredPose& pose);
+  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
+  void push_attitude(double t, double roll, double pitch);
+
+  /// What happened since the last call; the oldest are dropped, and counted, where nobody asks for long.
+  std::vector<LearnerEvent> events();
+  std::size_t dropped_events() const { return dropped_events_; }
+
+  /// Where the robot will be if it is given the `future` inputs, over `horizon` [s] from the newest measurement on.
+  /// Parameters are those known `embargo` [s] before.
+  /// \throws std::invalid_argument when the horizon is not positive or longer than an hour, or an input is impossible.
+  PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
+  /// What was learned of all that was pushed; as if the run ended now.
+  LearnedModel model() const;
+  /// Gives what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
+  /// \throws std::invalid_argument when the fraction is not between 0 and 1.
+  void forget(double fraction);
+
+  const LearnerSettings& settings() const { return settings_; }
+  /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
+  double newest() const { return stream_.newest(); }
+
+ private:
+  void take_in();
+  bool work();
+  void work_until(double t);
+  void work_through();
+  void learn_disturbance(const DrivenSegment& segment);
+  void publish(const DrivenSegment& segment);
+  void judge(const TargetSegment& target);
+  const Knowledge& known_at(double t) const;
+  std::vector<DrivenSegment> recent_before(double t) const;
+  std::vector<DrivenSegment> recent_now();
+  Knowledge now_known(double until) const;
+  StudentT student_for(double horizon, Structure structure) const;
+  void say(LearnerEvent event);
+  void see_input(double t, const BodyTwist& twist);
+  void see_stamp(double t);
+
+  LearnerSettings settings_;
+  SegmentStream stream_;
+  MotionHypotheses hypotheses_;
+  ColouredSlip disturbance_;
+  std::deque<StreamItem> waiting_;    ///< segments in the order in which they are learned
+  bool started_ = false;              ///< whether the first of them is being learned
+  std::deque<Knowledge> known_;       ///< of late; the last is the newest
+  std::deque<DrivenSegment> recent_;  ///< segments of the run
+  std::vector<HorizonErrors> errors_;
+  std::vector<std::deque<HeldOutPrediction>> held_out_;
+  std::deque<LearnerEvent> events_;
+  std::size_t dropped_events_ = 0;
+  RejectionCounts rejected_{};
+  std::size_t runs_ = 0;
+  bool run_begins_ = true;  ///< no measurement of the run has come yet
+  double before_run_;       ///< newest stamp of the runs before [s]
+  std::array<double, 4> range_;
+  double steepest_ = 0.0;
+  double seconds_ = 0.0;
+};
+
+}  // namespace slipwise

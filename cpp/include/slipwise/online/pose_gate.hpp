@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds poses that jump further than the robot can have moved: lone ones are rejected, others begin a frame.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "slipwise/estimate/speed_range.hpp"
+#include "slipwise/online/input_history.hpp"
+
+namespace slipwise {
+
+/// A measured pose of the pose sensor, and what tilts the robot then.
+struct MeasuredPose {
+  double t;    ///< [s]
+  double x;    ///< [m]
+  double y;    ///< [m]
+  double yaw;  ///< [rad]
+  long frame = 0;
+  double gx = 0.0;  ///< gravity along the body's x axis [m/s^2]
+  double gy = 0.0;  ///< along its y axis [m/s^2]
+};
+
+/// What the gate makes of the poses.
+struct GatedPoses {
+  std::vector<MeasuredPose> accepted;  ///< in order, their frames numbered anew where poses jump
+  std::vector<MeasuredPose> outliers;  ///< lone poses far from their neighbours
+  std::vector<MeasuredPose> jumps;     ///< the first pose after each jump that lasts
+};
+
+/// A pose out of reach of the last one waits for at most three more: if one of them is back near the last, those before
+/// it were outliers; otherwise a new frame begins.
+class PoseGate {
+ public:
+  /// Takes a pose; `inputs` are known until its stamp. Nothing that was measured later is used.
+  GatedPoses push(const MeasuredPose& pose, const InputHistory& inputs);
+  /// No pose follows: what waits is decided.
+  GatedPoses finish(const InputHistory& inputs);
+  /// Another run begins.
+  void restart();
+
+ private:
+  bool jumps(const MeasuredPose& from, const MeasuredPose& to, const InputHistory& inputs) const;
+  bool returns(const MeasuredPose& to) const;
+  void accept(const MeasuredPose& pose, GatedPoses& out);
+  void give_up(const InputHistory& inputs, GatedPoses& out);
+  void begin_frame(const MeasuredPose& pose, GatedPoses& out);
+  void take(const MeasuredPose& pose, const InputHistory& inputs, GatedPoses& out);
+  void learn_noise(const MeasuredPose& pose);
+
+  std::vector<MeasuredPose> accepted_;  ///< the last three of the frame
+  std::vector<MeasuredPose> waiting_;   ///< out of reach of the last
+  std::array<SpeedRange, 2> bends_;     ///< second differences of x and y [m]
+  std::optional<long> given_;           ///< frame of the last pose as it was given
+  long frame_ = -1;
+};
+
+}  // namespace slipwise

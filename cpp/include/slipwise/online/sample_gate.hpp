@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Checks the samples of one stream as they come: stamps that go forward, numbers that can be.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "slipwise/online/rejection.hpp"
+
+namespace slipwise {
+
+inline constexpr double kLatestStamp = 4294967296.0;  ///< [s] the year 2106; what is later is no time in seconds
+inline constexpr double kLargestNumber = 1e30;        ///< no measurement in SI units is larger
+
+/// The stamps of one stream, which must go forward.
+class StampGate {
+ public:
+  /// Why a sample with these numbers is rejected, if it is; else its stamp is the latest from now on.
+  std::optional<Reason> check(double t, std::span<const double> numbers);
+  double latest() const { return latest_; }
+
+ private:
+  double latest_ = -std::numeric_limits<double>::infinity();
+};
+
+/// Speeds that no ground robot can have, judged by the samples before them alone: more than 20 m/s or rad/s, more than
+/// ten times the fastest that was believed, and either above 100 or alone.
+class SpeedGate {
+ public:
+  /// Whether the speed [m/s or rad/s] is to be believed.
+  bool plausible(double value);
+
+ private:
+  double before_ = 0.0;   ///< the last one, believed or not
+  double fastest_ = 0.0;  ///< that was believed
+};
+
+}  // namespace slipwise

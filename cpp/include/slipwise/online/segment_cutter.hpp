@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cuts a stream of poses into segments of a given length, each as soon after the last as poses and rules allow.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/rejection.hpp"
+#include "slipwise/segment/segment.hpp"
+
+namespace slipwise {
+
+/// When two poses and the inputs between them make a segment.
+struct SegmentRules {
+  double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
+  double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
+  double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
+};
+
+/// The median time between poses of late, taken again every 64 intervals.
+class PoseInterval {
+ public:
+  void add(double seconds);
+  /// [s]; 0 where there was none yet.
+  double median() const { return median_; }
+
+ private:
+  std::deque<double> recent_;
+  std::size_t count_ = 0;
+  double median_ = 0.0;
+};
+
+/// A pose as segments are cut from it.
+struct TimedPose {
+  MeasuredPose pose;      ///< its yaw unwrapped along its frame
+  double interval = 0.0;  ///< median time between poses, as known then [s]
+  double gap = 0.0;       ///< the longest time between poses since the last one that was not late [s]
+};
+
+/// Unwraps headings, and finds poses that are late by an unknown time.
+class PoseTimer {
+ public:
+  /// The pose with what was known then; nothing where it is late.
+  std::optional<TimedPose> push(const MeasuredPose& pose, double late_factor);
+  /// Another run begins; the intervals stay.
+  void restart() { last_.reset(); }
+  /// Median time between poses of late [s]; 0 where there were none.
+  double interval() const { return interval_.median(); }
+
+ private:
+  PoseInterval interval_;
+  std::optional<MeasuredPose> last_;
+  double gap_ = 0.0;
+};
+
+/// Two poses between which a segment lies, or might have.
+struct SegmentCut {
+  MeasuredPose first;
+  MeasuredPose second;
+  std::optional<Reason> rejected;
+
+  /// T_first_second, the yaw difference along the unwrapped yaw.
+  Pose2 measured() const;
+};
+
+/// Walks along the poses of one run that are not late.
+class SegmentCutter {
+ public:
+  /// `length` is that of a segment [s]. Where `whole_frames`, a frame that is shorter is one segment. `stride` is the
+  /// time between the starts of segments [s]; without one, each starts where the last ended.
+  SegmentCutter(double length, SegmentRules rules, bool whole_frames, std::optional<double> stride = {});
+
+  /// Takes a pose; `inputs` are known until its stamp. Returns the segments that it ends.
+  std::vector<SegmentCut> push(const TimedPose& pose, const InputHistory& inputs);
+  /// No pose of the run follows.
+  std::vector<SegmentCut> finish(const InputHistory& inputs);
+  double length() const { return length_; }
+
+ private:
+  void cut(double length, bool last, const InputHistory& inputs, std::vector<SegmentCut>& out);
+  std::optional<std::size_t> nearest(double wanted, double tolerance, bool last) const;
+  std::optional<Reason> problem(std::size_t end, const InputHistory& inputs) const;
+  std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputHistory& inputs);
+  void end_frame(const InputHistory& inputs, std::vector<SegmentCut>& out);
+
+  double length_;
+  SegmentRules rules_;
+  bool whole_frames_;
+  std::optional<double> stride_;
+  std::deque<TimedPose> poses_;          ///< of the frame, from the next segment's start on
+  bool any_ = false;                     ///< whether the frame lost poses at its beginning already
+  std::optional<double> unknown_since_;  ///< the next segment starts once the input is known again
+};
+
+}  // namespace slipwise

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// From measurements as they arrive to segments that can be learned: ordered, cleaned, bounded.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/rejection.hpp"
+#include "slipwise/online/sample_gate.hpp"
+#include "slipwise/online/segment_cutter.hpp"
+#include "slipwise/segment/driven_segment.hpp"
+
+namespace slipwise {
+
+/// How measurements become segments.
+struct StreamSettings {
+  bool from_commands = true;    ///< motion is predicted from commands; otherwise from wheel speeds
+  double segment_length = 2.5;  ///< of what is learned [s]
+  SegmentRules rules = {};
+  double unknown_after = 0.5;                      ///< an input is unknown once it is older than this [s]
+  double latency = 0.5;                            ///< streams may be late relative to each other by up to this [s]
+  std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
+  Pose2 sensor = {};                               ///< where the pose sensor is known to sit in base_link
+};
+
+/// A segment whose prediction is held against what was measured.
+struct TargetSegment {
+  std::size_t horizon;  ///< among the settings'
+  DrivenSegment driven;
+};
+
+/// A segment from which slip is learned behind measured wheel speeds.
+struct SlipSegment {
+  DrivenSegment driven;
+};
+
+/// Something rejected.
+struct Rejected {
+  Stream stream;
+  Reason reason;
+  double t;  ///< [s]
+};
+
+using StreamItem = std::variant<WheelSegment, SlipSegment, DrivenSegment, TargetSegment>;
+
+/// Takes measurements of one run after another. Streams are in order each, and late relative to each other by no more
+/// than the latency: a pose is used once no earlier measurement can arrive, so that what comes out does not depend on
+/// how they interleave. Memory does not grow with time.
+class SegmentStream {
+ public:
+  explicit SegmentStream(const StreamSettings& settings);
+
+  /// The run so far is complete, and another begins. Nothing is joined across runs.
+  void start_run();
+  /// No measurement of this run follows.
+  void end_run();
+  void push_command(const InputSample& sample);
+  void push_wheels(const InputSample& sample);
+  /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
+  void push_attitude(double t, double roll, double pitch);
+  void push_pose(const MeasuredPose& pose);
+
+  /// What became complete since the last call, in the order in which it is to be learned.
+  std::vector<StreamItem> take_items();
+  std::vector<Rejected> take_rejected();
+
+  /// The newest stamp of the run [s]; minus infinity before the first.
+  double newest() const { return newest_; }
+  const InputHistory& commands() const { return commands_; }
+  const InputHistory& wheels() const { return wheels_; }
+  const StreamSettings& settings() const { return settings_; }
+  bool wheels_known() const { return wheels_ever_; }
+  /// Median time between wheel speeds of late [s]; 0 where there were none.
+  double wheel_interval() const { return wheel_timer_.interval(); }
+
+  /// The segments that are complete with all that was pushed, were nothing late.
+  std::vector<DrivenSegment> pending_segments() const;
+  /// The segment from now on over `horizon` [s], driven by `future` inputs.
+  DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
+
+ private:
+  struct Tilt {
+    double t;
+    double gx;
+    double gy;
+  };
+  bool arrives(Stream stream, double t, std::span<const double> numbers);
+  void push_input(Stream stream, const InputSample& sample);
+  void advance(double until);
+  void process_wheels(double until);
+  void process_pose(const MeasuredPose& raw);
+  void process_accepted(const GatedPoses& gated);
+  void emit_learned(const std::vector<SegmentCut>& cuts);
+  void emit_slip(const std::vector<SegmentCut>& cuts);
+  void emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts);
+  void emit_wheel_segments(const std::vector<SegmentCut>& cuts);
+  void finish_cutters();
+  void trim();
+  const InputHistory& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
+  const InputHistory& gate_inputs(double t) const;
+  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;
+  void set_actuator_state(Segment& segment) const;
+  MeasuredPose tilted(const MeasuredPose& raw) const;
+  Tilt tilt_at(double t) const;
+  void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
+
+  StreamSettings settings_;
+  double keep_;  ///< how long inputs are kept [s]
+  double newest_;
+  std::array<StampGate, kStreams> stamps_;
+  std::array<std::array<SpeedGate, 3>, 2> speeds_;
+  InputHistory commands_;
+  InputHistory wheels_;
+  bool wheels_ever_ = false;
+  std::deque<Tilt> tilts_;
+  std::deque<MeasuredPose> poses_;   ///< not used yet
+  std::deque<double> wheel_stamps_;  ///< not used yet
+  double now_;                       ///< stamp of the pose that is being used, or was last [s]
+  PoseGate gate_;
+  PoseTimer timer_;
+  PoseTimer wheel_timer_;
+  SegmentCutter learned_;
+  SegmentCutter slip_;
+  SegmentCutter wheel_cutter_;
+  std::vector<SegmentCutter> targets_;
+  std::vector<StreamItem> items_;
+  std::vector<Rejected> rejected_;
+};
+
+}  // namespace slipwise

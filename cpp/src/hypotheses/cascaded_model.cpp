@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two posteriors joined into one.
+#include "slipwise/hypotheses/cascaded_model.hpp"
+
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+MotionModel joined_model(const MotionModel& slip) {
+  return {
+      slip.basis(),
+      {.dynamics = true, .clock_offset = slip.learned().clock_offset, .response = true, .mount = slip.learned().mount}};
+}
+
+std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
+  std::vector<Eigen::Index> places(static_cast<std::size_t>(last - first));
+  std::iota(places.begin(), places.end(), first);
+  return places;
+}
+
+/// Copies what one part knows of its parameters.
+void put(MotionPosterior& all, const std::vector<Eigen::Index>& places, const Estimate& part,
+         const Eigen::VectorXd& prior_std) {
+  all.estimate.mean(places) = part.mean;
+  all.estimate.covariance(places, places) = part.covariance;
+  all.prior_std(places) = prior_std;
+}
+
+bool stronger(const ChangeTest& a, const ChangeTest& b) {
+  return std::tuple(a.alarm, a.log_odds) > std::tuple(b.alarm, b.log_odds);
+}
+
+}  // namespace
+
+CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& settings)
+    : model_(joined_model(slip.model())),
+      noise_(settings.noise.shape),
+      slip_(std::move(slip)),
+      actuator_(settings),
+      score_(settings.noise) {
+  const Eigen::Index slips = model_.slip_size();
+  const Eigen::Index behind = slips + actuator_.model().size();  // clock offset and mount are learned with the slip
+  places_of_slip_ = range(0, slips);
+  const std::vector<Eigen::Index> others = range(behind, model_.size());
+  places_of_slip_.insert(places_of_slip_.end(), others.begin(), others.end());
+  places_of_actuator_ = range(slips, behind);
+  refresh();
+}
+
+void CascadedModel::learn_slip(const DrivenSegment& segment) {
+  slip_.learn(segment.inputs, segment.segment);
+  if (stronger(slip_.change(), change_since_)) {
+    change_since_ = slip_.change();
+  }
+}
+
+void CascadedModel::learn_actuator(const WheelSegment& segment) {
+  actuator_.learn(segment.commands, segment.wheels, segment.start, segment.end);
+}
+
+ScoredSegment CascadedModel::predict(const DrivenSegment& segment) {
+  return score_.score(model_, posterior_->estimate, segment.inputs, segment.segment);
+}
+
+void CascadedModel::refresh() {
+  const AverageState slip = slip_.state();
+  const Eigen::Index size = model_.size();
+  MotionPosterior all{.model = model_,
+                      .estimate = {Eigen::VectorXd(size), Eigen::MatrixXd::Zero(size, size)},
+                      .prior_std = Eigen::VectorXd(size),
+                      .noise = noise_,
+                      .noise_scale = score_.noise_scale(),
+                      .variance_ratio = Eigen::VectorXd(size),
+                      .basis_weights = slip.weights,
+                      .structure = Structure::Cascaded};
+  put(all, places_of_slip_, slip.estimate, slip.prior_std);
+  const Estimate actuator = actuator_.estimate();
+  put(all, places_of_actuator_, actuator, actuator_.prior_std());
+  all.variance_ratio(places_of_slip_) = slip.variance_ratio;
+  all.variance_ratio(places_of_actuator_) =
+      actuator.covariance.diagonal().cwiseQuotient(actuator_.prior_std().cwiseAbs2());
+  posterior_ = std::make_shared<const MotionPosterior>(std::move(all));
+  change_ = std::exchange(change_since_, {});
+}
+
+}  // namespace slipwise

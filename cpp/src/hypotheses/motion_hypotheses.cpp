@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// Structures that predict each segment before they learn it.
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+constexpr double kPatience = 0.3;  // of the bases' learning rate: what tells structures apart repeats in each segment
+/// Prior weights: of what predicts alike, the simplest.
+constexpr std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, 1.4, 2.0};
+constexpr double kActive = 0.5;  // of the heavier average's weight, from which on the other's batch refits are run
+const double kRefuted = std::log(1e3);  // tempered log odds against a structure from which on it is dropped
+
+std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
+
+/// What these miss must not pass for noise.
+bool is_simple(Structure structure) { return structure == Structure::Direct || structure == Structure::Baseline; }
+
+const MotionModel& baseline_model() {
+  static const MotionModel model({"none", {}, {}, {}}, {});
+  return model;
+}
+
+/// Places of the two bases with the fewest terms and of the one with the most.
+std::vector<Eigen::Index> few_bases(const std::vector<Basis>& bases) {
+  std::vector<Eigen::Index> by_size(bases.size());
+  std::iota(by_size.begin(), by_size.end(), Eigen::Index{0});
+  std::ranges::stable_sort(by_size, {}, [&](Eigen::Index i) { return bases[static_cast<std::size_t>(i)].size(); });
+  std::vector<Eigen::Index> few{by_size.front(), by_size[std::min<std::size_t>(1, by_size.size() - 1)], by_size.back()};
+  std::ranges::sort(few);
+  few.erase(std::ranges::unique(few).begin(), few.end());
+  return few;
+}
+
+std::vector<Basis> chosen(const std::vector<Basis>& bases, const std::vector<Eigen::Index>& places) {
+  std::vector<Basis> few;
+  for (const Eigen::Index place : places) {
+    few.push_back(bases[static_cast<std::size_t>(place)]);
+  }
+  return few;
+}
+
+}  // namespace
+
+MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
+    : settings_(settings),
+      joint_("auto", settings.bases,
+             {.dynamics = settings.dynamics,
+              .clock_offset = settings.clock_offset && !settings.dynamics,
+              .mount = settings.mount},
+             settings.filter, settings.average),
+      baseline_(settings.filter.noise) {
+  const auto attempt = [&](Structure structure) {
+    tried_[index(structure)] = true;
+    weights_[index(structure)] = kPrior[index(structure)];
+  };
+  attempt(Structure::Joint);
+  if (settings.alternatives) {
+    attempt(Structure::Baseline);
+  }
+  if (settings.alternatives && settings.dynamics) {
+    attempt(Structure::Direct);
+    direct_bases_ = few_bases(settings.bases);
+    direct_.emplace("auto", chosen(settings.bases, direct_bases_),
+                    ChainParameters{.mount = settings.mount, .delays = true}, settings.filter, settings.average);
+    cascaded_.emplace(
+        ModelAverage("auto", settings.bases, {.clock_offset = settings.clock_offset, .mount = settings.mount},
+                     settings.filter, settings.average),
+        settings.filter);
+  }
+  const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
+  std::ranges::for_each(weights_, [&](double& weight) { weight /= total; });
+}
+
+bool MotionHypotheses::several() const { return std::ranges::count(tried_, true) > 1; }
+
+std::vector<Structure> MotionHypotheses::structures() const {
+  std::vector<Structure> all;
+  for (std::size_t i = 0; i < kStructures; ++i) {
+    if (tried_[i]) {
+      all.push_back(static_cast<Structure>(i));
+    }
+  }
+  return all;
+}
+
+/// Of the two averages, both that have half the other's weight.
+bool MotionHypotheses::may_predict(Structure structure) const {
+  return weight(structure) >= kActive * std::max(weight(Structure::Joint), weight(Structure::Direct));
+}
+
+/// Where wheel speeds come beside the commands, with the weight that it would have had from the start.
+void MotionHypotheses::join_cascade() {
+  double prior = 0.0;
+  double now = 0.0;
+  for (const Structure structure : structures()) {
+    prior += kPrior[index(structure)];
+    now += weight(structure);
+  }
+  const double whole = prior + kPrior[index(Structure::Cascaded)];
+  for (double& weight : weights_) {
+    weight *= prior / whole / now;
+  }
+  tried_[index(Structure::Cascaded)] = true;
+  weights_[index(Structure::Cascaded)] = kPrior[index(Structure::Cascaded)] / whole;
+  evidence_[index(Structure::Cascaded)] = evidence_[index(Structure::Joint)];
+}
+
+void MotionHypotheses::learn_slip(const DrivenSegment& segment) {
+  if (cascaded_) {
+    cascaded_->learn_slip(segment);
+  }
+}
+
+void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
+  if (cascaded_) {
+    cascaded_->learn_actuator(segment);
+  }
+}
+
+void MotionHypotheses::forget(double fraction) {
+  joint_.forget(fraction);
+  if (direct_) {
+    direct_->forget(fraction);
+  }
+  if (cascaded_) {
+    cascaded_->forget(fraction);
+  }
+}
+
+void MotionHypotheses::start(const DrivenSegment& segment, bool wheels_known) {
+  if (cascaded_ && wheels_known && !tried(Structure::Cascaded)) {
+    join_cascade();
+  }
+  segment_ = segment;
+  to_predict_ = structures();
+  predicted_.clear();
+}
+
+bool MotionHypotheses::advance() {
+  if (!segment_) {
+    return false;
+  }
+  if (predicted_.size() < to_predict_.size()) {
+    predicted_.push_back(predict(to_predict_[predicted_.size()]));
+    return true;
+  }
+  update_weights();
+  drop_refuted();
+  ++count_;
+  segment_.reset();
+  return false;
+}
+
+/// Predicts the segment; what learns it itself does so at once.
+ScoredSegment MotionHypotheses::predict(Structure structure) {
+  StructureUpdate& update = updates_[index(structure)];
+  ScoredSegment scored{};
+  switch (structure) {
+    case Structure::Joint:
+      return learned(joint_, structure);
+    case Structure::Direct:
+      return learned(direct_.value(), structure);
+    case Structure::Cascaded:
+      scored = cascaded_.value().predict(*segment_);
+      break;
+    case Structure::Baseline: {
+      const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+      scored = baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
+      break;
+    }
+    case Structure::CascadedWithLimits:
+      break;  // learned off line
+  }
+  update.nis = scored.nis;
+  return scored;
+}
+
+ScoredSegment MotionHypotheses::learned(ModelAverage& average, Structure structure) {
+  const bool active = !settings_.alternatives || may_predict(structure);
+  const IekfUpdate update = average.learn(segment_->inputs, segment_->segment, active);
+  updates_[index(structure)] = {.nis = update.nis, .weight = update.weight, .change = average.change()};
+  return {update.innovation, update.innovation_covariance, update.nis};
+}
+
+/// By their errors, as bases are, under what those miss that could explain most.
+void MotionHypotheses::update_weights() {
+  if (cascaded_ && tried(Structure::Cascaded)) {
+    cascaded_->refresh();
+    updates_[index(Structure::Cascaded)].change = cascaded_->change();
+  }
+  const auto count = std::ssize(to_predict_);
+  Eigen::VectorXd weights(count);
+  Eigen::VectorXd full(count);
+  Eigen::VectorXd prior(count);
+  std::vector<Eigen::Vector3d> innovations;
+  std::vector<Eigen::Matrix3d> covariances;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto place = static_cast<std::size_t>(i);
+    const Structure structure = to_predict_[place];
+    weights[i] = weight(structure);
+    full[i] = is_simple(structure) ? 0.0 : weights[i];
+    prior[i] = kPrior[index(structure)];
+    innovations.push_back(predicted_[place].innovation);
+    covariances.push_back(predicted_[place].innovation_covariance);
+  }
+  const Eigen::VectorXd scores = common_log_scores(full / full.sum(), innovations, covariances);
+  WeighingSettings weighting = settings_.average.weighing;
+  weighting.learning_rate *= kPatience;
+  const Eigen::VectorXd updated = reweighed(weights, scores, prior / prior.sum(), weighting, count_);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const std::size_t structure = index(to_predict_[static_cast<std::size_t>(i)]);
+    weights_[structure] = updated[i];
+    evidence_[structure] += weighting.learning_rate * scores[i];
+  }
+}
+
+/// Simpler structures that predict far worse than another.
+void MotionHypotheses::drop_refuted() {
+  double most = -INFINITY;
+  for (const Structure structure : structures()) {
+    most = std::max(most, evidence_[index(structure)]);
+  }
+  double total = 0.0;
+  for (const Structure structure : structures()) {
+    const std::size_t i = index(structure);
+    if (is_simple(structure) && most - evidence_[i] > kRefuted) {
+      tried_[i] = false;
+      weights_[i] = 0.0;
+    }
+    total += weights_[i];
+  }
+  std::ranges::for_each(weights_, [&](double& weight) { weight /= total; });
+}
+
+std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior_of(const ModelAverage& average,
+                                                                      Structure structure) const {
+  const AverageState state = average.state();
+  Eigen::VectorXd weights = state.weights;
+  if (structure == Structure::Direct) {
+    weights = Eigen::VectorXd::Zero(std::ssize(settings_.bases));
+    weights(direct_bases_) = state.weights;
+  }
+  return std::make_shared<const MotionPosterior>(MotionPosterior{.model = average.model(),
+                                                                 .estimate = state.estimate,
+                                                                 .prior_std = state.prior_std,
+                                                                 .noise = settings_.filter.noise.shape,
+                                                                 .noise_scale = state.noise_scale,
+                                                                 .variance_ratio = state.variance_ratio,
+                                                                 .basis_weights = weights,
+                                                                 .structure = structure});
+}
+
+std::shared_ptr<const MotionPosterior> MotionHypotheses::of(Structure structure) const {
+  if (!tried(structure)) {
+    return nullptr;
+  }
+  switch (structure) {
+    case Structure::Joint:
+      return posterior_of(joint_, structure);
+    case Structure::Direct:
+      return posterior_of(direct_.value(), structure);
+    case Structure::Cascaded:
+      return cascaded_.value().posterior();
+    default:
+      break;
+  }
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(std::ssize(settings_.bases));
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    weights[i] = settings_.bases[static_cast<std::size_t>(i)].name() == "none" ? 1.0 : 0.0;
+  }
+  const Eigen::VectorXd none(0);
+  return std::make_shared<const MotionPosterior>(MotionPosterior{.model = baseline_model(),
+                                                                 .estimate = {none, Eigen::MatrixXd(0, 0)},
+                                                                 .prior_std = none,
+                                                                 .noise = settings_.filter.noise.shape,
+                                                                 .noise_scale = baseline_.noise_scale(),
+                                                                 .variance_ratio = none,
+                                                                 .basis_weights = weights,
+                                                                 .structure = Structure::Baseline});
+}
+
+std::shared_ptr<const MotionPosterior> MotionHypotheses::posterior() const {
+  return of(static_cast<Structure>(std::ranges::max_element(weights_) - weights_.begin()));
+}
+
+std::shared_ptr<const MotionPosterior> MotionHypotheses::slip_posterior() const {
+  std::array<double, kStructures> slipping = weights_;
+  slipping[index(Structure::Baseline)] = 0.0;
+  return of(static_cast<Structure>(std::ranges::max_element(slipping) - slipping.begin()));
+}
+
+}  // namespace slipwise

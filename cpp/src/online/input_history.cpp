@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples of an input, and what holds between them.
+#include "slipwise/online/input_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+constexpr double kLeadIn = 1.0;     // [s] before the first wheel speed; no clock offset is larger
+constexpr double kStep = 0.1;       // [s] an actuator with a lag is integrated in steps of no more: repeats cost time
+constexpr double kRounding = 1e-6;  // of a step
+constexpr double kLongAgo = 1e5;    // [s] a drivetrain has forgotten what came before
+
+/// Inputs without those that repeat the one before, but for one in each `kStep`.
+class Thinned {
+ public:
+  void add(const InputSample& sample) {
+    const bool repeats = !t_.empty() && sample.twist == twist_.back();
+    if (!repeats) {
+      since_ = sample.t;
+      step_ = 0.0;
+    }
+    const double step = std::floor((sample.t - since_) / kStep + kRounding);
+    if (!repeats || step != step_) {
+      append(sample);
+    }
+    step_ = step;
+  }
+  void append(const InputSample& sample) {
+    t_.push_back(sample.t);
+    twist_.push_back(sample.twist);
+  }
+  InputTrack track() && { return {std::move(t_), std::move(twist_)}; }
+
+ private:
+  std::vector<double> t_;
+  std::vector<BodyTwist> twist_;
+  double since_ = 0.0;
+  double step_ = 0.0;
+};
+
+double speed(const BodyTwist& twist) { return std::hypot(twist.v, twist.vy); }
+
+}  // namespace
+
+void InputHistory::push(const InputSample& sample) {
+  if (samples_.empty()) {
+    first_ = sample.t;
+  }
+  const BodyTwist before = fastest_.empty() ? BodyTwist{} : fastest_.back();
+  samples_.push_back(sample);
+  fastest_.push_back({.v = std::max(before.v, speed(sample.twist)),
+                      .vy = 0.0,
+                      .omega = std::max(before.omega, std::abs(sample.twist.omega))});
+}
+
+void InputHistory::clear() { *this = InputHistory(unknown_after_); }
+
+void InputHistory::drop_before(double t) {
+  while (samples_.size() > 1 && samples_[1].t <= t) {
+    samples_.pop_front();
+    fastest_.pop_front();
+  }
+}
+
+BodyTwist InputHistory::fastest_until(double t) const {
+  const std::size_t count = count_until(t);
+  return count == 0 ? BodyTwist{} : fastest_[count - 1];
+}
+
+std::size_t InputHistory::count_until(double t) const {
+  const auto after = std::ranges::upper_bound(samples_, t, {}, &InputSample::t);
+  return static_cast<std::size_t>(std::distance(samples_.begin(), after));
+}
+
+std::optional<BodyTwist> InputHistory::held_at(double t) const {
+  const std::size_t count = count_until(t);
+  return count == 0 ? std::nullopt : std::optional(samples_[count - 1].twist);
+}
+
+std::optional<BodyTwist> InputHistory::known_at(double t) const {
+  const std::size_t count = count_until(t);
+  const bool known = count > 0 && t - samples_[count - 1].t <= unknown_after_;
+  return known ? std::optional(samples_[count - 1].twist) : std::nullopt;
+}
+
+std::optional<double> InputHistory::unknown_since(double start, double end) const {
+  std::size_t next = count_until(start);
+  if (next == 0) {
+    return start;
+  }
+  for (; next <= samples_.size(); ++next) {
+    const double until = samples_[next - 1].t + unknown_after_;
+    const bool resumed = next < samples_.size() && samples_[next].t <= until;
+    if (!resumed && until < end) {
+      return std::max(until, start);
+    }
+    if (next == samples_.size() || samples_[next].t >= end) {
+      break;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<double> InputHistory::first_after(double t) const {
+  const std::size_t count = count_until(t);
+  return count < samples_.size() ? std::optional(samples_[count].t) : std::nullopt;
+}
+
+BodyTwist InputHistory::fastest(double start, double end) const {
+  BodyTwist most{};
+  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
+       ++i) {
+    most.v = std::max(most.v, speed(samples_[i].twist));
+    most.omega = std::max(most.omega, std::abs(samples_[i].twist.omega));
+  }
+  return most;
+}
+
+InputHistory::Driven InputHistory::driven(double start, double end) const {
+  Driven sum{0.0, 0.0, 0.0};
+  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
+       ++i) {
+    const double next = i + 1 < samples_.size() ? samples_[i + 1].t : end;
+    const double until = std::min({next, samples_[i].t + unknown_after_, end});
+    const double seconds = std::max(until - std::max(samples_[i].t, start), 0.0);
+    sum.distance += seconds * speed(samples_[i].twist);
+    sum.angle += seconds * std::abs(samples_[i].twist.omega);
+    sum.known += seconds;
+  }
+  return sum;
+}
+
+InputTrack InputHistory::slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future) const {
+  Thinned thinned;
+  const auto add = [&](const InputSample& sample) {
+    if (kind == SliceKind::Commands) {
+      thinned.add(sample);
+    } else {
+      thinned.append(sample);
+    }
+  };
+  const std::size_t from = std::max<std::size_t>(count_until(start), 1) - 1;
+  if (kind == SliceKind::Wheels && from < samples_.size() && samples_[from].t == first_) {
+    thinned.append({first_ - kLeadIn, samples_[from].twist});
+  }
+  for (std::size_t i = from; i < samples_.size() && samples_[i].t <= end; ++i) {
+    const bool continues = i == from && samples_[i].t > first_;
+    add(continues ? InputSample{samples_[i].t - kLongAgo, samples_[i].twist} : samples_[i]);
+  }
+  for (const InputSample& sample : future) {
+    if (sample.t > (samples_.empty() ? -INFINITY : newest()) && sample.t <= end) {
+      add(sample);
+    }
+  }
+  return std::move(thinned).track();
+}
+
+}  // namespace slipwise

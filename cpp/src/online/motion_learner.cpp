@@ -1,0 +1,423 @@
+// SPDX-License-Identifier: Apache-2.0
+// Segments are learned piece by piece while measurements arrive; what is known is published at stamps, not at times.
+#include "slipwise/online/motion_learner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/identify/student_t.hpp"
+#include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+#include "slipwise/segment/sensor_motion.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kReady = 1.0;           // [s] after which a segment has been learned, whatever the latency
+constexpr double kRounding = 1e-9;       // [s] of stamps
+constexpr double kRecentSeconds = 30.0;  // that tell of the slip now, at most
+constexpr std::size_t kRecent = 12;      // segments that tell of it, at most
+constexpr std::size_t kMostEvents = 10000;
+constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
+constexpr double kLongest = 3600.0;         // [s] horizon
+constexpr double kFastestInput = 1e3;       // [m/s, rad/s]
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
+
+Eigen::Vector3d error_of(const Eigen::Vector3d& measured, const Eigen::Vector3d& predicted) {
+  Eigen::Vector3d error = measured - predicted;
+  error.z() = wrap_angle(error.z());
+  return error;
+}
+
+const MotionModel& baseline_model() {
+  static const MotionModel model({"none", {}, {}, {}}, {});
+  return model;
+}
+
+Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven) {
+  return integrate_segment(model, mean, driven.inputs, driven.segment).sensor_motion().vector();
+}
+
+ColouredSlip disturbance_of(const LearnerSettings& settings) {
+  return settings.learn_disturbance ? ColouredSlip(settings.disturbance) : ColouredSlip(WanderLaw{});
+}
+
+void check(const std::vector<InputSample>& future, double horizon) {
+  if (!(horizon > 0.0) || horizon > kLongest) {
+    throw std::invalid_argument("the horizon must be positive and at most " + std::to_string(kLongest) + " s, got " +
+                                std::to_string(horizon));
+  }
+  double before = -kNever;
+  for (const auto& [t, twist] : future) {
+    const double fastest = std::max({std::abs(twist.v), std::abs(twist.vy), std::abs(twist.omega)});
+    if (!(t > before) || !std::isfinite(t) || !(fastest <= kFastestInput)) {
+      throw std::invalid_argument("future inputs must be finite, in m/s and rad/s, and their stamps must increase");
+    }
+    before = t;
+  }
+}
+
+}  // namespace
+
+MotionLearner::MotionLearner(const LearnerSettings& settings)
+    : settings_(settings),
+      stream_(settings.stream),
+      hypotheses_(settings.hypotheses),
+      disturbance_(disturbance_of(settings)),
+      errors_(settings.stream.horizons.size()),
+      held_out_(settings.stream.horizons.size()),
+      before_run_(-kNever),
+      range_{kNever, -kNever, kNever, -kNever} {
+  known_.push_back(now_known(-kNever));
+}
+
+void MotionLearner::start_run() {
+  end_run();
+  before_run_ = std::max(before_run_, stream_.newest());
+  stream_.start_run();
+  recent_.clear();
+  runs_ += run_begins_ ? 0 : 1;
+  run_begins_ = true;
+}
+
+void MotionLearner::end_run() {
+  stream_.end_run();
+  take_in();
+  work_through();
+}
+
+/// Where the stamps of a run begin before those of the last one ended, the clock was set anew: all is known by then.
+void MotionLearner::see_stamp(double t) {
+  if (!run_begins_ || !std::isfinite(t)) {
+    return;
+  }
+  run_begins_ = false;
+  if (t < before_run_) {
+    for (Knowledge& known : known_) {
+      known.until = -kNever;
+    }
+    known_.erase(known_.begin(), known_.end() - 1);
+    std::ranges::for_each(errors_, &HorizonErrors::restart_clock);
+    before_run_ = -kNever;
+  }
+}
+
+void MotionLearner::see_input(double t, const BodyTwist& twist) {
+  see_stamp(t);
+  if (std::isfinite(twist.v) && std::isfinite(twist.omega)) {
+    range_ = {std::min(range_[0], twist.v), std::max(range_[1], twist.v), std::min(range_[2], twist.omega),
+              std::max(range_[3], twist.omega)};
+  }
+}
+
+void MotionLearner::push_command(double t, const BodyTwist& twist) {
+  see_input(t, settings_.stream.from_commands ? twist : BodyTwist{});
+  stream_.push_command({t, twist});
+  take_in();
+  work();
+}
+
+void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
+  see_input(t, settings_.stream.from_commands ? BodyTwist{} : twist);
+  stream_.push_wheels({t, twist});
+  take_in();
+  work();
+}
+
+void MotionLearner::push_attitude(double t, double roll, double pitch) {
+  see_stamp(t);
+  const double tilt = std::max(std::abs(roll), std::abs(pitch));
+  steepest_ = std::isfinite(tilt) ? std::max(steepest_, tilt) : steepest_;
+  stream_.push_attitude(t, roll, pitch);
+  take_in();
+  work();
+}
+
+void MotionLearner::push_pose(const MeasuredPose& pose) {
+  see_stamp(pose.t);
+  stream_.push_pose(pose);
+  take_in();
+  work();
+}
+
+/// Takes over what the stream has complete. What should have been learned by now is learned at once, so that results
+/// do not depend on how many pushes there were meanwhile.
+void MotionLearner::take_in() {
+  for (StreamItem& item : stream_.take_items()) {
+    waiting_.push_back(std::move(item));
+  }
+  for (const Rejected& rejected : stream_.take_rejected()) {
+    ++rejected_[static_cast<std::size_t>(rejected.stream)][static_cast<std::size_t>(rejected.reason)];
+    say({.kind = LearnerEvent::Kind::Rejected,
+         .run = runs_,
+         .t = rejected.t,
+         .stream = rejected.stream,
+         .reason = rejected.reason});
+  }
+  work_until(stream_.newest() - kReady);
+}
+
+/// One bounded piece; whether there is more.
+bool MotionLearner::work() {
+  if (waiting_.empty()) {
+    return false;
+  }
+  bool more = false;
+  if (auto* wheels = std::get_if<WheelSegment>(&waiting_.front())) {
+    hypotheses_.learn_actuator(*wheels);
+  } else if (auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
+    hypotheses_.learn_slip(slip->driven);
+  } else if (auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
+    judge(*target);
+  } else {
+    const auto& segment = std::get<DrivenSegment>(waiting_.front());
+    if (started_) {
+      more = hypotheses_.advance();
+      if (!more) {
+        publish(segment);
+      }
+    } else {
+      learn_disturbance(segment);
+      hypotheses_.start(segment, stream_.wheels_known());
+      more = true;
+    }
+  }
+  started_ = more;
+  if (!more) {
+    waiting_.pop_front();
+  }
+  return !waiting_.empty();
+}
+
+void MotionLearner::work_until(double t) {
+  const auto known_at = [](const StreamItem& item) {
+    if (const auto* wheels = std::get_if<WheelSegment>(&item)) {
+      return wheels->end;
+    }
+    if (const auto* slip = std::get_if<SlipSegment>(&item)) {
+      return slip->driven.known_at;
+    }
+    const auto* target = std::get_if<TargetSegment>(&item);
+    return target != nullptr ? target->driven.known_at : std::get<DrivenSegment>(item).known_at;
+  };
+  while (!waiting_.empty() && known_at(waiting_.front()) <= t + kRounding) {
+    work();
+  }
+}
+
+void MotionLearner::work_through() {
+  while (work()) {
+  }
+}
+
+/// How slip differs now is learned about what was known before the segment.
+void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
+  if (settings_.learn_disturbance) {
+    const MotionPosterior& before = *known_.back().slip;
+    disturbance_.learn(before, disturbance_.now(before, recent_before(segment.segment.start)), segment);
+  }
+}
+
+Knowledge MotionLearner::now_known(double until) const {
+  const auto motion = hypotheses_.posterior();
+  return {.until = until,
+          .motion = motion,
+          .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
+          .disturbance = std::make_shared<const ColouredSlip>(disturbance_)};
+}
+
+void MotionLearner::publish(const DrivenSegment& segment) {
+  known_.push_back(now_known(segment.known_at));
+  double longest = kRecentSeconds;
+  for (const double horizon : settings_.stream.horizons) {
+    longest = std::max(longest, 3.0 * horizon);
+  }
+  while (known_.size() > 2 && known_[1].until < segment.known_at - longest) {
+    known_.pop_front();
+  }
+  recent_.push_back(segment);
+  while (recent_.size() > 4 * kRecent || recent_.front().segment.start < segment.segment.end - 2.0 * longest) {
+    recent_.pop_front();
+  }
+  seconds_ += segment.segment.end - segment.segment.start;
+  LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .run = runs_, .t = segment.segment.end};
+  event.updates = hypotheses_.updates();
+  event.weights = hypotheses_.weights();
+  for (std::size_t i = 0; i < kStructures; ++i) {
+    event.posteriors[i] = hypotheses_.of(static_cast<Structure>(i));
+  }
+  const bool alarm = event.updates[index(known_.back().slip->structure)].change.alarm;
+  say(event);
+  if (alarm) {
+    say({.kind = LearnerEvent::Kind::TerrainChange, .run = runs_, .t = segment.segment.end});
+  }
+}
+
+/// The newest of what was known at `t` [s].
+const Knowledge& MotionLearner::known_at(double t) const {
+  for (std::size_t i = known_.size() - 1; i > 0; --i) {
+    if (known_[i].until <= t + kRounding) {
+      return known_[i];
+    }
+  }
+  return known_.front();
+}
+
+/// The last segments that were complete at `t` [s].
+std::vector<DrivenSegment> MotionLearner::recent_before(double t) const {
+  std::vector<DrivenSegment> found;
+  for (auto segment = recent_.rbegin(); segment != recent_.rend() && found.size() < kRecent; ++segment) {
+    if (segment->known_at <= t + kRounding && segment->segment.start > t - kRecentSeconds) {
+      found.push_back(*segment);
+    }
+  }
+  std::ranges::reverse(found);
+  return found;
+}
+
+/// Predicts a target from what was known before it, then holds it against what was measured.
+void MotionLearner::judge(const TargetSegment& target) {
+  const DrivenSegment& driven = target.driven;
+  const Segment& segment = driven.segment;
+  const double horizon = settings_.stream.horizons[target.horizon];
+  const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
+  const std::vector<DrivenSegment> recent = recent_before(segment.start);
+  const ExpectedPose expected = predict_segment(known, recent, driven);
+  const ExpectedPose nominal = predict_segment(known, {}, driven);
+  const Eigen::Vector3d measured = segment.measured.vector();
+  const Structure structure = known.motion->structure;
+  HorizonErrors& errors = errors_[target.horizon];
+  const HorizonErrors::Known earlier = errors.before(segment.start - horizon);
+  const StudentT student = earlier.students[index(structure)];
+  const double squared = normalised_square(error_of(measured, expected.pose), expected.covariance);
+  const double nominal_squared = normalised_square(error_of(measured, nominal.pose), nominal.covariance);
+  errors.learn(driven.known_at, structure, squared, nominal_squared);
+  const Knowledge& after = known_at(segment.end);
+  const double used = std::max({known.until, recent.empty() ? -kNever : recent.back().known_at, earlier.until});
+  const HeldOutPrediction prediction{.run = runs_,
+                                     .horizon = target.horizon,
+                                     .start = segment.start,
+                                     .end = segment.end,
+                                     .pose = expected.pose,
+                                     .covariance = student.inflation * expected.covariance,
+                                     .student = student,
+                                     .nominal_nis = nominal_squared,
+                                     .structure = structure,
+                                     .measured = measured,
+                                     .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven),
+                                     .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
+                                     .learned_until = segment.initial ? segment.start : std::min(used, segment.start)};
+  auto& kept = held_out_[target.horizon];
+  kept.push_back(prediction);
+  if (kept.size() > kMostHeldOut) {
+    kept.pop_front();
+  }
+  say({.kind = LearnerEvent::Kind::HeldOut,
+       .run = runs_,
+       .t = segment.end,
+       .prediction = std::make_shared<const HeldOutPrediction>(prediction)});
+}
+
+void MotionLearner::say(LearnerEvent event) {
+  events_.push_back(std::move(event));
+  if (events_.size() > kMostEvents) {
+    events_.pop_front();
+    ++dropped_events_;
+  }
+}
+
+std::vector<LearnerEvent> MotionLearner::events() {
+  std::vector<LearnerEvent> all(std::make_move_iterator(events_.begin()), std::make_move_iterator(events_.end()));
+  events_.clear();
+  return all;
+}
+
+/// Of the nearest horizon whose errors are known.
+StudentT MotionLearner::student_for(double horizon, Structure structure) const {
+  const auto& horizons = settings_.stream.horizons;
+  if (horizons.empty()) {
+    return {.inflation = 1.0, .dof = kMostDof};
+  }
+  const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
+  const auto nearest = std::ranges::min_element(horizons, {}, apart);
+  const HorizonErrors& errors = errors_[static_cast<std::size_t>(nearest - horizons.begin())];
+  return errors.before(stream_.newest() - *nearest).students[index(structure)];
+}
+
+/// The last segments that are complete with all that was pushed.
+std::vector<DrivenSegment> MotionLearner::recent_now() {
+  std::vector<DrivenSegment> recent = recent_before(stream_.newest());
+  for (const StreamItem& item : waiting_) {
+    if (const auto* segment = std::get_if<DrivenSegment>(&item)) {
+      recent.push_back(*segment);
+    }
+  }
+  for (DrivenSegment& segment : stream_.pending_segments()) {
+    recent.push_back(std::move(segment));
+  }
+  recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(std::min(recent.size(), kRecent)));
+  std::erase_if(recent,
+                [&](const DrivenSegment& each) { return each.segment.start <= stream_.newest() - kRecentSeconds; });
+  return recent;
+}
+
+PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo) {
+  check(future, horizon);
+  if (stream_.newest() == -kNever) {
+    throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
+  }
+  work_until(stream_.newest() - kReady);
+  const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
+  const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
+  const ExpectedPose expected = predict_segment(known, recent_now(), ahead);
+  const SegmentPath path =
+      integrate_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
+  const StudentT student = student_for(horizon, known.motion->structure);
+  PredictedPath result{.start = stream_.newest(),
+                       .t = path.times,
+                       .poses = {},
+                       .pose = expected.pose,
+                       .covariance = student.inflation * expected.covariance,
+                       .student = student,
+                       .structure = known.motion->structure};
+  for (const Pose2& pose : path.poses) {
+    result.poses.push_back(sensor_motion(pose, path.sensor));
+  }
+  return result;
+}
+
+LearnedModel MotionLearner::model() const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  LearnedModel learned{.known = complete.known_.back(),
+                       .students = {},
+                       .held_out = {},
+                       .weights = complete.hypotheses_.weights(),
+                       .range = complete.range_,
+                       .steepest = complete.steepest_,
+                       .seconds = complete.seconds_,
+                       .segments = complete.hypotheses_.count(),
+                       .rejected = complete.rejected_};
+  for (std::size_t i = 0; i < complete.errors_.size(); ++i) {
+    learned.students.push_back(complete.errors_[i].nominal(learned.known.motion->structure));
+    learned.held_out.emplace_back(complete.held_out_[i].begin(), complete.held_out_[i].end());
+  }
+  return learned;
+}
+
+void MotionLearner::forget(double fraction) {
+  if (!(fraction >= 0.0) || !(fraction <= 1.0)) {
+    throw std::invalid_argument("what is forgotten is a fraction between 0 and 1, got " + std::to_string(fraction));
+  }
+  hypotheses_.forget(fraction);
+}
+
+}  // namespace slipwise

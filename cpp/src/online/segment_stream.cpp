@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measurements in order of time, whatever the order in which they arrive.
+#include "slipwise/online/segment_stream.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <span>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+constexpr double kGravity = 9.80665;  // [m/s^2]
+constexpr double kSlipLength = 1.0;   // [s] of segments behind wheel speeds
+constexpr double kWheelLength = 1.0;  // [s] wheel speeds tell a step's response from its start on
+constexpr double kLookBack = 20.0;    // [s] of inputs before a segment; an actuator remembers no more
+constexpr double kWheelsBack = 3.0;   // [s] of wheel speeds before a segment; no clock offset is larger
+constexpr double kSpare = 10.0;       // [s] that inputs are kept for longer than a segment may need
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
+
+}  // namespace
+
+SegmentStream::SegmentStream(const StreamSettings& settings)
+    : settings_(settings),
+      keep_(kLookBack + kSpare + settings.latency),
+      newest_(-kNever),
+      commands_(settings.unknown_after),
+      wheels_(settings.unknown_after),
+      now_(-kNever),
+      learned_(settings.segment_length, settings.rules, true),
+      slip_(kSlipLength, settings.rules, true),
+      wheel_cutter_(kWheelLength, settings.rules, true) {
+  double longest = settings.segment_length;
+  for (const double horizon : settings.horizons) {
+    targets_.emplace_back(horizon, settings.rules, false);
+    longest = std::max(longest, horizon);
+  }
+  keep_ += 2.0 * longest;
+}
+
+void SegmentStream::start_run() {
+  end_run();
+  newest_ = now_ = -kNever;
+  stamps_.fill({});
+  speeds_ = {};
+  commands_.clear();
+  wheels_.clear();
+  tilts_.clear();
+  gate_.restart();
+  timer_.restart();
+  wheel_timer_.restart();
+}
+
+void SegmentStream::end_run() {
+  advance(kNever);
+  process_accepted(gate_.finish(gate_inputs(now_)));
+  finish_cutters();
+}
+
+/// Whether a measurement may be used; says why not.
+bool SegmentStream::arrives(Stream stream, double t, std::span<const double> numbers) {
+  const bool too_late = std::isfinite(t) && t < newest_ - settings_.latency;
+  if (const auto wrong = stamps_[index(stream)].check(t, numbers)) {
+    reject(stream, *wrong, t);
+    return false;
+  }
+  if (too_late) {
+    reject(stream, Reason::TooLate, t);
+    return false;
+  }
+  newest_ = std::max(newest_, t);
+  return true;
+}
+
+void SegmentStream::push_input(Stream stream, const InputSample& sample) {
+  const auto& [v, vy, omega] = sample.twist;
+  if (!arrives(stream, sample.t, std::array{v, vy, omega})) {
+    return;
+  }
+  auto& gates = speeds_[index(stream)];
+  const std::array plausible{gates[0].plausible(v), gates[1].plausible(vy), gates[2].plausible(omega)};
+  if (!std::ranges::all_of(plausible, std::identity{})) {
+    reject(stream, Reason::AbsurdSpeed, sample.t);
+    return;
+  }
+  (stream == Stream::Command ? commands_ : wheels_).push(sample);
+}
+
+void SegmentStream::push_command(const InputSample& sample) {
+  push_input(Stream::Command, sample);
+  advance(newest_ - settings_.latency);
+}
+
+void SegmentStream::push_wheels(const InputSample& sample) {
+  const std::size_t before = wheels_.size();
+  push_input(Stream::Wheels, sample);
+  if (wheels_.size() > before) {
+    wheel_stamps_.push_back(sample.t);
+  }
+  advance(newest_ - settings_.latency);
+}
+
+void SegmentStream::push_attitude(double t, double roll, double pitch) {
+  if (arrives(Stream::Attitude, t, std::array{roll, pitch})) {
+    tilts_.push_back({t, kGravity * std::sin(pitch), -kGravity * std::cos(pitch) * std::sin(roll)});
+  }
+  advance(newest_ - settings_.latency);
+}
+
+void SegmentStream::push_pose(const MeasuredPose& pose) {
+  if (arrives(Stream::Pose, pose.t, std::array{pose.x, pose.y, pose.yaw})) {
+    poses_.push_back(pose);
+  }
+  advance(newest_ - settings_.latency);
+}
+
+/// Uses what cannot be preceded any more.
+void SegmentStream::advance(double until) {
+  while (!poses_.empty() && poses_.front().t <= until) {
+    const MeasuredPose pose = poses_.front();
+    poses_.pop_front();
+    process_wheels(pose.t);
+    process_pose(pose);
+  }
+  process_wheels(until);
+  trim();
+}
+
+/// Wheel speeds end segments of their own, from which the actuator model is learned.
+void SegmentStream::process_wheels(double until) {
+  while (!wheel_stamps_.empty() && wheel_stamps_.front() <= until) {
+    const double t = wheel_stamps_.front();
+    wheel_stamps_.pop_front();
+    wheels_ever_ = true;
+    const auto timed = wheel_timer_.push({.t = t, .x = 0.0, .y = 0.0, .yaw = 0.0}, settings_.rules.late_factor);
+    if (timed && settings_.from_commands) {
+      emit_wheel_segments(wheel_cutter_.push(*timed, commands_));
+    }
+  }
+}
+
+void SegmentStream::process_pose(const MeasuredPose& raw) {
+  now_ = raw.t;
+  process_accepted(gate_.push(tilted(raw), gate_inputs(now_)));
+}
+
+MeasuredPose SegmentStream::tilted(const MeasuredPose& raw) const {
+  MeasuredPose pose = raw;
+  const Tilt tilt = tilt_at(raw.t);
+  pose.gx = tilt.gx;
+  pose.gy = tilt.gy;
+  return pose;
+}
+
+/// Wheel speeds tell where the robot can have come, where there are some by then.
+const InputHistory& SegmentStream::gate_inputs(double t) const {
+  return !wheels_.empty() && wheels_.first() <= t ? wheels_ : commands_;
+}
+
+void SegmentStream::process_accepted(const GatedPoses& gated) {
+  for (const MeasuredPose& pose : gated.outliers) {
+    reject(Stream::Pose, Reason::PoseOutlier, pose.t);
+  }
+  for (const MeasuredPose& pose : gated.jumps) {
+    reject(Stream::Pose, Reason::PoseJump, pose.t);
+  }
+  for (const MeasuredPose& pose : gated.accepted) {
+    const auto timed = timer_.push(pose, settings_.rules.late_factor);
+    if (!timed) {
+      reject(Stream::Pose, Reason::LatePose, pose.t);
+      continue;
+    }
+    if (settings_.from_commands && wheels_ever_) {
+      emit_slip(slip_.push(*timed, wheels_));
+    }
+    emit_learned(learned_.push(*timed, inputs()));
+    for (std::size_t i = 0; i < targets_.size(); ++i) {
+      emit_targets(i, targets_[i].push(*timed, inputs()));
+    }
+  }
+}
+
+void SegmentStream::finish_cutters() {
+  if (settings_.from_commands) {
+    emit_wheel_segments(wheel_cutter_.finish(commands_));
+    if (wheels_ever_) {
+      emit_slip(slip_.finish(wheels_));
+    }
+  }
+  emit_learned(learned_.finish(inputs()));
+  for (std::size_t i = 0; i < targets_.size(); ++i) {
+    emit_targets(i, targets_[i].finish(inputs()));
+  }
+}
+
+void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      const double start = cut.first.t;
+      const double end = cut.second.t;
+      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kLookBack, end, SliceKind::Commands),
+                                       .wheels = wheels_.slice(start, end, SliceKind::Wheels),
+                                       .start = start,
+                                       .end = end});
+    }
+  }
+}
+
+void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      items_.emplace_back(SlipSegment{driven(cut, true, now_)});
+    }
+  }
+}
+
+void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (cut.rejected) {
+      reject(Stream::Pose, *cut.rejected, cut.first.t);
+    } else {
+      items_.emplace_back(driven(cut, !settings_.from_commands, now_));
+    }
+  }
+}
+
+void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_)});
+    }
+  }
+}
+
+DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at) const {
+  Segment segment{.start = cut.first.t,
+                  .end = cut.second.t,
+                  .measured = cut.measured(),
+                  .gx = cut.first.gx,
+                  .gy = cut.first.gy,
+                  .sensor = settings_.sensor};
+  if (!by_wheels) {
+    set_actuator_state(segment);
+  }
+  const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
+  const double back = by_wheels ? kWheelsBack : kLookBack;
+  return {.inputs = (by_wheels ? wheels_ : commands_).slice(segment.start - back, segment.end, kind),
+          .segment = std::move(segment),
+          .known_at = known_at};
+}
+
+/// What wheel speeds say of the actuator until the segment starts.
+void SegmentStream::set_actuator_state(Segment& segment) const {
+  segment.initial = wheels_.known_at(segment.start);
+  if (segment.initial) {
+    InputTrack until_start = wheels_.slice(segment.start - kWheelsBack, segment.start, SliceKind::Wheels);
+    segment.known =
+        KnownDrive{.twist = std::make_shared<const InputTrack>(std::move(until_start)), .until = segment.start};
+  }
+}
+
+SegmentStream::Tilt SegmentStream::tilt_at(double t) const {
+  const auto after = std::ranges::upper_bound(tilts_, t, {}, &Tilt::t);
+  const bool known = after != tilts_.begin() && t - std::prev(after)->t <= settings_.unknown_after;
+  return known ? *std::prev(after) : Tilt{t, 0.0, 0.0};
+}
+
+void SegmentStream::trim() {
+  const double oldest = std::max(now_, newest_ - settings_.latency) - keep_;
+  commands_.drop_before(oldest);
+  wheels_.drop_before(oldest);
+  while (tilts_.size() > 1 && tilts_[1].t < oldest) {
+    tilts_.pop_front();
+  }
+}
+
+std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items_, {}); }
+
+std::vector<Rejected> SegmentStream::take_rejected() { return std::exchange(rejected_, {}); }
+
+std::vector<DrivenSegment> SegmentStream::pending_segments() const {
+  PoseGate gate = gate_;
+  PoseTimer timer = timer_;
+  SegmentCutter cutter = learned_;
+  std::vector<DrivenSegment> found;
+  for (const MeasuredPose& raw : poses_) {
+    for (const MeasuredPose& pose : gate.push(tilted(raw), gate_inputs(raw.t)).accepted) {
+      const auto timed = timer.push(pose, settings_.rules.late_factor);
+      for (const SegmentCut& cut : timed ? cutter.push(*timed, inputs()) : std::vector<SegmentCut>{}) {
+        if (!cut.rejected) {
+          found.push_back(driven(cut, !settings_.from_commands, raw.t));
+        }
+      }
+    }
+  }
+  return found;
+}
+
+DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
+  const Tilt tilt = tilt_at(newest_);
+  Segment segment{.start = newest_, .end = newest_ + horizon, .gx = tilt.gx, .gy = tilt.gy, .sensor = settings_.sensor};
+  const bool by_wheels = !settings_.from_commands;
+  if (!by_wheels) {
+    set_actuator_state(segment);
+  }
+  const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
+  const double back = by_wheels ? kWheelsBack : kLookBack;
+  return {.inputs = inputs().slice(segment.start - back, segment.end, kind, future),
+          .segment = std::move(segment),
+          .known_at = newest_};
+}
+
+}  // namespace slipwise

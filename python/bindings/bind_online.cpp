@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bindings of cpp/include/slipwise/online: the streaming learner.
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/string_view.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "slipwise/identify/student_t.hpp"
+#include "slipwise/online/motion_learner.hpp"
+#include "slipwise/online/recording.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace slipwise::bindings {
+namespace {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+void check_columns(const Rows& rows, Eigen::Index columns, const char* what) {
+  if (rows.rows() > 0 && rows.cols() != columns) {
+    throw std::invalid_argument(std::string(what) + " need rows of " + std::to_string(columns) + " numbers, got " +
+                                std::to_string(rows.cols()));
+  }
+}
+
+std::vector<InputSample> samples(const Rows& rows, const char* what) {
+  check_columns(rows, 4, what);
+  std::vector<InputSample> all;
+  all.reserve(static_cast<std::size_t>(rows.rows()));
+  for (const auto& row : rows.rowwise()) {
+    all.push_back({row[0], {.v = row[1], .vy = row[2], .omega = row[3]}});
+  }
+  return all;
+}
+
+Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses) {
+  check_columns(attitudes, 3, "attitudes");
+  check_columns(poses, 5, "poses");
+  Recording run{
+      .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
+  for (const auto& row : attitudes.rowwise()) {
+    run.attitudes.push_back({row[0], row[1], row[2]});
+  }
+  for (const auto& row : poses.rowwise()) {
+    run.poses.push_back({.t = row[0], .x = row[1], .y = row[2], .yaw = row[3], .frame = static_cast<long>(row[4])});
+  }
+  return run;
+}
+
+void bind_settings(nb::module_& m) {
+  nb::class_<SegmentRules>(m, "SegmentRules", "When two poses and the inputs between them make a segment.")
+      .def(nb::init<>())
+      .def_rw("late_factor", &SegmentRules::late_factor)
+      .def_rw("length_tolerance", &SegmentRules::length_tolerance)
+      .def_rw("still_speed", &SegmentRules::still_speed);
+  nb::class_<StreamSettings>(m, "StreamSettings", "How measurements become segments.")
+      .def(nb::init<>())
+      .def_rw("from_commands", &StreamSettings::from_commands)
+      .def_rw("segment_length", &StreamSettings::segment_length)
+      .def_rw("rules", &StreamSettings::rules)
+      .def_rw("unknown_after", &StreamSettings::unknown_after)
+      .def_rw("latency", &StreamSettings::latency)
+      .def_rw("horizons", &StreamSettings::horizons)
+      .def_rw("sensor", &StreamSettings::sensor);
+  nb::class_<HypothesisSettings>(m, "HypothesisSettings", "What is learned.")
+      .def(nb::init<>())
+      .def_rw("bases", &HypothesisSettings::bases)
+      .def_rw("dynamics", &HypothesisSettings::dynamics)
+      .def_rw("clock_offset", &HypothesisSettings::clock_offset)
+      .def_rw("mount", &HypothesisSettings::mount)
+      .def_rw("alternatives", &HypothesisSettings::alternatives)
+      .def_rw("filter", &HypothesisSettings::filter)
+      .def_rw("average", &HypothesisSettings::average);
+  nb::class_<LearnerSettings>(m, "LearnerSettings", "All that changes what a learner learns.")
+      .def(nb::init<>())
+      .def_rw("stream", &LearnerSettings::stream)
+      .def_rw("hypotheses", &LearnerSettings::hypotheses)
+      .def_rw("disturbance", &LearnerSettings::disturbance)
+      .def_rw("learn_disturbance", &LearnerSettings::learn_disturbance);
+}
+
+void bind_results(nb::module_& m) {
+  nb::class_<StudentT>(m, "StudentT", "A multivariate Student t around a prediction.")
+      .def_ro("inflation", &StudentT::inflation)
+      .def_ro("dof", &StudentT::dof);
+  nb::class_<HeldOutPrediction>(m, "HeldOutPrediction", "A prediction of one horizon, and what was measured.")
+      .def_ro("run", &HeldOutPrediction::run)
+      .def_ro("horizon", &HeldOutPrediction::horizon)
+      .def_ro("start", &HeldOutPrediction::start)
+      .def_ro("end", &HeldOutPrediction::end)
+      .def_ro("pose", &HeldOutPrediction::pose)
+      .def_ro("covariance", &HeldOutPrediction::covariance)
+      .def_ro("student", &HeldOutPrediction::student)
+      .def_ro("nominal_nis", &HeldOutPrediction::nominal_nis)
+      .def_prop_ro("structure", [](const HeldOutPrediction& p) { return static_cast<int>(p.structure); })
+      .def_ro("measured", &HeldOutPrediction::measured)
+      .def_ro("baseline", &HeldOutPrediction::baseline)
+      .def_ro("in_sample", &HeldOutPrediction::in_sample)
+      .def_ro("learned_until", &HeldOutPrediction::learned_until);
+  nb::class_<StructureUpdate>(m, "StructureUpdate", "How one structure took a segment in.")
+      .def_ro("nis", &StructureUpdate::nis)
+      .def_ro("weight", &StructureUpdate::weight)
+      .def_ro("change", &StructureUpdate::change);
+  nb::class_<PredictedPath>(m, "PredictedPath", "A path that is predicted from now on.")
+      .def_ro("start", &PredictedPath::start)
+      .def_ro("t", &PredictedPath::t)
+      .def_prop_ro("poses",
+                   [](const PredictedPath& path) {
+                     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rows(std::ssize(path.poses), 3);
+                     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+                       rows.row(i) = path.poses[static_cast<std::size_t>(i)].vector();
+                     }
+                     return rows;
+                   })
+      .def_ro("pose", &PredictedPath::pose)
+      .def_ro("covariance", &PredictedPath::covariance)
+      .def_ro("student", &PredictedPath::student)
+      .def_prop_ro("structure", [](const PredictedPath& path) { return static_cast<int>(path.structure); });
+  nb::class_<LearnedModel>(m, "LearnedModel", "What was learned so far.")
+      .def_prop_ro("motion", [](const LearnedModel& model) { return *model.known.motion; })
+      .def_prop_ro("slip", [](const LearnedModel& model) { return *model.known.slip; })
+      .def_prop_ro("disturbance", [](const LearnedModel& model) { return *model.known.disturbance; })
+      .def_ro("students", &LearnedModel::students)
+      .def_ro("held_out", &LearnedModel::held_out)
+      .def_ro("weights", &LearnedModel::weights)
+      .def_ro("range", &LearnedModel::range)
+      .def_ro("steepest", &LearnedModel::steepest)
+      .def_ro("seconds", &LearnedModel::seconds)
+      .def_ro("segments", &LearnedModel::segments)
+      .def_ro("rejected", &LearnedModel::rejected);
+}
+
+void bind_events(nb::module_& m) {
+  nb::enum_<LearnerEvent::Kind>(m, "EventKind", "What a learner has to say.")
+      .value("SegmentLearned", LearnerEvent::Kind::SegmentLearned)
+      .value("Rejected", LearnerEvent::Kind::Rejected)
+      .value("TerrainChange", LearnerEvent::Kind::TerrainChange)
+      .value("HeldOut", LearnerEvent::Kind::HeldOut);
+  nb::enum_<Stream>(m, "Stream", "Which stream a measurement came from.")
+      .value("Command", Stream::Command)
+      .value("Wheels", Stream::Wheels)
+      .value("Pose", Stream::Pose)
+      .value("Attitude", Stream::Attitude);
+  nb::class_<LearnerEvent>(m, "LearnerEvent", "Something that a learner has to say.")
+      .def_ro("kind", &LearnerEvent::kind)
+      .def_ro("run", &LearnerEvent::run)
+      .def_ro("t", &LearnerEvent::t)
+      .def_ro("stream", &LearnerEvent::stream)
+      .def_prop_ro("reason", [](const LearnerEvent& event) { return reason_name(event.reason); })
+      .def_prop_ro("reason_text", [](const LearnerEvent& event) { return reason_text(event.reason); })
+      .def_ro("updates", &LearnerEvent::updates)
+      .def_ro("weights", &LearnerEvent::weights)
+      .def(
+          "posterior",
+          [](const LearnerEvent& event, std::size_t structure) -> std::optional<MotionPosterior> {
+            const auto& posterior = event.posteriors.at(structure);
+            return posterior ? std::optional(*posterior) : std::nullopt;
+          },
+          "structure"_a, "What a structure knows after the segment; None where it is not tried.")
+      .def_prop_ro("prediction", [](const LearnerEvent& event) -> std::optional<HeldOutPrediction> {
+        return event.prediction ? std::optional(*event.prediction) : std::nullopt;
+      });
+}
+
+}  // namespace
+
+void bind_online(nb::module_& m) {
+  m.def("fraction_inside", &fraction_inside, "squared"_a, "dof"_a,
+        "Probability of x, y, yaw to lie within a squared Mahalanobis distance of a Student t.");
+  bind_settings(m);
+  bind_results(m);
+  bind_events(m);
+  nb::class_<MotionLearner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
+      .def(nb::init<const LearnerSettings&>(), "settings"_a)
+      .def("start_run", &MotionLearner::start_run)
+      .def("end_run", &MotionLearner::end_run)
+      .def(
+          "push_command",
+          [](MotionLearner& learner, double t, double v, double omega, double vy) {
+            learner.push_command(t, {.v = v, .vy = vy, .omega = omega});
+          },
+          "t"_a, "v"_a, "omega"_a, "vy"_a)
+      .def(
+          "push_wheels",
+          [](MotionLearner& learner, double t, double v, double omega, double vy) {
+            learner.push_wheels(t, {.v = v, .vy = vy, .omega = omega});
+          },
+          "t"_a, "v"_a, "omega"_a, "vy"_a)
+      .def(
+          "push_pose",
+          [](MotionLearner& learner, double t, double x, double y, double yaw, long frame) {
+            learner.push_pose({.t = t, .x = x, .y = y, .yaw = yaw, .frame = frame});
+          },
+          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a)
+      .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
+      .def(
+          "push_run",
+          [](MotionLearner& learner, const Rows& commands, const Rows& wheels, const Rows& attitudes,
+             const Rows& poses) { push_run(learner, recording(commands, wheels, attitudes, poses)); },
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
+          "Starts a run and pushes rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, "
+          "pitch) [s, rad, rad] and (t, x, y, yaw, frame) [s, m, m, rad, -] in the order of their stamps.")
+      .def("events", &MotionLearner::events, "What happened since the last call.")
+      .def_prop_ro("dropped_events", &MotionLearner::dropped_events)
+      .def(
+          "predict",
+          [](MotionLearner& learner, const Rows& future, double horizon, double embargo) {
+            return learner.predict(samples(future, "future inputs"), horizon, embargo);
+          },
+          "future"_a, "horizon"_a, "embargo"_a)
+      .def("model", &MotionLearner::model, "What was learned of all that was pushed.")
+      .def("forget", &MotionLearner::forget, "fraction"_a)
+      .def_prop_ro("newest", &MotionLearner::newest);
+}
+
+}  // namespace slipwise::bindings
