@@ -23,11 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
+from slipwise.calibration.cascade_pass import CascadePass
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.learner import Belief
 from slipwise.logs import Inputs, Log, Poses

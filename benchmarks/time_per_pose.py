@@ -20,12 +20,12 @@ from pathlib import Path
 
 import numpy as np
 from data_sets import DataSet, data_folder, data_sets, input_names
+from slipwise.calibration.learning_run import start_learning
 
 import slipwise
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learning_run import start_learning
 
 POSE_RATE = 20.0  # Hz
 LIMIT = 200.0  # us of processor time for a pose

@@ -18,7 +18,6 @@ NB_MODULE(_core, m) {
   bind_planning(m);
   bind_estimate(m);
   bind_coloured_slip(m);
-  bind_start_pose(m);
   bind_regression(m);
   bind_estimators(m);
   bind_limits(m);

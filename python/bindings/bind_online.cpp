@@ -62,6 +62,8 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("from_commands", &StreamSettings::from_commands)
       .def_rw("segment_length", &StreamSettings::segment_length)
+      .def_rw("whole_frames", &StreamSettings::whole_frames)
+      .def_rw("stride", &StreamSettings::stride)
       .def_rw("rules", &StreamSettings::rules)
       .def_rw("unknown_after", &StreamSettings::unknown_after)
       .def_rw("latency", &StreamSettings::latency)
@@ -73,7 +75,10 @@ void bind_settings(nb::module_& m) {
       .def_rw("dynamics", &HypothesisSettings::dynamics)
       .def_rw("clock_offset", &HypothesisSettings::clock_offset)
       .def_rw("mount", &HypothesisSettings::mount)
-      .def_rw("alternatives", &HypothesisSettings::alternatives)
+      .def_rw("cascaded", &HypothesisSettings::cascaded)
+      .def_rw("direct", &HypothesisSettings::direct)
+      .def_rw("baseline", &HypothesisSettings::baseline)
+      .def_prop_ro("several", &HypothesisSettings::several)
       .def_rw("filter", &HypothesisSettings::filter)
       .def_rw("average", &HypothesisSettings::average);
   nb::class_<LearnerSettings>(m, "LearnerSettings", "All that changes what a learner learns.")
@@ -84,7 +89,57 @@ void bind_settings(nb::module_& m) {
       .def_rw("learn_disturbance", &LearnerSettings::learn_disturbance);
 }
 
+Rows pose_rows(const std::vector<MeasuredPose>& poses) {
+  Rows rows(std::ssize(poses), 5);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const MeasuredPose& pose = poses[static_cast<std::size_t>(i)];
+    rows.row(i) << pose.t, pose.x, pose.y, pose.yaw, static_cast<double>(pose.frame);
+  }
+  return rows;
+}
+
+void bind_recordings(nb::module_& m) {
+  nb::class_<Recording>(m, "Recording", "One recorded run, each stream in the order of its stamps.")
+      .def(
+          "__init__",
+          [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses) {
+            new (self) Recording(recording(commands, wheels, attitudes, poses));
+          },
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
+          "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
+          "(t, x, y, yaw, frame) [s, m, m, rad, -].");
+  nb::class_<Rejected>(m, "Rejected", "Something rejected.")
+      .def_ro("stream", &Rejected::stream)
+      .def_ro("t", &Rejected::t)
+      .def_prop_ro("reason", [](const Rejected& rejected) { return reason_name(rejected.reason); })
+      .def_prop_ro("reason_text", [](const Rejected& rejected) { return reason_text(rejected.reason); });
+  nb::class_<DrivenSegment>(m, "DrivenSegment", "A segment together with the inputs that drove it.")
+      .def_ro("inputs", &DrivenSegment::inputs)
+      .def_ro("segment", &DrivenSegment::segment)
+      .def_ro("known_at", &DrivenSegment::known_at);
+  nb::class_<CutRuns>(m, "CutRuns", "Recorded runs as segments.")
+      .def_ro("segments", &CutRuns::segments)
+      .def_ro("run", &CutRuns::run)
+      .def_ro("rejected", &CutRuns::rejected)
+      .def_ro("rejected_run", &CutRuns::rejected_run);
+  m.def(
+      "cut_segments",
+      [](const StreamSettings& settings, const std::vector<Recording>& runs) { return cut_segments(settings, runs); },
+      "settings"_a, "runs"_a, "The segments that a learner with these settings learns.");
+  nb::class_<GatedPoses>(m, "GatedPoses", "What the gate makes of the poses; rows of (t, x, y, yaw, frame).")
+      .def_prop_ro("accepted", [](const GatedPoses& gated) { return pose_rows(gated.accepted); })
+      .def_prop_ro("outliers", [](const GatedPoses& gated) { return pose_rows(gated.outliers); })
+      .def_prop_ro("jumps", [](const GatedPoses& gated) { return pose_rows(gated.jumps); });
+  m.def("gate_poses", &gate_poses, "run"_a, "unknown_after"_a,
+        "The poses of a recorded run as a learner uses them: outliers rejected, frames numbered anew at jumps.");
+}
+
 void bind_results(nb::module_& m) {
+  nb::class_<StudentCalibration>(m, "StudentCalibration", "Fits a Student t to the errors of predictions.")
+      .def(nb::init<>())
+      .def("learn", &StudentCalibration::learn, "squared"_a,
+           "Takes in the squared Mahalanobis length of an error in its reported covariance.")
+      .def("fitted", &StudentCalibration::fitted);
   nb::class_<StudentT>(m, "StudentT", "A multivariate Student t around a prediction.")
       .def_ro("inflation", &StudentT::inflation)
       .def_ro("dof", &StudentT::dof);
@@ -141,11 +196,6 @@ void bind_events(nb::module_& m) {
       .value("Rejected", LearnerEvent::Kind::Rejected)
       .value("TerrainChange", LearnerEvent::Kind::TerrainChange)
       .value("HeldOut", LearnerEvent::Kind::HeldOut);
-  nb::enum_<Stream>(m, "Stream", "Which stream a measurement came from.")
-      .value("Command", Stream::Command)
-      .value("Wheels", Stream::Wheels)
-      .value("Pose", Stream::Pose)
-      .value("Attitude", Stream::Attitude);
   nb::class_<LearnerEvent>(m, "LearnerEvent", "Something that a learner has to say.")
       .def_ro("kind", &LearnerEvent::kind)
       .def_ro("run", &LearnerEvent::run)
@@ -172,7 +222,13 @@ void bind_events(nb::module_& m) {
 void bind_online(nb::module_& m) {
   m.def("fraction_inside", &fraction_inside, "squared"_a, "dof"_a,
         "Probability of x, y, yaw to lie within a squared Mahalanobis distance of a Student t.");
+  nb::enum_<Stream>(m, "Stream", "Which stream a measurement came from.")
+      .value("Command", Stream::Command)
+      .value("Wheels", Stream::Wheels)
+      .value("Pose", Stream::Pose)
+      .value("Attitude", Stream::Attitude);
   bind_settings(m);
+  bind_recordings(m);
   bind_results(m);
   bind_events(m);
   nb::class_<MotionLearner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
@@ -199,12 +255,9 @@ void bind_online(nb::module_& m) {
           "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a)
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
-          "push_run",
-          [](MotionLearner& learner, const Rows& commands, const Rows& wheels, const Rows& attitudes,
-             const Rows& poses) { push_run(learner, recording(commands, wheels, attitudes, poses)); },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
-          "Starts a run and pushes rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, "
-          "pitch) [s, rad, rad] and (t, x, y, yaw, frame) [s, m, m, rad, -] in the order of their stamps.")
+          "push",
+          [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,
+          nb::call_guard<nb::gil_scoped_release>(), "Pushes recorded streams in the order of their stamps.")
       .def("events", &MotionLearner::events, "What happened since the last call.")
       .def_prop_ro("dropped_events", &MotionLearner::dropped_events)
       .def(

@@ -135,40 +135,6 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
     return _core.ColouredSlip(model.wander).now(model.belief, track, list(windows))
 
 
-def start_seen(model: Model, inputs: Inputs, t: ArrayLike, poses: ArrayLike) -> Floats:
-    """Return where the pose sensor is now, its noise averaged over the last measured poses.
-
-    A path of `predict` starts there. Slip and drive carry older poses to the last one; how much these count
-    was learned (derivations.md, section 20), and is nothing where averaging did not foretell better.
-
-    Args:
-        model: a learned model.
-        inputs: held inputs of the kind that the model was learned from, since before the first pose.
-        t: stamps of the last poses [s], increasing, [M].
-        poses: x, y [m] and yaw [rad] in any frame that holds still, [M, 3].
-
-    Raises:
-        SettingsError: there is no pose, the stamps do not increase, or the shapes do not fit.
-    """
-    stamps, rows = np.asarray(t, dtype=np.float64), np.asarray(poses, dtype=np.float64)
-    if stamps.ndim != 1 or len(stamps) == 0 or rows.shape != (len(stamps), 3):
-        raise SettingsError(
-            f"stamps of shape {stamps.shape} and poses of shape {rows.shape} do not fit",
-            advice="give M stamps and M rows of (x, y, yaw)",
-        )
-    if not (np.isfinite(stamps).all() and np.isfinite(rows).all() and (np.diff(stamps) > 0.0).all()):
-        raise SettingsError("the last poses must be finite, and their stamps must increase")
-    start = _core.StartPose(model.start_law)
-    young = (stamps >= stamps[-1] - start.reach) & (stamps >= inputs.t[0])
-    young[-1] = True
-    track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
-    now = float(stamps[-1])
-    segment = _core.Segment(now, now, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    seen = _core.SeenPoses(stamps[young].tolist(), rows[young])
-    offset = start.offset(model.belief, track, seen, segment)
-    return np.asarray(_core.compose(_core.Pose2(*rows[-1].tolist()), offset).vector(), dtype=np.float64)
-
-
 def _known_drive(
     begin: float, initial: tuple[float, float] | None
 ) -> tuple[_core.InputTrack, float, _core.BodyTwist] | None:

@@ -114,7 +114,7 @@ def make_model(made: Made) -> Model:
         for info in motion.parameters
     ]
     content = {
-        "slipwise_model": 3,
+        "slipwise_model": 4,
         "input": "wheel" if not (made.commands or made.response or made.delays) else "command",
         "slip": {
             "basis": made.basis.name,

@@ -60,14 +60,16 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     weights_[index(structure)] = kPrior[index(structure)];
   };
   attempt(Structure::Joint);
-  if (settings.alternatives) {
+  if (settings.baseline) {
     attempt(Structure::Baseline);
   }
-  if (settings.alternatives && settings.dynamics) {
+  if (settings.direct && settings.dynamics) {
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
     direct_.emplace("auto", chosen(settings.bases, direct_bases_),
                     ChainParameters{.mount = settings.mount, .delays = true}, settings.filter, settings.average);
+  }
+  if (settings.cascaded && settings.dynamics) {
     cascaded_.emplace(
         ModelAverage("auto", settings.bases, {.clock_offset = settings.clock_offset, .mount = settings.mount},
                      settings.filter, settings.average),
@@ -76,8 +78,6 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
   const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
   std::ranges::for_each(weights_, [&](double& weight) { weight /= total; });
 }
-
-bool MotionHypotheses::several() const { return std::ranges::count(tried_, true) > 1; }
 
 std::vector<Structure> MotionHypotheses::structures() const {
   std::vector<Structure> all;
@@ -182,7 +182,7 @@ ScoredSegment MotionHypotheses::predict(Structure structure) {
 }
 
 ScoredSegment MotionHypotheses::learned(ModelAverage& average, Structure structure) {
-  const bool active = !settings_.alternatives || may_predict(structure);
+  const bool active = may_predict(structure);
   const IekfUpdate update = average.learn(segment_->inputs, segment_->segment, active);
   updates_[index(structure)] = {.nis = update.nis, .weight = update.weight, .change = average.change()};
   return {update.innovation, update.innovation_covariance, update.nis};

@@ -13,6 +13,7 @@
 #include "slipwise/identify/student_t.hpp"
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
@@ -252,7 +253,8 @@ void MotionLearner::publish(const DrivenSegment& segment) {
   event.updates = hypotheses_.updates();
   event.weights = hypotheses_.weights();
   for (std::size_t i = 0; i < kStructures; ++i) {
-    event.posteriors[i] = hypotheses_.of(static_cast<Structure>(i));
+    event.posteriors[i] =
+        supported(hypotheses_.of(static_cast<Structure>(i)), stream_.wheel_interval(), hypotheses_.count());
   }
   const bool alarm = event.updates[index(known_.back().slip->structure)].change.alarm;
   say(event);
@@ -406,6 +408,9 @@ LearnedModel MotionLearner::model() const {
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),
                        .rejected = complete.rejected_};
+  const double spacing = complete.stream_.wheel_interval();
+  learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
+  learned.known.slip = supported(learned.known.slip, spacing, learned.segments);
   for (std::size_t i = 0; i < complete.errors_.size(); ++i) {
     learned.students.push_back(complete.errors_[i].nominal(learned.known.motion->structure));
     learned.held_out.emplace_back(complete.held_out_[i].begin(), complete.held_out_[i].end());

@@ -33,7 +33,7 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       commands_(settings.unknown_after),
       wheels_(settings.unknown_after),
       now_(-kNever),
-      learned_(settings.segment_length, settings.rules, true),
+      learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
       slip_(kSlipLength, settings.rules, true),
       wheel_cutter_(kWheelLength, settings.rules, true) {
   double longest = settings.segment_length;

@@ -13,26 +13,26 @@ from slipwise.calibration.drive import (
     WindowSet,
     choose_input,
     collect_windows,
+    has_wheels,
     prepare_drive,
 )
-from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all
+from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all, tail_of
 from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
+from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.learner import Belief, Progress
-from slipwise.calibration.learning_run import LearningRun, start_learning
-from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.plain import plain_forecaster
-from slipwise.calibration.result import Calibration, Verdict
-from slipwise.calibration.settings import Settings
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.result import Calibration, History, Verdict
+from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
-from slipwise.calibration.wheel_drive import has_wheels
 from slipwise.errors import LogError, ModelError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models import schema
-from slipwise.models.limits import limits_section
 from slipwise.models.model import Model
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -40,13 +40,23 @@ JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
 
 @dataclass(frozen=True, eq=False)
 class _Learned:
-    """What learning gave, before it is put into a model file."""
+    """What learning gave."""
 
-    belief: Belief
+    kept: Belief
+    identifiable: Belief  # the same; of the next best where the baseline is kept, which has no parameters
+    predictions: tuple[Predictions, ...]  # causal, of the horizons that are judged
+    baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
     tails: dict[float, schema.Tail]
+    history: History | None
+    bases: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """What goes into a model file beside what was learned."""
+
     judgement: Judgement
     verdict: Verdict
-    limits: schema.LimitsSection | None = None
 
 
 def calibrate(
@@ -78,17 +88,49 @@ def calibrate(
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
     found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
-    run = start_learning(settings, input_name, windows, record=True, progress=progress)
-    learned = _judged(run, windows, (log, input_name, settings), found)
-    model = model_of(_content(learned, (log, input_name, settings), windows, run.bases), log, found)
+    learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
+    learned = learn(settings, windows, progress)
+    judged = _judged(learned, windows, (log, input_name, settings), found)
+    content = _content(learned, judged, (log, input_name, settings), windows)
     return Calibration(
-        model,
-        learned.verdict,
-        run.history(),
+        model_of(content, log, found),
+        judged.verdict,
+        learned.history,
         log.left_out + windows.left_out,
         log.notes,
-        smooth_windows(learned.belief, windows, settings) if smooth else None,
+        smooth_windows(learned.kept, windows, settings) if smooth else None,
     )
+
+
+def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> _Learned:
+    """Learn in one pass, which also makes the predictions that are judged."""
+    learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, record=True, progress=progress)
+    tails = {
+        p.horizon: tail_of(student)
+        for p, student in zip(learned.predictions, learned.students, strict=True)
+        if len(p)
+    }
+    return _Learned(
+        learned.kept,
+        learned.slip,
+        learned.predictions,
+        learned.baseline,
+        tails,
+        learned.history,
+        learned.bases,
+    )
+
+
+def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | None) -> _Learned:
+    """Learn with one of the estimators that the learner is compared with."""
+    run = run_estimator(settings, windows.drive[0].input_name, windows, record=True, progress=progress)
+    forecaster = Forecaster("learned", settings.filter_settings().noise.shape, run.belief, run.dynamics)
+    sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
+    predictions = forecast_all(forecaster, windows, sets)
+    plain = tuple(forecast(plain_forecaster(settings), windows, targets) for targets in sets)
+    tails = {p.horizon: final_tail(p) for p in predictions if len(p)}
+    kept = run.kept()
+    return _Learned(kept, kept, predictions, plain, tails, run.history(), run.bases)
 
 
 def learning_windows(drive: tuple[DriveRun, ...], input_name: str, settings: Settings) -> WindowSet:
@@ -129,46 +171,39 @@ def model_of(content: schema.ModelFile, log: Log, found: tuple[Contradiction, ..
 
 
 def _judged(
-    run: LearningRun,
+    learned: _Learned,
     windows: WindowSet,
     given: tuple[Log, str, Settings],
     found: tuple[Contradiction, ...],
-) -> _Learned:
+) -> _Judged:
     """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
 
     The predictions are those that `evaluate` makes of the same method, so that one error stands in the
     verdict, the model file, the report and the scores.
     """
     log, input_name, settings = given
-    shape = settings.filter_settings().noise.shape
-    forecaster = Forecaster("learned", shape, run.belief, run.dynamics)
-    sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
-    judged = [targets for targets in sets if len(targets)]
-    predictions = forecast_all(forecaster, windows, judged or [windows])
-    belief = run.kept()
-    tails = {p.horizon: final_tail(p, belief.structure) for p in predictions}
-    enough = [k for k, p in enumerate(predictions) if len(p) >= 2 * FEWEST_WINDOWS]
-    chosen = enough[-1] if enough else 0
-    plain = forecast(plain_forecaster(settings), windows, (judged or [windows])[chosen])
-    judgement = judge(predictions[chosen], plain)
-    shortage = shortage_advice(log, input_name, sets[0], settings) if judgement.too_short else ()
-    wheels_advice = log.advice.get("wheel", "")
-    known = identified(belief, wheels_logged=has_wheels(windows.drive), wheels_advice=wheels_advice)
-    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
-    search = run.limits()
-    if search is None:
-        return _Learned(belief, tails, judgement, verdict)
-    if not any(each.spoils for each in found):
-        verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(search)))
-    limits = None if belief.limited is None else limits_section(search)
-    return _Learned(belief, tails, judgement, verdict, limits)
+    counts = [len(p) for p in learned.predictions]
+    enough = [k for k, count in enumerate(counts) if count >= 2 * FEWEST_WINDOWS]
+    some = [k for k, count in enumerate(counts) if count]
+    chosen = enough[-1] if enough else (some or [0])[0]
+    judgement = judge(learned.predictions[chosen], learned.baseline[chosen])
+    shortage: tuple[str, ...] = ()
+    if judgement.too_short:
+        shortest = collect_windows(windows.drive, JUDGING_HORIZONS[0], settings.rules())
+        shortage = shortage_advice(log, input_name, shortest, settings)
+    known = identified(
+        learned.identifiable,
+        wheels_logged=has_wheels(windows.drive),
+        wheels_advice=log.advice.get("wheel", ""),
+    )
+    return _Judged(judgement, give_verdict(judgement, known, LogFacts(found, shortage, input_name)))
 
 
 def _content(
-    learned: _Learned, given: tuple[Log, str, Settings], windows: WindowSet, bases: tuple[str, ...]
+    learned: _Learned, judged: _Judged, given: tuple[Log, str, Settings], windows: WindowSet
 ) -> schema.ModelFile:
     log, input_name, settings = given
-    motion = learned.belief.motion
+    motion, verdict = learned.kept.motion, judged.verdict
     basis = motion.basis
     return schema.ModelFile(
         slipwise_model=schema.SCHEMA_VERSION,
@@ -179,14 +214,12 @@ def _content(
         clock_offset=motion.clock_offset,
         response=motion.response,
         mount=motion.mount,
-        limits=learned.limits,
-        parameters=_parameters(learned.belief),
-        covariance=learned.belief.covariance.tolist(),
+        parameters=_parameters(learned.kept),
+        covariance=learned.kept.covariance.tolist(),
         noise=_noise(learned, settings),
-        coloured=_coloured(learned.belief, windows.length),
-        start=_start(learned.belief),
+        coloured=_coloured(learned.kept, windows.length),
         range=_range(windows.drive),
-        weights=dict(zip(bases, map(float, learned.belief.weights), strict=False)),
+        weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=version("slipwise"),
             logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
@@ -195,18 +228,18 @@ def _content(
             learned_windows=len(windows),
         ),
         verdict=schema.VerdictSection(
-            good=learned.verdict.good,
-            sentence=learned.verdict.sentence,
-            undetermined=list(learned.verdict.undetermined),
-            advice=list(learned.verdict.advice),
+            good=verdict.good,
+            sentence=verdict.sentence,
+            undetermined=list(verdict.undetermined),
+            advice=list(verdict.advice),
             look_alikes=[
                 schema.LookAlike(first=pair.first, second=pair.second, correlation=pair.correlation)
-                for pair in learned.verdict.look_alikes
+                for pair in verdict.look_alikes
             ],
-            timing=learned.verdict.timing,
-            reservations=list(learned.verdict.reservations),
-            contradictions=list(learned.verdict.contradictions),
-            held_out=learned.judgement.held_out,
+            timing=verdict.timing,
+            reservations=list(verdict.reservations),
+            contradictions=list(verdict.contradictions),
+            held_out=judged.judgement.held_out,
         ),
     )
 
@@ -234,7 +267,7 @@ def _noise(learned: _Learned, settings: Settings) -> schema.Noise:
         fraction=shape.fraction,
         pose_std_xy=shape.pose_std_xy,
         pose_std_yaw=shape.pose_std_yaw,
-        scale=learned.belief.noise_scale.tolist(),
+        scale=learned.kept.noise_scale.tolist(),
         tails=learned.tails,
     )
 
@@ -250,17 +283,6 @@ def _coloured(belief: Belief, window: float) -> schema.Coloured | None:
         for wander, weight in zip(law.candidates, law.weights, strict=True)
     ]
     return schema.Coloured(window=window, candidates=candidates)
-
-
-def _start(belief: Belief) -> schema.Start | None:
-    if belief.start is None:
-        return None
-    law = belief.start.law
-    memories = [
-        schema.PoseMemory(seconds=seconds, weight=float(weight))
-        for seconds, weight in zip(law.memories, law.weights, strict=True)
-    ]
-    return schema.Start(memories=memories)
 
 
 def _range(drive: tuple[DriveRun, ...]) -> schema.Range:

@@ -11,20 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
-from slipwise.segments import RECENT, WindowRules, cut_windows, pose_intervals
+from slipwise.segments import WindowRules, cut_windows
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 INPUT_NAMES = ("command", "wheel")
 EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
-RECENT_WINDOWS, RECENT_SECONDS = 12, 30.0  # at most, that tell of the slip now
-LEAD_IN = 1.0  # s before the first wheel speed; no clock offset is larger
-STEP = 0.1  # s; a lagging drive is followed in steps of no more, so repeats within one only cost time
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +30,8 @@ class DriveRun:
     index: int  # of the run in the log
     run: Run
     inputs: Inputs
-    track: _core.InputTrack
     wheels: Inputs | None  # measured at the start of a prediction from commands
+    input_name: str = "command"  # or "wheel": of `inputs`
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,18 +45,17 @@ class WindowSet:
     end: Floats  # s
     measured: Floats  # [N, 3]
     segments: tuple[_core.Segment, ...]
-    known_since: Floats  # s; the input has no gap between it and the start
-    usable: tuple[Ints, ...]  # of each run: indices of the poses that are not late
+    tracks: tuple[_core.InputTrack, ...]  # the inputs that act in each, or before it
     unknown_after: float  # s; an input is unknown once it is older than this
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
         return len(self.start)
 
-    def track(self, i: int, limited: LimitedDrive | None = None) -> _core.InputTrack:
-        """Return the inputs of window i, behind the limits of the drive where there are some."""
-        position = int(self.position[i])
-        return self.drive[position].track if limited is None else limited.track(position)
+    def track(self, i: int, limits: _core.CommandLimits | None = None) -> _core.InputTrack:
+        """Return the inputs of window i, behind the limits of the actuator where there are some."""
+        track = self.tracks[i]
+        return track if limits is None else _core.limited_track(track, limits, _core.RAMP_PIECE)
 
     def distances(self) -> Floats:
         """Return how far the robot was driven in each window, by its inputs, [N] m."""
@@ -87,29 +82,6 @@ class WindowSet:
     def passed(self, pace: WindowSet) -> Ints:
         """Return how many windows had ended when each window of `pace` did, [len(pace)]."""
         return self.count_until(pace.position, pace.end)
-
-    def recent(self, count: int, position: int, time: float) -> list[_core.Segment]:
-        """Return those of the first `count` windows that lie in run `position` shortly before `time` [s]."""
-        return [
-            self.segments[i]
-            for i in range(max(0, count - RECENT_WINDOWS), count)
-            if self.position[i] == position and self.start[i] > time - RECENT_SECONDS
-        ]
-
-    def seen(self, i: int, reach: float) -> _core.SeenPoses:
-        """Return the poses of the last `reach` [s] until window i starts, where they tell of its start.
-
-        They are of its frame, not late, and the input has been known since.
-        """
-        poses, usable = self.drive[self.position[i]].run.poses, self.usable[self.position[i]]
-        start = float(self.start[i])
-        since = max(start - reach, float(self.known_since[i]))
-        first, last = np.searchsorted(poses.t, (since, start)).tolist()
-        at = usable[slice(*np.searchsorted(usable, (first, last + 1)).tolist())]
-        at = at[poses.frame[at] == poses.frame[last]]
-        return _core.SeenPoses(
-            poses.t[at].tolist(), np.column_stack((poses.x[at], poses.y[at], poses.yaw[at]))
-        )
 
     @cached_property
     def _clock_of_each(self) -> Ints:
@@ -140,8 +112,8 @@ def prepare_drive(log: Log, input_name: str) -> tuple[DriveRun, ...]:
         inputs = run.commands if input_name == "command" else run.wheels
         if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
             continue
-        track = input_track(inputs, rolling=input_name == "wheel")
-        drive.append(DriveRun(index, run, inputs, track, run.wheels if input_name == "command" else None))
+        wheels = run.wheels if input_name == "command" else None
+        drive.append(DriveRun(index, run, inputs, wheels, input_name))
     if not drive:
         raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
     return tuple(_in_time(drive))
@@ -154,31 +126,6 @@ def _in_time(drive: list[DriveRun]) -> list[DriveRun]:
     return drive
 
 
-def without_repeats(inputs: Inputs) -> Inputs:
-    """Leave out inputs that repeat the one held, but for one in each `STEP`."""
-    twist = np.column_stack((inputs.v, inputs.vy, inputs.omega))
-    new = np.concatenate(([True], (twist[1:] != twist[:-1]).any(axis=1)))
-    since = inputs.t[np.flatnonzero(new)[np.cumsum(new) - 1]]
-    step = np.floor((inputs.t - since) / STEP + 1e-6)
-    kept = new | (np.diff(step, prepend=0.0) != 0.0)
-    return Inputs(inputs.t[kept], inputs.v[kept], inputs.vy[kept], inputs.omega[kept])
-
-
-def input_track(inputs: Inputs, *, rolling: bool) -> _core.InputTrack:
-    """Inputs for the core, which takes them for zero before the first one; commands without repeats.
-
-    A robot has no commands before its first one, yet wheel speeds may begin while it drives: a clock offset
-    lets the first window look a little before them, where the first wheel speed is the best guess.
-    """
-    if not rolling:
-        changes = without_repeats(inputs)
-        return _core.InputTrack(changes.t, changes.v, changes.vy, changes.omega)
-    columns = (inputs.t, inputs.v, inputs.vy, inputs.omega)
-    t, v, vy, omega = (np.concatenate((column[:1], column)) for column in columns)
-    t[0] -= LEAD_IN
-    return _core.InputTrack(t, v, vy, omega)
-
-
 def choose_input(log: Log) -> str:
     """Return "command" where the log has commands, otherwise "wheel"."""
     return next(iter(_input_names(log)), "wheel")
@@ -186,34 +133,25 @@ def choose_input(log: Log) -> str:
 
 def collect_windows(drive: tuple[DriveRun, ...], length: float, rules: WindowRules) -> WindowSet:
     """Cut all runs into windows of `length` [s]."""
-    cuts = []
-    intervals = np.empty(0)
-    for run in drive:
-        cuts.append(cut_windows(run.run, run.inputs, length, rules, earlier=intervals))
-        intervals = np.concatenate((intervals, pose_intervals(run.run.poses)))[-RECENT:]
-    segments = [s for run, cut in zip(drive, cuts, strict=True) for s in cut.segments(run.wheels, rules)]
+    settings = rules.stream_settings(length, from_commands=drive[0].input_name == "command")
+    cut = cut_windows([run.run for run in drive], settings)
     return WindowSet(
         length=length,
         drive=drive,
-        position=np.repeat(np.arange(len(drive)), [len(cut) for cut in cuts]),
-        start=np.concatenate([cut.start for cut in cuts]),
-        end=np.concatenate([cut.end for cut in cuts]),
-        measured=np.concatenate([cut.measured for cut in cuts]),
-        segments=tuple(segments),
-        known_since=np.concatenate([cut.known_since for cut in cuts]),
-        usable=tuple(cut.usable for cut in cuts),
+        position=cut.run,
+        start=cut.start,
+        end=cut.end,
+        measured=cut.measured,
+        segments=cut.segments,
+        tracks=cut.tracks,
         unknown_after=rules.unknown_after,
-        left_out=_merged([item for cut in cuts for item in cut.left_out]),
+        left_out=cut.left_out,
     )
 
 
-def _merged(items: list[LeftOut]) -> tuple[LeftOut, ...]:
-    """Add up what was left out of several runs, by kind."""
-    merged: dict[str, LeftOut] = {}
-    for item in items:
-        first = merged.setdefault(item.kind, LeftOut(item.reason, 0, item.where, item.kind))
-        merged[item.kind] = LeftOut(first.reason, first.count + item.count, first.where, item.kind)
-    return tuple(merged[kind] for kind in sorted(merged))
+def has_wheels(drive: tuple[DriveRun, ...]) -> bool:
+    """Whether every run has wheel speeds beside its commands."""
+    return all(run.wheels is not None and len(run.wheels) > 1 for run in drive)
 
 
 def _nothing_to_use(log: Log, input_name: str) -> str:

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from slipwise import _core
-from slipwise.calibration.core_learners import EstimatorLearner
 from slipwise.calibration.drive import WindowSet, collect_windows
-from slipwise.calibration.learner import make_learner
+from slipwise.calibration.learner import Belief
 from slipwise.calibration.settings import Settings
 
 ESTIMATOR_BASIS = "odd-even-10"  # where the settings leave the basis to the average
@@ -24,12 +25,16 @@ def estimator_basis(settings: Settings) -> str:
 def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.MotionModel:
     """Return the model that an estimator learns; those of the thesis have no lag, delay, offset or mount."""
     chosen = settings.model_copy(update={"basis": estimator_basis(settings)})
-    learner = make_learner(chosen, input_name)
     thesis = _core.learns_overlapping_segments(name)
-    motion = _core.MotionModel(
-        learner.bases[0], learner.dynamics and not thesis, learner.clock_offset and not thesis
-    )
-    return motion.with_mount(learner.mount and not thesis)
+    dynamics, offset = learned_parts(settings, input_name)
+    motion = _core.MotionModel(chosen.bases()[0], dynamics and not thesis, offset and not thesis)
+    return motion.with_mount(settings.mount.learn and not thesis)
+
+
+def learned_parts(settings: Settings, input_name: str) -> tuple[bool, bool]:
+    """Say whether lag and delay are learned, which commands bring, and the clock offset, which wheels bring."""
+    dynamics = input_name == "command"
+    return dynamics, settings.learn_clock_offset and not dynamics
 
 
 def estimator_learner(name: str, motion: _core.MotionModel, settings: Settings) -> EstimatorLearner:
@@ -39,7 +44,7 @@ def estimator_learner(name: str, motion: _core.MotionModel, settings: Settings) 
         ValueError: there is no such estimator.
     """
     return EstimatorLearner(
-        _core.FollowingEstimator(name, motion, settings.filter_settings(), settings.estimator_settings())
+        _core.FollowingEstimator(name, motion, settings.filter_settings(), _core.EstimatorSettings())
     )
 
 
@@ -49,3 +54,36 @@ def fed_windows(name: str, settings: Settings, windows: WindowSet) -> WindowSet:
         return windows
     rules = replace(settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
     return collect_windows(windows.drive, settings.window.length or THESIS_WINDOW, rules)
+
+
+class EstimatorLearner:
+    """One estimator, whose prior follows the speeds and whose noise follows the residuals."""
+
+    def __init__(self, estimator: _core.FollowingEstimator) -> None:
+        """`estimator` has learned nothing yet."""
+        self._estimator = estimator
+        self._motion = estimator.model
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+        """Learn one window."""
+        return self._estimator.learn(inputs, segment)
+
+    def belief(self) -> Belief:
+        """Return the belief that learning goes on from."""
+        return self._belief(self._estimator.running())
+
+    def fitted(self) -> Belief:
+        """Return the estimate: the belief, or where the estimator fits all windows at once, that fit."""
+        return self._belief(self._estimator.estimate())
+
+    def _belief(self, estimate: _core.Estimate) -> Belief:
+        prior_std, covariance = np.array(self._estimator.prior_std), np.array(estimate.covariance)
+        return Belief(
+            motion=self._motion,
+            mean=np.array(estimate.mean),
+            covariance=covariance,
+            noise_scale=np.array(self._estimator.noise_scale),
+            prior_std=prior_std,
+            variance_ratio=np.diag(covariance) / prior_std**2,
+            weights=np.ones(1),
+        )

@@ -15,7 +15,6 @@ from slipwise.number_text import number_text
 
 FEWEST_WINDOWS = 4  # held-out segments; fewer cannot be judged
 MUCH = 1.2  # ratio to the baseline beyond which an error is worse by a fault of the log, not by chance
-BY_START = 0.9  # of the product of both ratios; what the start of predictions gains beyond that is named
 SAME = 1.01  # ratio to the baseline up to which an error counts as the same; both print alike then
 
 Ratio = tuple[float, float, float]  # of two mean errors, with its 95 % interval
@@ -26,7 +25,7 @@ class Judgement:
     """The held-out comparison with the kinematic baseline."""
 
     held_out: HeldOut  # as `evaluate` shows them
-    position_ratio: Ratio  # from the same measured start, which is not the model's merit
+    position_ratio: Ratio
     heading_ratio: Ratio
     consistency: Consistency | None = None
 
@@ -43,58 +42,38 @@ class Judgement:
     @property
     def worse(self) -> tuple[str, ...]:
         """Which of position and heading are worse than the baseline's on the segments seen."""
-        shown = self._shown_ratios()
-        return tuple(name for name in shown if self._worst(name) > SAME)
+        return tuple(name for name, ratio in self._ratios().items() if ratio[0] > SAME)
 
     @property
     def much_worse(self) -> bool:
         """Whether an error is so much worse that chance is no explanation."""
-        return any(self._worst(name) > MUCH or self._ratios()[name][1] > SAME for name in self.worse)
-
-    @property
-    def gains_by_start(self) -> bool:
-        """Whether the errors shown are smaller than the model's own by where its predictions start."""
-        shown, own = self._shown_ratios(), self._ratios()
-        return shown["position"] * shown["heading"] < BY_START * own["position"][0] * own["heading"][0]
+        ratios = self._ratios()
+        return any(ratios[name][0] > MUCH or ratios[name][1] > SAME for name in self.worse)
 
     def fault(self) -> str:
         """Say why the method does not beat the kinematic baseline; empty where it does."""
-        ratios, start = self._ratios(), " from the same measured pose" if self.gains_by_start else ""
+        ratios = self._ratios()
         if self.worse:
-            times = {name: number_text(self._worst(name)) for name in self.worse}
+            times = {name: number_text(ratios[name][0]) for name in self.worse}
             each = (f"its {name} error is {times[name]} times as large" for name in self.worse)
-            return f"{' and '.join(each)}{start}"
+            return " and ".join(each)
         if any(ratio[2] < 1.0 for ratio in ratios.values()):
             return ""
         if all(ratio[0] == 1.0 for ratio in ratios.values()):
-            return f"its errors are the same{start}"
+            return "its errors are the same"
         intervals = "; ".join(f"{name} {_interval(ratio)}" for name, ratio in ratios.items())
         return (
-            f"its gain{start} may be chance, since the 95 % intervals of its errors relative to the "
+            f"its gain may be chance, since the 95 % intervals of its errors relative to the "
             f"baseline's hold 1 ({intervals})"
         )
-
-    def _worst(self, name: str) -> float:
-        """The error over the baseline's, from the measured pose or as shown."""
-        return max(self._ratios()[name][0], self._shown_ratios()[name])
 
     def _ratios(self) -> dict[str, Ratio]:
         return {"position": _or_one(self.position_ratio), "heading": _or_one(self.heading_ratio)}
 
-    def _shown_ratios(self) -> dict[str, float]:
-        """The errors shown, over the baseline's; 1 where that is never wrong."""
-        h = self.held_out
-        pairs = {"position": (h.position, h.plain_position), "heading": (h.heading, h.plain_heading)}
-        return {name: own / plain if plain > 0.0 else 1.0 for name, (own, plain) in pairs.items()}
-
 
 def judge(learned: Predictions, baseline: Predictions) -> Judgement:
-    """Compare a method with the kinematic baseline on the second half of the segments.
-
-    Errors are those of the predictions as they were made. Ratios are between predictions that start at the
-    measured pose, both: where the last poses are averaged, that helps whatever was learned.
-    """
-    half, alike = held_out_half(len(learned)), learned.at_measured_start
+    """Compare a method with the kinematic baseline on the second half of the segments."""
+    half = held_out_half(len(learned))
     held_out = HeldOut(
         horizon=learned.horizon,
         windows=half.stop - half.start,
@@ -107,8 +86,8 @@ def judge(learned: Predictions, baseline: Predictions) -> Judgement:
         return Judgement(held_out, (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan))
     return Judgement(
         held_out,
-        ratio_of_means(alike.position_error[half], baseline.position_error[half]),
-        ratio_of_means(alike.heading_error[half], baseline.heading_error[half]),
+        ratio_of_means(learned.position_error[half], baseline.position_error[half]),
+        ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
         consistency_of(learned),
     )
 

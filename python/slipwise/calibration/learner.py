@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What is learned causally, and the belief about its parameters at one moment."""
+"""The posterior of a model's parameters at one time, as verdicts, model files and reports take it."""
 
 from __future__ import annotations
 
@@ -10,19 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.limited_drive import LimitedDrive
-from slipwise.calibration.settings import Settings
 
 Floats = NDArray[np.float64]
 Progress = Callable[[float], None]
 
-STRUCTURES = ("together", "cascade", "limits", "direct", "baseline")  # how motion is explained
-TOGETHER, CASCADE, LIMITS, DIRECT, BASELINE = range(len(STRUCTURES))
+STRUCTURES = ("joint", "cascaded", "limits", "direct", "baseline")  # how motion is explained
+JOINT, CASCADED, LIMITS, DIRECT, BASELINE = range(len(STRUCTURES))
 
 
 @dataclass(frozen=True, eq=False)
 class Belief:
-    """What is believed of a model's parameters at one moment."""
+    """What is known of a model's parameters at one time."""
 
     motion: _core.MotionModel  # whose parameters these are
     mean: Floats  # [P]
@@ -32,53 +30,28 @@ class Belief:
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
-    coloured: _core.ColouredSlip | None = None  # how slip wanders about this belief, where that is learned
-    start: _core.StartPose | None = None  # how far back poses tell of a start, where that is learned
-    limited: LimitedDrive | None = None  # the limits in front of the chain, where some were found
-    structure: int = TOGETHER  # of STRUCTURES; the errors of each are a population of their own
+    coloured: _core.ColouredSlip | None = None  # the slip disturbance about this, where that is learned
+    limits: _core.CommandLimits | None = None  # in front of the actuator, where some were found
+    structure: int = JOINT  # of STRUCTURES; the errors of each are a population of their own
 
-
-@dataclass(frozen=True, eq=False)
-class Learner:
-    """How to learn one method: its bases and what else is a parameter."""
-
-    settings: Settings
-    bases: tuple[_core.Basis, ...]
-    dynamics: bool
-    clock_offset: bool
-    mount: bool
-
-    def fresh(self) -> _core.ModelAverage:
-        """Return the core's estimator before any data."""
-        return _core.ModelAverage(
-            "auto",
-            list(self.bases),
-            self.dynamics,
-            self.clock_offset,
-            self.mount,
-            self.settings.filter_settings(),
-            self.settings.average_settings(),
-        )
-
-    @property
-    def few_bases(self) -> tuple[int, ...]:
-        """Places of the two bases with the fewest terms and of the one with the most."""
-        by_size = sorted(range(len(self.bases)), key=lambda i: self.bases[i].size)
-        return tuple(sorted({*by_size[:2], by_size[-1]}))
-
-    def without_actuator(self) -> _core.ModelAverage:
-        """Return few bases without an actuator model: a delay per channel, and no lag behind it."""
-        return _core.ModelAverage.with_delays(
-            "auto",
-            [self.bases[i] for i in self.few_bases],
-            self.mount,
-            self.settings.filter_settings(),
-            self.settings.average_settings(),
+    def posterior(self, noise: _core.MotionNoise) -> _core.MotionPosterior:
+        """Return it as the core takes it; `noise` is that model of the noise where it has none of its own."""
+        estimate = _core.Estimate(self.mean, self.covariance)
+        return _core.MotionPosterior(
+            self.motion, estimate, self.prior_std, self.noise or noise, self.noise_scale
         )
 
 
-def make_learner(settings: Settings, input_name: str) -> Learner:
-    """Return the learner that the settings ask for: commands bring lag and delay, wheels a clock offset."""
-    dynamics = input_name == "command"
-    offset = settings.learn_clock_offset and not dynamics
-    return Learner(settings, tuple(settings.bases()), dynamics, offset, settings.mount.learn)
+def belief_of(posterior: _core.MotionPosterior, coloured: _core.ColouredSlip | None = None) -> Belief:
+    """Return what the core knows."""
+    return Belief(
+        motion=posterior.model,
+        mean=np.array(posterior.estimate.mean),
+        covariance=np.array(posterior.estimate.covariance),
+        noise_scale=np.array(posterior.noise_scale),
+        prior_std=np.array(posterior.prior_std),
+        variance_ratio=np.array(posterior.variance_ratio),
+        weights=np.array(posterior.basis_weights),
+        coloured=coloured,
+        structure=posterior.structure,
+    )

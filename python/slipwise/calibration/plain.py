@@ -3,15 +3,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.drive import DriveRun
 from slipwise.calibration.forecast import Forecaster
 from slipwise.calibration.learner import Belief
-from slipwise.calibration.limited_drive import LimitedDrive
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.models.model import Model
@@ -37,8 +33,8 @@ def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
     return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
 
 
-def model_forecaster(model: Model, drive: tuple[DriveRun, ...]) -> Forecaster:
-    """`model`: a model file as it is, for the runs of `drive`; where slip is now is not asked for."""
+def model_forecaster(model: Model) -> Forecaster:
+    """`model`: a model file as it is; what the slip disturbance is now is not asked for."""
     belief = Belief(
         model.motion,
         model.mean,
@@ -48,11 +44,9 @@ def model_forecaster(model: Model, drive: tuple[DriveRun, ...]) -> Forecaster:
         np.ones(len(model.mean)),
         np.ones(1),
         coloured=_core.ColouredSlip(model.wander),
+        limits=model.limits,
     )
-    if model.limits is not None:
-        tracks = tuple(run.track for run in drive)
-        belief = replace(belief, limited=LimitedDrive(tracks, model.limits))
-    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics, follows=False)
+    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics)
 
 
 def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:

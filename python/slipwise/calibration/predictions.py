@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,23 +27,17 @@ class Predictions:
     covariance: Floats  # [N, 3, 3] of a Student t, growth included
     growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
     dof: Floats  # [N] degrees of freedom of the t, from the same windows; few are heavy tails
-    usual_nis: Floats  # [N] as `stated_nis`, had nothing recent been known of slip that wanders
+    usual_nis: Floats  # [N] as `stated_nis`, had nothing recent been known of the slip disturbance
     structure: Ints  # [N] of STRUCTURES, that predicted
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
     in_sample: Floats  # [N, 2] position [m], heading [rad] error after learning the window (Table 6.2)
-    from_measured: Floats  # [N, 3] `pose`, had it started at the measured one
 
     def __len__(self) -> int:
         return len(self.t_start)
 
     def __repr__(self) -> str:
         return f"<Predictions: {len(self)} over {self.horizon:g} s by {self.method}>"
-
-    @property
-    def at_measured_start(self) -> Predictions:
-        """The same model's predictions from the measured pose, where every baseline starts."""
-        return replace(self, pose=self.from_measured)
 
     @property
     def causal(self) -> bool:

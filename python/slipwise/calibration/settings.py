@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
@@ -33,11 +33,9 @@ ESTIMATORS = (AVERAGE, *_core.estimator_names())
 WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
-_ESTIMATORS = _core.EstimatorSettings()
-_AVERAGE, _RULES = _core.ModelAverageSettings(), WindowRules()
-_CHANGE, _DRIFT = _core.ChangeSettings(), _core.DriftSettings()
-_COLOURED = _core.ColouredSlipSettings()
-_START = _core.StartPoseSettings()
+_RULES, _DRIFT = WindowRules(), _core.DriftSettings()
+_JOINT = "joint"
+Structure = Literal["joint", "cascaded", "direct", "baseline"]
 
 
 class _Section(BaseModel):
@@ -59,20 +57,11 @@ class PriorTable(_Section):
     clock_offset_std: Seconds = _PRIOR.clock_offset_std
     lag: Seconds = _PRIOR.lag
     delay: Seconds = _PRIOR.delay
-    log_std: Annotated[float, Field(ge=1e-3, le=5.0)] = _PRIOR.log_std
-    gain_std: Ratio = _PRIOR.gain_std
-    slow_share_std: Ratio = _PRIOR.slow_share_std
-    slow_lag: Seconds = _PRIOR.slow_lag
-    lever_std: Positive = _PRIOR.lever_std
-    sensor_yaw_std: Ratio = _PRIOR.sensor_yaw_std
 
 
 class FilterTable(_Section):
     """The iterated extended Kalman filter."""
 
-    iterations: Annotated[int, Field(ge=1, le=50)] = _IEKF.iterations
-    tolerance: Positive = _IEKF.tolerance
-    halvings: Annotated[int, Field(ge=0, le=50)] = _IEKF.halvings
     huber: Positive = _IEKF.huber
     gate: Positive = _IEKF.gate
 
@@ -94,86 +83,40 @@ def _known_estimator(name: str) -> str:
     return name
 
 
-Jacobian = Literal["exact", "thesis"]
-
-
-def _name(jacobian: _core.SegmentJacobian) -> Jacobian:
-    return cast(Jacobian, jacobian.name.lower())
-
-
-Drift = Literal["mean-reverting", "random-walk"]
-_DRIFTS = {"mean-reverting": _core.Drift.MeanReverting, "random-walk": _core.Drift.RandomWalk}
-
-
 class SmoothingTable(_Section):
     """Smoothing of slip that changes slowly, with the distance driven."""
 
-    drift: Drift = cast(Drift, {value: name for name, value in _DRIFTS.items()}[_DRIFT.drift])
     length: Positive = _DRIFT.length
 
-    def drift_settings(self) -> _core.DriftSettings:
-        """Return the core's settings."""
-        settings = _core.DriftSettings()
-        settings.drift, settings.length = _DRIFTS[self.drift], self.length
-        return settings
 
-
-class GradientDescentTable(_Section):
-    """The thesis's gradient descent (6.12)."""
-
-    learning_rate: Annotated[float, Field(ge=LEAST, le=1.0)] = _ESTIMATORS.gradient_descent.learning_rate
-    damping: Positive = _ESTIMATORS.gradient_descent.damping
-    jacobian: Jacobian = _name(_ESTIMATORS.gradient_descent.jacobian)
-
-
-class EkfThesisTable(_Section):
-    """The thesis's filter (Table 6.1)."""
-
-    process_std: NotNegative = _ESTIMATORS.ekf_thesis.process_std
-    jacobian: Jacobian = _name(_ESTIMATORS.ekf_thesis.jacobian)
+def _with_joint(structures: list[Structure]) -> list[Structure]:
+    if _JOINT not in structures:
+        raise ValueError(f"'{_JOINT}' must be among the structures: it is what others are compared with")
+    return structures
 
 
 class AutoTable(_Section):
-    """Averaging of bases by how well they predict."""
+    """What the basis "auto" averages, and the structures that compete."""
 
     bases: list[str] = Field(list(AUTO_BASES), min_length=1)
-    learning_rate: Ratio = _AVERAGE.weighing.learning_rate
-    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _AVERAGE.weighing.share
-    richest: Annotated[float, Field(gt=0.0, lt=1.0)] = _AVERAGE.richest
-    cascade: bool = True  # from commands, where wheel speeds are logged: also try chain and slip in cascade
-    direct: bool = True  # from commands: also try without an actuator model, delays alone
-    baseline: bool = True  # also try the kinematic baseline: no slip, no lag, no delay
-    limits: bool = True  # in cascade: also look for dead-band, top speed and rate limits of the drive
+    structures: Annotated[list[Structure], AfterValidator(_with_joint)] = [
+        "joint",  # slip, lag and delay learned from poses together
+        "cascaded",  # from commands, where wheel speeds are logged: the actuator from these, slip behind it
+        "direct",  # from commands: slip and delays, no lag
+        "baseline",  # the kinematic baseline: no slip, no lag, no delay
+    ]
 
 
-class ColouredTable(_Section):
-    """Slip that wanders about what was learned: candidates of how far and how slowly."""
-
-    learn: bool = True
-    fractions: list[Positive] = Field(list(_COLOURED.fractions), min_length=1)
-    time_constants: list[Positive] = Field(list(_COLOURED.time_constants), min_length=1)
-    white: Annotated[float, Field(gt=0.0, lt=1.0)] = _COLOURED.white
-    learning_rate: Ratio = _COLOURED.weighing.learning_rate
-    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _COLOURED.weighing.share
-
-
-class StartTable(_Section):
-    """Where a prediction starts: candidates of how far back poses tell of it."""
+class SlipDisturbanceTable(_Section):
+    """How slip differs from what was learned, for some seconds."""
 
     learn: bool = True
-    memories: list[Positive] = Field(list(_START.memories), min_length=1)
-    measured: Annotated[float, Field(gt=0.0, lt=1.0)] = _START.measured
-    learning_rate: Ratio = _START.weighing.learning_rate
-    share: Annotated[float, Field(ge=0.0, lt=1.0)] = _START.weighing.share
 
 
 class ChangeTable(_Section):
-    """Finding a change of ground, and what is forgotten then; without one nothing ever is."""
+    """Finding a change of terrain."""
 
-    detect: bool = _CHANGE.detect
-    threshold: Positive = _CHANGE.threshold
-    fraction: Positive = _CHANGE.fraction
-    forget: Annotated[float, Field(ge=0.0, le=1.0)] = _CHANGE.forget
+    detect: bool = True
 
 
 class WindowTable(_Section):
@@ -181,9 +124,6 @@ class WindowTable(_Section):
 
     length: Positive | None = None  # s; None takes the default of the input
     unknown_after: Positive = _RULES.unknown_after
-    late_factor: Positive = _RULES.late_factor
-    length_tolerance: Positive = _RULES.length_tolerance
-    still_speed: Positive = _RULES.still_speed
 
 
 class VehicleTable(_Section):
@@ -220,12 +160,9 @@ class Settings(_Section):
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
-    coloured: ColouredTable = ColouredTable()
-    start: StartTable = StartTable()
+    slip_disturbance: SlipDisturbanceTable = SlipDisturbanceTable()
     change: ChangeTable = ChangeTable()
     smoothing: SmoothingTable = SmoothingTable()
-    gradient_descent: GradientDescentTable = GradientDescentTable()
-    ekf_thesis: EkfThesisTable = EkfThesisTable()
     vehicle: VehicleTable = VehicleTable()
     mount: MountTable = MountTable()
     log: LogTable = LogTable()
@@ -240,14 +177,7 @@ class Settings(_Section):
 
     def rules(self) -> WindowRules:
         """Return the rules of cutting windows."""
-        table = self.window
-        return WindowRules(
-            table.unknown_after,
-            table.late_factor,
-            table.length_tolerance,
-            table.still_speed,
-            sensor=self.mount.pose,
-        )
+        return WindowRules(self.window.unknown_after, sensor=self.mount.pose)
 
     def log_options(self, **given: Any) -> LogOptions:
         """Return the options for `open_log`: those of [log], and `given` ones before them."""
@@ -268,41 +198,11 @@ class Settings(_Section):
         settings.prior, settings.iekf, settings.noise = prior, iekf, noise
         return settings
 
-    def estimator_settings(self) -> _core.EstimatorSettings:
-        """Return the core's settings of the thesis's estimators."""
-        settings = _core.EstimatorSettings()
-        descent, kalman = _core.GradientDescentSettings(), _core.EkfThesisSettings()
-        descent.learning_rate = self.gradient_descent.learning_rate
-        descent.damping = self.gradient_descent.damping
-        descent.jacobian = _core.SegmentJacobian[self.gradient_descent.jacobian.capitalize()]
-        kalman.process_std = self.ekf_thesis.process_std
-        kalman.jacobian = _core.SegmentJacobian[self.ekf_thesis.jacobian.capitalize()]
-        settings.gradient_descent, settings.ekf_thesis = descent, kalman
-        return settings
-
-    def coloured_settings(self) -> _core.ColouredSlipSettings:
-        """Return the core's settings of slip that wanders."""
-        settings, table = _core.ColouredSlipSettings(), self.coloured
-        settings.fractions, settings.time_constants = table.fractions, table.time_constants
-        settings.white, settings.weighing = table.white, _weighing(table)
-        return settings
-
-    def start_settings(self) -> _core.StartPoseSettings:
-        """Return the core's settings of where a prediction starts."""
-        settings, table = _core.StartPoseSettings(), self.start
-        settings.memories, settings.measured, settings.weighing = (
-            table.memories,
-            table.measured,
-            _weighing(table),
-        )
-        return settings
-
     def average_settings(self) -> _core.ModelAverageSettings:
-        """Return the core's settings of model averaging, and of finding a change of ground."""
+        """Return the core's settings of model averaging, and of finding a change of terrain."""
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
-        _copy(self.change, change)
+        change.detect = self.change.detect
         settings.change = change
-        settings.weighing, settings.richest = _weighing(self.auto), self.auto.richest
         return settings
 
     def choosing(self, basis: str | None, estimator: str | None) -> Settings:
@@ -361,12 +261,6 @@ def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settin
         return Settings.model_validate(content)
     except ValidationError as problem:
         raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
-
-
-def _weighing(table: AutoTable | ColouredTable | StartTable) -> _core.WeighingSettings:
-    settings = _core.WeighingSettings()
-    settings.learning_rate, settings.share = table.learning_rate, table.share
-    return settings
 
 
 def _copy(table: _Section, target: object) -> None:

@@ -20,7 +20,6 @@ from slipwise.logs.contradiction import Contradiction
 from slipwise.models.schema import HeldOut
 
 _REFUSED = "Do not use this model:"
-_BY_START = "It gains by averaging the last poses, not by what it learned."
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
@@ -63,8 +62,7 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     reservations = _reservations(judgement, facts)
     sentences = [fault]
     if not contradicted and not judgement.too_short:
-        start = _BY_START if fault and judgement.gains_by_start else ""
-        sentences += [_figures(judgement.held_out), start, *reservations, "" if fault else _unknown(known)]
+        sentences += [_figures(judgement.held_out), *reservations, "" if fault else _unknown(known)]
     advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
     return Verdict(
         not fault,

@@ -4,13 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.drive import WindowSet, choose_input, collect_windows, prepare_drive
-from slipwise.calibration.forecast import forecast_all
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.statistics import (
@@ -75,10 +74,7 @@ def evaluate(
     for done, name in enumerate(methods):
         if progress is not None:
             progress(name, done / len(methods))
-        forecaster = method_info(name, models).make(name, contest)
-        if name in models and _learned_from(log, models[name]):
-            forecaster = replace(forecaster, causal=False)
-        predictions += forecast_all(forecaster, contest.windows, contest.targets)
+        predictions += method_info(name, models).predict(name, contest)
     return Evaluation(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
@@ -129,9 +125,17 @@ def _contest(
             where=", ".join(source.path for source in log.sources[:3]),
             advice=_more_windows(sets),
         )
-    return Contest(
-        input_name, settings, windows, targets, options.vendor_track_multiplier, options.models
-    ), notes
+    learned_from_this = frozenset(name for name, model in options.models.items() if _learned_from(log, model))
+    contest = Contest(
+        input_name,
+        settings,
+        windows,
+        targets,
+        options.vendor_track_multiplier,
+        options.models,
+        learned_from_this,
+    )
+    return contest, notes
 
 
 def _more_windows(sets: Sequence[WindowSet]) -> str:

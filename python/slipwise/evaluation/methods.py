@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The methods that an evaluation compares, each turned into a forecaster."""
+"""The methods that an evaluation compares, and the predictions of each."""
 
 from __future__ import annotations
 
@@ -8,9 +8,11 @@ from dataclasses import dataclass, field, replace
 
 from slipwise import _core
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learning_run import start_learning
+from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.forecast import Forecaster, forecast_all
+from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
+from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
@@ -28,13 +30,14 @@ class Contest:
     targets: tuple[WindowSet, ...]  # to predict, one set per horizon
     vendor_track_multiplier: float | None = None
     models: Mapping[str, Model] = field(default_factory=dict)  # model files as they are, by method
+    learned_from_this: frozenset[str] = frozenset()  # those of them that were learned from this very log
 
 
 @dataclass(frozen=True)
 class MethodInfo:
-    """How a method is made."""
+    """How a method predicts."""
 
-    make: Callable[[str, Contest], Forecaster]
+    predict: Callable[[str, Contest], tuple[Predictions, ...]]  # one for each set of targets
     description: str
 
 
@@ -53,29 +56,34 @@ def method_names(contest: Contest) -> tuple[str, ...]:
 
 
 def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
-    """Return how the method is made; `models` are the names of model files among the methods.
+    """Return how the method predicts; `models` are the names of model files among the methods.
 
     Raises:
         SettingsError: there is no such method.
     """
     special = {
-        "none": MethodInfo(lambda _, c: plain_forecaster(c.settings), "the plain model: no slip, no lag"),
-        "vendor": MethodInfo(_vendor, "a vendor's wheel-separation multiplier"),
-        "model": MethodInfo(_model, "the model file as it is"),
+        "none": MethodInfo(
+            _by(lambda _, c: plain_forecaster(c.settings)), "the kinematic baseline: no slip, no lag"
+        ),
+        "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
+        "model": MethodInfo(_by(_model), "the model file as it is"),
         "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
         "slip-ratio-ekf": MethodInfo(
-            lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows),
+            _by(lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows)),
             "slip ratios and slip angle (thesis 2.5 to 2.7) by an EKF, from wheel speeds",
         ),
         "slip-ratio-smo": MethodInfo(
-            lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows),
+            _by(lambda _, c: slip_ratio_observer(c.input_name, c.settings, c.windows)),
             "the same by a sliding-mode observer; its covariance is the noise shape alone",
         ),
-        "surface-least-squares": MethodInfo(_surface, "slip surface by least squares (thesis 5.5)"),
+        "surface-least-squares": MethodInfo(_by(_surface), "slip surface by least squares (thesis 5.5)"),
         "surface-gaussian-process": MethodInfo(
-            _surface, "slip surface by a Gaussian process (thesis Table 5.1), as terms of the settings' basis"
+            _by(_surface),
+            "slip surface by a Gaussian process (thesis Table 5.1), as terms of the settings' basis",
         ),
-        "surface-bayesian": MethodInfo(_surface, "slip surface by Bayesian linear regression (thesis 5.13)"),
+        "surface-bayesian": MethodInfo(
+            _by(_surface), "slip surface by Bayesian linear regression (thesis 5.13)"
+        ),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in models:
@@ -87,7 +95,7 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
     if name in _core.estimator_names():
         off_line = ", fitted to the whole log, the windows judged included"
         about = off_line if _core.fits_all_segments(name) else ""
-        return MethodInfo(_estimator, f"the estimator {name} with the basis of the settings{about}")
+        return MethodInfo(_by(_estimator), f"the estimator {name} with the basis of the settings{about}")
     known = ", ".join([*special, *_core.basis_names(), *_core.estimator_names()])
     raise SettingsError(f"unknown method '{name}'", where="--methods", advice=f"known are {known}")
 
@@ -104,17 +112,25 @@ def refuse_names_of_methods(models: Collection[str]) -> None:
         )
 
 
-def _learned(name: str, contest: Contest) -> Forecaster:
-    return _run(name, contest, {"basis": name, "estimator": AVERAGE})
+def _by(make: Callable[[str, Contest], Forecaster]) -> Callable[[str, Contest], tuple[Predictions, ...]]:
+    """Predict with what `make` returns."""
+
+    def predict(name: str, contest: Contest) -> tuple[Predictions, ...]:
+        return forecast_all(make(name, contest), contest.windows, contest.targets)
+
+    return predict
+
+
+def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
+    """Push the log through the learner: predictions are made on the way."""
+    settings = contest.settings.model_copy(update={"basis": name, "estimator": AVERAGE})
+    horizons = [targets.length for targets in contest.targets]
+    return learn_log(contest.windows.drive, settings, horizons, method=name).predictions
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:
-    return _run(name, contest, {"estimator": name})
-
-
-def _run(name: str, contest: Contest, chosen: dict[str, str]) -> Forecaster:
-    settings = contest.settings.model_copy(update=chosen)
-    run = start_learning(settings, contest.input_name, contest.windows)
+    settings = contest.settings.model_copy(update={"estimator": name})
+    run = run_estimator(settings, contest.input_name, contest.windows)
     shape = settings.filter_settings().noise.shape
     if run.causal:
         return Forecaster(name, shape, run.belief, run.dynamics)
@@ -141,4 +157,5 @@ def _model(name: str, contest: Contest) -> Forecaster:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
-    return replace(model_forecaster(contest.models[name], contest.windows.drive), method=name)
+    causal = name not in contest.learned_from_this
+    return replace(model_forecaster(contest.models[name]), method=name, causal=causal)

@@ -12,11 +12,10 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.core_learners import AverageLearner
 from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.estimators import estimator_basis
+from slipwise.calibration.estimators import estimator_basis, learned_parts
 from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import Belief, make_learner
+from slipwise.calibration.learner import Belief
 from slipwise.calibration.settings import Settings
 from slipwise.evaluation.window_examples import window_examples
 from slipwise.surfaces import (
@@ -61,15 +60,47 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     Raises:
         SettingsError: a basis is unknown, or scikit-learn is missing.
     """
-    learner = make_learner(settings.model_copy(update={"basis": CHAIN_BASIS}), input_name)
+    dynamics, offset = learned_parts(settings, input_name)
     basis = settings.model_copy(update={"basis": estimator_basis(settings)}).bases()[0]
-    motion = _core.MotionModel(basis, learner.dynamics, learner.clock_offset).with_mount(learner.mount)
+    motion = _core.MotionModel(basis, dynamics, offset).with_mount(settings.mount.learn)
+    chain = _core.ModelAverage(
+        CHAIN_BASIS,
+        [_core.named_basis(CHAIN_BASIS)],
+        dynamics,
+        offset,
+        settings.mount.learn,
+        settings.filter_settings(),
+        settings.average_settings(),
+    )
     shape = settings.filter_settings().noise.shape
     rules = SurfaceRules(name, motion, settings.prior.slip_fraction, shape)
     if name == "surface-gaussian-process":
         require_scikit_learn()
-    learned = SurfacePass(rules, learner.fresh(), windows)
-    return Forecaster(name, shape, learned.belief, learner.dynamics)
+    return Forecaster(name, shape, SurfacePass(rules, chain, windows).belief, dynamics)
+
+
+class _ChainLearner:
+    """The filter of the basis that gives lag, delay and offset."""
+
+    def __init__(self, chain: _core.ModelAverage) -> None:
+        self._chain, self._motion = chain, chain.model
+
+    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+        """Learn one window."""
+        return self._chain.learn(inputs, segment, True)
+
+    def belief(self) -> Belief:
+        """Return what is known now."""
+        state = self._chain.state()
+        return Belief(
+            motion=self._motion,
+            mean=np.array(state.estimate.mean),
+            covariance=np.array(state.estimate.covariance),
+            noise_scale=np.array(state.noise_scale),
+            prior_std=np.array(state.prior_std),
+            variance_ratio=np.array(state.variance_ratio),
+            weights=np.array(state.weights),
+        )
 
 
 class SurfacePass:
@@ -81,7 +112,7 @@ class SurfacePass:
     def __init__(self, rules: SurfaceRules, chain: _core.ModelAverage, windows: WindowSet) -> None:
         """`chain` has learned nothing yet; it gives lag, delay and offset, and tells slip from curves."""
         self._rules, self._windows = rules, windows
-        self._chain = CausalPass(AverageLearner(chain), windows, self._learn)
+        self._chain = CausalPass(_ChainLearner(chain), windows, self._learn)
         self._weight = np.zeros(len(windows))
         self._chain_start = chain.model.slip_size
         self._reference = chain.model

@@ -11,8 +11,8 @@ from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
 from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.identifiability import drives_for
+from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.learner import Belief
-from slipwise.calibration.learning_run import start_learning
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
 from slipwise.logs.contradiction import Contradiction
@@ -67,7 +67,7 @@ def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     except LogError as nothing:
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
-    belief = start_learning(settings, input_name, windows).parameters()
+    belief = learn_log(windows.drive, settings, ()).slip
     parameters = tuple(
         _parameter((info.name, info.unit), belief, i) for i, info in enumerate(belief.motion.parameters)
     )

@@ -19,7 +19,7 @@ from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
 from slipwise.models.limits import core_limits
-from slipwise.models.schema import READ_VERSIONS, SCHEMA_VERSION, ModelFile
+from slipwise.models.schema import READ_VERSIONS, RETIRED, SCHEMA_VERSION, ModelFile
 from slipwise.models.yaml_file import read_yaml
 from slipwise.validation_text import first_problem
 
@@ -220,13 +220,6 @@ class Model:
             np.array([each.weight for each in candidates], dtype=np.float64),
         )
 
-    @property
-    def start_law(self) -> _core.StartLaw:
-        """How far back poses tell of a start; without any memory where that was not learned."""
-        memories = [] if self.content.start is None else self.content.start.memories
-        weights = np.array([each.weight for each in memories], dtype=np.float64)
-        return _core.StartLaw([each.seconds for each in memories], weights)
-
     def covariance_over(self, seconds: float) -> NDArray[np.float64]:
         """Covariance of the parameters' mean over `seconds`, slip that wanders included.
 
@@ -290,7 +283,9 @@ def load_model(path: str | Path) -> Model:
             advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
         )
     try:
-        return Model(ModelFile.model_validate(content | {"slipwise_model": SCHEMA_VERSION}))
+        retired = RETIRED if version < SCHEMA_VERSION else ()
+        read = {key: value for key, value in content.items() if key not in retired}
+        return Model(ModelFile.model_validate(read | {"slipwise_model": SCHEMA_VERSION}))
     except ValidationError as problem:
         raise ModelError(
             first_problem(problem), where=str(source), advice="calibrate again, or restore the file"

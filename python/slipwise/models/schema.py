@@ -9,8 +9,9 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from slipwise.student import LEAST_DOF, MOST_DOF
 
-SCHEMA_VERSION = 3
-READ_VERSIONS = (2, SCHEMA_VERSION)  # 2 lacks how slip wanders
+SCHEMA_VERSION = 4
+READ_VERSIONS = (2, 3, SCHEMA_VERSION)  # 2 lacks the slip disturbance; 3 may have where predictions start
+RETIRED = ("start",)  # sections of older versions that nothing reads any more
 
 UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
@@ -95,26 +96,6 @@ class Coloured(_Section):
         total = sum(candidate.weight for candidate in self.candidates)
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"the weights of the candidates must sum to 1, not {total:.6g}")
-        return self
-
-
-class PoseMemory(_Section):
-    """One guess of how far back poses tell of the start of a prediction."""
-
-    seconds: NotNegative  # age at which a pose counts 1/e of the last; 0: the last pose alone
-    weight: NotNegative  # how likely this guess is; all together 1
-
-
-class Start(_Section):
-    """Where a prediction starts: how the noise of the last poses averages out."""
-
-    memories: Annotated[list[PoseMemory], Field(min_length=1)]
-
-    @model_validator(mode="after")
-    def _weights_are_shares(self) -> Start:
-        total = sum(memory.weight for memory in self.memories)
-        if abs(total - 1.0) > 1e-6:
-            raise ValueError(f"the weights of the memories must sum to 1, not {total:.6g}")
         return self
 
 
@@ -207,7 +188,7 @@ class LimitsSection(_Section):
 class ModelFile(_Section):
     """Everything that crosses from learning to using."""
 
-    slipwise_model: Literal[3]
+    slipwise_model: Literal[4]
     input: InputName
     slip: Slip
     dynamics: bool  # lag and delay are parameters
@@ -220,7 +201,6 @@ class ModelFile(_Section):
     covariance: list[list[Finite]]
     noise: Noise
     coloured: Coloured | None = None  # slip that wanders about the parameters; None: it was not looked for
-    start: Start | None = None  # how far back poses tell of a start; None: it was not looked for
     range: Range
     weights: dict[str, NotNegative] = {}
     provenance: Provenance

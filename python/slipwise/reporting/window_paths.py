@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.settings import make_settings
-from slipwise.logs.log import Floats, Inputs, Poses, Run
+from slipwise.logs.log import Floats, Poses, Run
 from slipwise.reporting.chosen_windows import ChosenWindow
 from slipwise.reporting.contents import Contents
 from slipwise.segments import WindowRules, cut_windows
@@ -38,7 +38,7 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
             continue
         track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
         limited = contents.calibration.model.driven(track)
-        segments = _segments(contents, run, inputs)
+        segments = _segments(contents, run)
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
@@ -92,16 +92,16 @@ def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
     return np.array(seen)
 
 
-def _segments(contents: Contents, run: Run, inputs: Inputs) -> dict[int, _core.Segment]:
+def _segments(contents: Contents, run: Run) -> dict[int, _core.Segment]:
     """Return the run's windows by start, with gravity and twist there, as the evaluation cuts them."""
     horizon = contents.longest_horizon
     if horizon is None:
         return {}
-    wheels = run.wheels if contents.evaluation.input == "command" else None
     rules = WindowRules(sensor=_sensor(contents))
-    windows = cut_windows(run, inputs, horizon, rules)
+    from_commands = contents.evaluation.input == "command"
+    windows = cut_windows([run], rules.stream_settings(horizon, from_commands=from_commands))
     stamps = (_stamp(start) for start in windows.start.tolist())
-    return dict(zip(stamps, windows.segments(wheels, rules), strict=True))
+    return dict(zip(stamps, windows.segments, strict=True))
 
 
 def _stamp(t: float) -> int:

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from slipwise.calibration.learning_run import LearningRun, start_learning
+from slipwise.calibration.structure_choice import average_pass
 
 import slipwise as sw
 from slipwise import _core
@@ -19,9 +21,7 @@ from slipwise.calibration.estimators import (
     fed_windows,
 )
 from slipwise.calibration.learner import make_learner
-from slipwise.calibration.learning_run import LearningRun, start_learning
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.structure_choice import average_pass
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
 
@@ -143,26 +143,3 @@ def test_an_unknown_estimator_is_refused_by_name(settings: Settings) -> None:
     known = "unknown estimator 'magic'; known are gradient-descent, ekf-thesis, iekf, delayed-state, batch"
     with pytest.raises(ValueError, match=known):
         estimator_learner("magic", motion, settings)
-
-
-@pytest.mark.parametrize(
-    ("name", "table", "other"),
-    [
-        ("ekf-thesis", "ekf_thesis", {"jacobian": "exact"}),
-        ("ekf-thesis", "ekf_thesis", {"process_std": 0.1}),
-        ("gradient-descent", "gradient_descent", {"jacobian": "thesis"}),
-        ("gradient-descent", "gradient_descent", {"learning_rate": 0.02}),
-    ],
-)
-def test_settings_reach_the_estimators_of_the_thesis(
-    name: str, table: str, other: dict[str, object], windows: WindowSet
-) -> None:
-    given = {"basis": "edd-2", "learn_clock_offset": False}
-    usual = make_settings(given)
-    before = run_of(name, usual, windows).belief(10)
-    same = make_settings(given | {table: getattr(usual, table).model_dump()})
-    again = run_of(name, same, windows).belief(10)
-    changed = make_settings(given | {table: other})
-    after = run_of(name, changed, windows).belief(10)
-    assert np.array_equal(before.mean, again.mean)
-    assert not np.array_equal(before.mean, after.mean)

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from slipwise.calibration.cascade_pass import CascadePass
 
 from slipwise.calibration import Settings, calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.cascade_pass import CascadePass
 from slipwise.calibration.drive import prepare_drive
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
 from sample_models import make_model, named
+from slipwise.calibration.limit_watch import FIRST, GROWTH_FAILING, MOST, LimitWatch
+from slipwise.calibration.recent_twists import SPACING
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.limit_watch import FIRST, GROWTH_FAILING, MOST, LimitWatch
 from slipwise.calibration.limit_words import limits_advice
-from slipwise.calibration.recent_twists import SPACING
 from slipwise.export.body_limits import body_limits
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.mppi_limits import Bound, dead_bands, with_limits

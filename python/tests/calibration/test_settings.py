@@ -11,6 +11,7 @@ from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate, load_settings, make_settings
+from slipwise.calibration.core_settings import core_settings
 from slipwise.errors import SettingsError
 from slipwise.segments import WindowRules
 
@@ -27,26 +28,14 @@ ang = ["w", "V*w"]
 [window]
 length = 1.5
 unknown_after = 0.4
-late_factor = 3.0
-length_tolerance = 0.1
-still_speed = 0.05
 
 [prior]
 slip_fraction = 0.2
 clock_offset_std = 0.1
 lag = 0.5
 delay = 0.2
-log_std = 0.5
-gain_std = 0.1
-slow_share_std = 0.2
-slow_lag = 1.5
-lever_std = 0.5
-sensor_yaw_std = 0.2
 
 [filter]
-iterations = 3
-tolerance = 1e-4
-halvings = 5
 huber = 2.5
 gate = 50.0
 
@@ -60,47 +49,16 @@ adapt = false
 
 [auto]
 bases = ["custom", "edd-2"]
-learning_rate = 0.7
-share = 0.01
-richest = 0.3
-cascade = false
-direct = false
-baseline = false
-limits = false
+structures = ["joint", "direct"]
 
-[coloured]
+[slip_disturbance]
 learn = false
-fractions = [0.02, 0.1]
-time_constants = [5.0]
-white = 0.4
-learning_rate = 0.6
-share = 0.02
-
-[start]
-learn = false
-memories = [0.15]
-measured = 0.8
-learning_rate = 0.3
-share = 0.03
 
 [change]
 detect = false
-threshold = 12.0
-fraction = 0.2
-forget = 0.1
 
 [smoothing]
-drift = "random-walk"
 length = 20.0
-
-[gradient_descent]
-learning_rate = 0.2
-damping = 0.1
-jacobian = "thesis"
-
-[ekf_thesis]
-process_std = 0.01
-jacobian = "exact"
 
 [log]
 command_topic = "/c"
@@ -150,16 +108,13 @@ def key_paths(table: object, at: str = "") -> set[str]:
 def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     settings = load_settings(written(tmp_path, EVERY_KEY))
     assert key_paths(settings.model_dump(exclude_unset=True)) == key_paths(Settings().model_dump())
-    assert settings.rules() == WindowRules(0.4, 3.0, 0.1, 0.05, sensor=(1.5, -0.2, 0.1))
+    assert settings.rules() == WindowRules(0.4, sensor=(1.5, -0.2, 0.1))
     assert settings.window_length("wheel") == settings.window_length("command") == 1.5
     core = settings.filter_settings()
     assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
-    assert (core.prior.clock_offset_std, core.prior.log_std) == (0.1, 0.5)
-    assert (core.prior.gain_std, core.prior.slow_share_std, core.prior.slow_lag) == (0.1, 0.2, 1.5)
-    assert (core.prior.lever_std, core.prior.sensor_yaw_std) == (0.5, 0.2)
+    assert core.prior.clock_offset_std == 0.1
     assert core.prior.sensor.vector().tolist() == [1.5, -0.2, 0.1]
-    assert (core.iekf.iterations, core.iekf.halvings, core.iekf.huber, core.iekf.gate) == (3, 5, 2.5, 50.0)
-    assert core.iekf.tolerance == 1e-4
+    assert (core.iekf.huber, core.iekf.gate) == (2.5, 50.0)
     assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]
     assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
@@ -177,25 +132,24 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (log.command_scale, log.wheel_scale) == ((0.5, 1.0), (0.1, -1.0))
     assert (log.pose_yaw_offset, log.most_unpacked) == (0.2, 64.0)
     assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
-    drift = settings.smoothing.drift_settings()
-    assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
-    estimators = settings.estimator_settings()
-    descent, kalman = estimators.gradient_descent, estimators.ekf_thesis
-    assert (descent.learning_rate, descent.damping, kalman.process_std) == (0.2, 0.1, 0.01)
-    assert descent.jacobian == _core.SegmentJacobian.Thesis
-    assert kalman.jacobian == _core.SegmentJacobian.Exact
-    average = settings.average_settings()
-    assert (average.weighing.learning_rate, average.weighing.share) == (0.7, 0.01)
-    assert average.richest == 0.3
-    coloured = settings.coloured_settings()
-    assert (list(coloured.fractions), list(coloured.time_constants)) == ([0.02, 0.1], [5.0])
-    assert coloured.white == 0.4
-    assert (coloured.weighing.learning_rate, coloured.weighing.share) == (0.6, 0.02)
-    start = settings.start_settings()
-    assert (list(start.memories), start.measured) == ([0.15], 0.8)
-    assert (start.weighing.learning_rate, start.weighing.share) == (0.3, 0.03)
+    assert settings.smoothing.length == 20.0
+    assert not settings.average_settings().change.detect
+    learner = core_settings(settings, "command", (1.0, 4.0))
+    assert not learner.learn_disturbance
+    assert (learner.stream.from_commands, learner.stream.segment_length) == (True, 1.5)
+    assert (learner.stream.unknown_after, learner.stream.horizons) == (0.4, [1.0, 4.0])
+    assert (learner.hypotheses.dynamics, learner.hypotheses.mount) == (True, True)
+    assert not learner.hypotheses.several  # a basis of one's own is learned alone
+    auto = core_settings(settings.choosing("auto", None), "command", ()).hypotheses
+    assert (auto.cascaded, auto.direct, auto.baseline) == (False, True, False)
+    assert [each.name for each in auto.bases] == ["custom", "edd-2"]
     (basis,) = settings.bases()
     assert (basis.lon, basis.lat, basis.ang) == (["V", "V*abs(w)"], ["w"], ["w", "V*w"])
+
+
+def test_there_are_few_enough_keys_to_read() -> None:
+    learning = {key for key in key_paths(Settings().model_dump()) if not key.startswith("log.")}
+    assert len(learning) <= 30
 
 
 def test_every_key_set_still_calibrates(tmp_path: Path) -> None:
@@ -223,9 +177,6 @@ def test_defaults_are_those_of_the_core() -> None:
         assert {name: getattr(one, name) for name in names} == {name: getattr(other, name) for name in names}
     for prior in (ours.prior, core.prior):
         assert not prior.sensor.vector().any()
-    average = settings.average_settings()
-    assert average.weighing.share == _core.ModelAverageSettings().weighing.share
-    assert average.richest == _core.ModelAverageSettings().richest
     for name in ("detect", "threshold", "fraction", "forget"):
         assert getattr(settings.average_settings().change, name) == getattr(_core.ChangeSettings(), name)
     assert settings.rules() == WindowRules()
@@ -241,14 +192,14 @@ def load_settings_of_nothing() -> Settings:
     [
         ("colour = 1", "colour: there is no such key"),
         ("[filter]\nhubber = 2.0", r"filter\.hubber: there is no such key"),
-        ("[filter]\niterations = 0", r"filter\.iterations: must be at least 1"),
         ("[filter]\nhuber = nan", r"filter\.huber"),
         ("[prior]\nlag = -1.0", r"prior\.lag: must be at least 1e-06"),
         ("[prior]\nlag = inf", r"prior\.lag"),
         ("[noise]\npsd_time = [1.0]", r"noise\.psd_time"),
         ("[noise]\npsd_motion = [-1.0, 0.0, 0.0]", r"noise\.psd_motion"),
         ("[noise]\nfraction = [nan, 0.0, 0.0]", r"noise\.fraction"),
-        ("[auto]\nshare = 1.0", r"auto\.share"),
+        ("[auto]\nstructures = []", r"'joint' must be among the structures"),
+        ('[auto]\nstructures = ["joint", "other"]', r"auto\.structures"),
         ("[auto]\nbases = []", r"auto\.bases"),
         ("[window]\nlength = 0.0", r"window\.length"),
         ("[noise]\npose_std_yaw = 1e12", r"noise\.pose_std_yaw: must be at most 1e\+06"),

@@ -45,9 +45,7 @@ def numbers_with_bounds() -> Iterator[Any]:
 def test_learning_at_the_bound_of_a_setting_gives_a_verdict_or_one_line(
     section: str, key: str, value: Any
 ) -> None:
-    estimator = {"gradient_descent": "gradient-descent", "ekf_thesis": "ekf-thesis"}.get(section, "average")
-    basis = "auto" if estimator == "average" else "edd-2"
-    content = {section: {key: value}, "estimator": estimator, "basis": basis}
+    content = {section: {key: value}}
     for source in ("command", "wheel"):
         refused = ""
         try:

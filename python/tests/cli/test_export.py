@@ -116,7 +116,7 @@ REFUSED = {
 def test_bad_use_is_one_line_with_exit_code_2_and_leaves_nothing(
     slipwise: Slipwise, wheel: Path, command: Path, arguments: tuple[str, ...], message: str
 ) -> None:
-    Path("other.yaml").write_text(wheel.read_text().replace("slipwise_model: 3", "slipwise_model: 99"))
+    Path("other.yaml").write_text(wheel.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
     Path("text.yaml").write_text("just words\n")
     before = left_in(Path())
     result = slipwise("export", *arguments)

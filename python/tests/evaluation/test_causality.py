@@ -127,7 +127,7 @@ def test_parameters_use_no_pose_within_the_embargo_and_nothing_uses_one_after_th
     log: Log, input_name: str, *, at_start: bool
 ) -> None:
     options = replace(OPTIONS, horizons=(2.0,))
-    settings = make_settings({"coloured": {"learn": at_start}, "start": {"learn": at_start}})
+    settings = make_settings({"slip_disturbance": {"learn": at_start}})
     whole = by_name(evaluate(log, input=input_name, options=options, settings=settings))
     for i in chosen(whole["auto", 2.0]):
         start = float(whole["auto", 2.0].t_start[i])
@@ -181,7 +181,7 @@ def test_predictions_use_no_input_after_their_end(log: Log, input_name: str) -> 
 def test_stated_times_lie_before_the_start_and_those_of_parameters_before_the_embargo(
     log: Log, input_name: str
 ) -> None:
-    still = make_settings({"coloured": {"learn": False}, "start": {"learn": False}})
+    still = make_settings({"slip_disturbance": {"learn": False}})
     for settings in (still, make_settings({})):
         for p in evaluate(log, input=input_name, options=OPTIONS, settings=settings).predictions:
             assert (p.learned_until <= p.t_start + 1e-9).all()

@@ -245,6 +245,6 @@ def test_a_model_of_another_schema_is_refused_before_it_can_be_rolled_out(
     model: Model, tmp_path: Any
 ) -> None:
     path = model.save(tmp_path / "model.yaml")
-    path.write_text(path.read_text().replace("slipwise_model: 3", "slipwise_model: 99"))
+    path.write_text(path.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
     with pytest.raises(ModelError, match="schema version 99"):
         load_model(path)

@@ -84,7 +84,7 @@ def _run(place: int, name: str) -> Run:
 def _calibration(runs: int) -> Calibration:
     content = ModelFile.model_validate(
         {
-            "slipwise_model": 3,
+            "slipwise_model": 4,
             "input": "command",
             "slip": {"basis": "edd-2", "lon": ["V"], "lat": [], "ang": ["w"]},
             "dynamics": False,

@@ -7,10 +7,10 @@ import re
 
 import numpy as np
 import pytest
+from slipwise.calibration.learning_run import start_learning
 
 from slipwise import _core
 from slipwise.calibration.forecast import forecast
-from slipwise.calibration.learning_run import start_learning
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.logs import Log
 from slipwise.reproduction import SMALL, Bench, Exhibit, Heat, Line

@@ -23,9 +23,14 @@ struct HypothesisSettings {
   bool dynamics = true;      ///< inputs are commands: lag and delay are learned
   bool clock_offset = true;  ///< learned, where inputs are wheel speeds
   bool mount = false;        ///< where the pose sensor sits is learned
-  bool alternatives = true;  ///< also try simpler structures, and the cascaded one
+  bool cascaded = true;      ///< from commands, once wheel speeds come: also learn the actuator from these
+  bool direct = true;        ///< from commands: also try slip and delays, no lag
+  bool baseline = true;      ///< also try the kinematic baseline
   CausalFilterSettings filter = {};
   ModelAverageSettings average = {};
+
+  /// Whether more than one structure may come to be tried.
+  bool several() const { return baseline || (dynamics && (cascaded || direct)); }
 };
 
 /// How one structure took a segment in.
@@ -42,8 +47,6 @@ class MotionHypotheses {
  public:
   explicit MotionHypotheses(const HypothesisSettings& settings);
 
-  /// Whether there is more than one structure.
-  bool several() const;
   /// Begins to learn one segment. `wheels_known` says whether wheel speeds came beside the commands so far.
   void start(const DrivenSegment& segment, bool wheels_known);
   /// Does a bounded piece of it; whether there is more to do.

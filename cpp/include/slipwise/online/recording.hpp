@@ -2,6 +2,8 @@
 // A recorded run, pushed through a learner as it would have come live.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "slipwise/online/motion_learner.hpp"
@@ -23,7 +25,20 @@ struct Recording {
   std::vector<MeasuredPose> poses;
 };
 
-/// Starts a run and pushes all of it in the order of the stamps; at one stamp commands come first, poses last.
-void push_run(MotionLearner& learner, const Recording& run);
+/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses last.
+void push(MotionLearner& learner, const Recording& run);
+
+/// Recorded runs as segments.
+struct CutRuns {
+  std::vector<DrivenSegment> segments;
+  std::vector<std::size_t> run;           ///< of each segment
+  std::vector<Rejected> rejected;
+  std::vector<std::size_t> rejected_run;  ///< of each of these
+};
+/// The segments that a learner with these settings learns.
+CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs);
+
+/// The poses of a recorded run as a learner uses them: outliers rejected, frames numbered anew where poses jump.
+GatedPoses gate_poses(const Recording& run, double unknown_after);
 
 }  // namespace slipwise

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// How well an offset of clocks can be known at most: wheel speeds are samples under zero-order hold.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "slipwise/estimate/motion_posterior.hpp"
+
+namespace slipwise {
+
+/// The same with a clock offset no surer than stamps `seconds` apart support after `segments`. Between two samples it
+/// is not known when the wheels changed their speed: each change says when only to within the spacing, evenly spread.
+/// Residuals hide that where poses and wheels are of one source.
+std::shared_ptr<const MotionPosterior> supported(std::shared_ptr<const MotionPosterior> posterior, double seconds,
+                                                 std::size_t segments);
+
+}  // namespace slipwise

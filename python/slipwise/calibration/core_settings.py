@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Settings as the streaming learner of the core takes them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from slipwise import _core
+from slipwise.calibration.settings import Settings
+
+
+def core_settings(settings: Settings, input_name: str, horizons: Sequence[float]) -> _core.LearnerSettings:
+    """Return the core's settings.
+
+    Args:
+        settings: what to learn and how.
+        input_name: "command" or "wheel".
+        horizons: of the predictions that are held against what was measured [s].
+
+    Raises:
+        SettingsError: a basis or a term is unknown.
+    """
+    core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
+    from_commands = input_name == "command"
+    stream = settings.rules().stream_settings(settings.window_length(input_name), from_commands=from_commands)
+    stream.whole_frames, stream.horizons = True, list(horizons)
+    hypotheses.bases, hypotheses.dynamics = settings.bases(), from_commands
+    hypotheses.clock_offset, hypotheses.mount = settings.learn_clock_offset, settings.mount.learn
+    tried = settings.auto.structures if settings.basis == "auto" else []
+    hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
+    hypotheses.baseline = "baseline" in tried
+    hypotheses.filter, hypotheses.average = settings.filter_settings(), settings.average_settings()
+    core.stream, core.hypotheses = stream, hypotheses
+    core.learn_disturbance = settings.slip_disturbance.learn
+    return core

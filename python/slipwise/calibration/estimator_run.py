@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log learned by one of the estimators that the learner is compared with, window by window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.causal_pass import CausalPass
+from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.estimators import estimator_learner, estimator_motion, fed_windows
+from slipwise.calibration.learner import Belief, Progress
+from slipwise.calibration.result import History
+from slipwise.calibration.settings import Settings
+
+
+@dataclass(frozen=True, eq=False)
+class EstimatorRun:
+    """Causal beliefs on the way, and what is kept in the end."""
+
+    belief: Callable[[int], Belief]  # known causally after so many windows; their number never decreases
+    kept: Callable[[], Belief]  # learns what is left and returns what goes into a model
+    history: Callable[[], History | None]  # where it was recorded
+    bases: tuple[str, ...]
+    dynamics: bool
+    causal: bool  # whether what is kept is the last of the causal beliefs
+
+
+def run_estimator(
+    settings: Settings,
+    input_name: str,
+    windows: WindowSet,
+    *,
+    record: bool = False,
+    progress: Progress | None = None,
+) -> EstimatorRun:
+    """Prepare to learn; nothing is learned yet.
+
+    Args:
+        settings: what to learn and how.
+        input_name: "command" or "wheel".
+        windows: what counts as learned; beliefs are asked for by counts of them.
+        record: keep the history.
+        progress: called with the fraction done, 0 to 1, where the history is kept.
+
+    Raises:
+        SettingsError: a basis or a term is unknown.
+    """
+    name = settings.estimator
+    motion = estimator_motion(name, settings, input_name)
+    learner, fed = estimator_learner(name, motion, settings), fed_windows(name, settings, windows)
+    causal = not _core.fits_all_segments(name)
+    history = _empty_history(fed, motion)
+
+    def see(i: int, update: _core.IekfUpdate, belief: Belief) -> None:
+        history.mean[i], history.std[i] = belief.mean, np.sqrt(np.diag(belief.covariance))
+        history.nis[i], history.weight[i] = update.nis, update.weight
+        if progress is not None and i % 50 == 0:
+            progress((i + 1) / len(fed))
+
+    passing = CausalPass(learner, fed, see if record else None, pace=windows)
+
+    def kept() -> Belief:
+        passing.finish()
+        return learner.fitted()
+
+    def recorded() -> History | None:
+        passing.finish()
+        return history if record and causal else None
+
+    return EstimatorRun(passing.belief, kept, recorded, (motion.basis.name,), motion.dynamics, causal)
+
+
+def _empty_history(windows: WindowSet, motion: _core.MotionModel) -> History:
+    names = tuple(info.name for info in motion.parameters)
+    count = len(windows)
+    return History(
+        run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
+        t=windows.end,
+        names=names,
+        mean=np.zeros((count, len(names))),
+        std=np.zeros((count, len(names))),
+        nis=np.zeros(count),
+        weight=np.zeros(count),
+        bases=(motion.basis.name,),
+        basis_weight=np.ones((count, 1)),
+        change=np.zeros(count),
+        alarm=np.zeros(count, dtype=np.bool_),
+    )

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log pushed through the streaming learner, once: what was learned, and how it predicted on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.drive import DriveRun
+from slipwise.calibration.learner import STRUCTURES, Belief, Progress, belief_of
+from slipwise.calibration.predictions import Predictions, residual
+from slipwise.calibration.result import History
+from slipwise.calibration.settings import Settings
+from slipwise.segments import recording_of
+
+Floats = NDArray[np.float64]
+
+STEPS = 20  # pieces in which a run is pushed, so that progress can be shown
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedLog:
+    """What a learner made of a log."""
+
+    kept: Belief  # what goes into a model
+    slip: Belief  # the same; of the next best where the baseline is kept, which has no parameters
+    students: tuple[_core.StudentT, ...]  # of the predictions of each horizon, nothing recent being known
+    predictions: tuple[Predictions, ...]  # one for each horizon
+    baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
+    history: History | None
+    bases: tuple[str, ...]
+    segments: int
+    seconds: float  # of all segments learned
+
+
+def learn_log(
+    drive: tuple[DriveRun, ...],
+    settings: Settings,
+    horizons: Sequence[float],
+    *,
+    method: str = "learned",
+    record: bool = False,
+    progress: Progress | None = None,
+) -> LearnedLog:
+    """Push runs through a learner in one pass.
+
+    Args:
+        drive: the runs, in the order of time.
+        settings: what to learn and how.
+        horizons: of the predictions [s].
+        method: what the predictions are said to be by.
+        record: keep the history.
+        progress: called with the fraction done, 0 to 1.
+
+    Raises:
+        SettingsError: a basis or a term is unknown.
+    """
+    core = core_settings(settings, drive[0].input_name, horizons)
+    learner, events = _core.MotionLearner(core), []
+    for done in _pushed(learner, drive):
+        events += [event for event in learner.events() if record and event.kind == _LEARNED]
+        if progress is not None:
+            progress(done)
+    model = learner.model()
+    bases = tuple(basis.name for basis in core.hypotheses.bases)
+    several = core.hypotheses.several
+    records = [[_Record(each, drive) for each in rows] for rows in model.held_out]
+    return LearnedLog(
+        kept=belief_of(model.motion, model.disturbance),
+        slip=belief_of(model.slip, model.disturbance),
+        students=tuple(model.students),
+        predictions=tuple(_predictions(method, h, rows) for h, rows in zip(horizons, records, strict=True)),
+        baseline=tuple(_baseline(h, rows) for h, rows in zip(horizons, records, strict=True)),
+        history=_history(events, model.motion, bases, drive, several=several) if record else None,
+        bases=bases,
+        segments=model.segments,
+        seconds=model.seconds,
+    )
+
+
+_LEARNED = _core.EventKind.SegmentLearned
+
+
+def _pushed(learner: _core.MotionLearner, drive: tuple[DriveRun, ...]) -> Iterator[float]:
+    """Push all runs, piece by piece; yields the fraction done."""
+    for place, run in enumerate(drive):
+        learner.start_run()
+        edges = np.linspace(*run.run.span, STEPS + 1)
+        edges[0], edges[-1] = -np.inf, np.inf
+        for k in range(STEPS):
+            learner.push(recording_of(run.run, float(edges[k]), float(edges[k + 1])))
+            yield (place + (k + 1) / STEPS) / len(drive)
+    learner.end_run()
+    yield 1.0
+
+
+class _Record:
+    """A prediction that was held against what was measured."""
+
+    def __init__(self, held_out: _core.HeldOutPrediction, drive: tuple[DriveRun, ...]) -> None:
+        run = drive[held_out.run]
+        begin = min(float(run.inputs.t[0]), float(run.run.poses.t[0]), held_out.start)
+        self.held_out, self.run = held_out, run.index
+        self.learned_until = max(begin, held_out.learned_until)
+
+
+def _predictions(method: str, horizon: float, records: list[_Record]) -> Predictions:
+    rows = [record.held_out for record in records]
+    measured = _vectors([row.measured for row in rows])
+    left = residual(measured, _vectors([row.in_sample for row in rows]))
+    covariance = np.array([row.covariance for row in rows]).reshape(-1, 3, 3)
+    return Predictions(
+        method=method,
+        horizon=horizon,
+        run=np.array([record.run for record in records], dtype=np.int64),
+        t_start=np.array([row.start for row in rows]),
+        t_end=np.array([row.end for row in rows]),
+        pose=_vectors([row.pose for row in rows]),
+        covariance=covariance,
+        growth=np.array([row.student.inflation for row in rows]),
+        dof=np.array([row.student.dof for row in rows]),
+        usual_nis=np.array([row.nominal_nis for row in rows]),
+        structure=np.array([row.structure for row in rows], dtype=np.int64),
+        measured=measured,
+        learned_until=np.array([record.learned_until for record in records]),
+        in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
+    )
+
+
+def _baseline(horizon: float, records: list[_Record]) -> Predictions:
+    """The kinematic baseline at the same segments, of which only the errors are asked."""
+    rows = [record.held_out for record in records]
+    own, pose = _predictions("none", horizon, records), _vectors([row.baseline for row in rows])
+    left = residual(own.measured, pose)
+    errors = np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2])))
+    changed = {"pose": pose, "in_sample": errors, "learned_until": own.t_start}
+    return Predictions(**(vars(own) | changed))
+
+
+def _vectors(rows: Sequence[Floats]) -> Floats:
+    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+
+
+def _history(
+    events: Sequence[_core.LearnerEvent],
+    last: _core.MotionPosterior,
+    bases: tuple[str, ...],
+    drive: tuple[DriveRun, ...],
+    *,
+    several: bool,
+) -> History:
+    """The course of the structure that is kept in the end; of segments before it was tried, the joint one's weights."""
+    kept = last.structure
+    names = tuple(info.name for info in last.model.parameters)
+    mean, std = np.full((len(events), len(names)), np.nan), np.full((len(events), len(names)), np.nan)
+    basis_weight = np.zeros((len(events), len(bases)))
+    for i, event in enumerate(events):
+        posterior = event.posterior(kept)
+        if posterior is not None:
+            mean[i] = posterior.estimate.mean
+            std[i] = np.sqrt(np.diag(posterior.estimate.covariance))
+            basis_weight[i] = posterior.basis_weights
+    updates = [event.updates[kept] for event in events]
+    return History(
+        run=np.array([drive[event.run].index for event in events], dtype=np.int64),
+        t=np.array([event.t for event in events]),
+        names=names,
+        mean=mean,
+        std=std,
+        nis=np.array([update.nis for update in updates]),
+        weight=np.array([update.weight for update in updates]),
+        bases=bases,
+        basis_weight=basis_weight,
+        change=np.array([update.change.log_odds for update in updates]),
+        alarm=np.array([update.change.alarm for update in updates], dtype=np.bool_),
+        structures=STRUCTURES if several else (),
+        structure_weight=np.array([event.weights for event in events]) if several else None,
+    )
