@@ -26,23 +26,6 @@ SeenSlip see(const MotionPosterior& belief, const WanderingTerms& terms, const D
           at.by_parameter(Eigen::all, terms.places)};
 }
 
-std::vector<SeenSlip> see_all(const MotionPosterior& belief, const WanderingTerms& terms,
-                              std::span<const DrivenSegment> segments) {
-  std::vector<SeenSlip> seen;
-  for (const DrivenSegment& segment : segments) {
-    seen.push_back(see(belief, terms, segment));
-  }
-  return seen;
-}
-
-SlipDeviation followed(const SlipWander& wander, const WanderingTerms& terms, std::span<const SeenSlip> recent) {
-  SlipDeviation deviation(wander, terms);
-  for (const SeenSlip& seen : recent) {
-    deviation.follow(seen);
-  }
-  return deviation;
-}
-
 void check_fits(const SlipNow& now, const WanderLaw& law, const WanderingTerms& terms) {
   const std::size_t expected = terms.places.empty() ? 0 : law.candidates.size();
   const bool same_terms = std::ranges::all_of(
@@ -92,13 +75,13 @@ ColouredSlip::ColouredSlip(WanderLaw law) : law_(std::move(law)) {
   prior_ = law_.weights;
 }
 
-void ColouredSlip::learn(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment) {
-  const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
+void ColouredSlip::learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) {
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
   check_fits(now, law_, terms);
   if (terms.places.empty()) {
     return;
   }
-  const SeenSlip next = see(belief, terms, segment);
+  const SeenSlip next = see(posterior, terms, segment);
   Eigen::VectorXd scores(law_.weights.size());
   for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
     const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
@@ -110,27 +93,45 @@ void ColouredSlip::learn(const MotionPosterior& belief, const SlipNow& now, cons
   ++seen_;
 }
 
-SlipNow ColouredSlip::now(const MotionPosterior& belief, std::span<const DrivenSegment> recent) const {
-  const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
+SlipNow ColouredSlip::now(const MotionPosterior& posterior, std::span<const DrivenSegment> recent) const {
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
   SlipNow now;
-  if (terms.places.empty() || law_.candidates.empty()) {
+  if (terms.places.empty()) {
     return now;
   }
-  const std::vector<SeenSlip> seen = see_all(belief, terms, recent);
   for (const SlipWander& wander : law_.candidates) {
-    now.of_candidates.push_back(followed(wander, terms, seen));
+    now.of_candidates.emplace_back(wander, terms);
+  }
+  for (const DrivenSegment& segment : recent) {
+    const SeenSlip seen = see(posterior, terms, segment);
+    for (SlipDeviation& deviation : now.of_candidates) {
+      deviation.follow(seen);
+    }
   }
   return now;
 }
 
-ExpectedPose ColouredSlip::predict(const MotionPosterior& belief, const SlipNow& now,
-                                   const DrivenSegment& driven) const {
-  const Segment& segment = driven.segment;
-  const auto at = linearize_segment(belief.model, belief.estimate.mean, driven.inputs, segment);
-  ExpectedPose expected{at.predicted.vector(),
-                        prediction_covariance(at, belief.estimate.covariance, belief.noise, belief.noise_scale)};
-  const WanderingTerms terms = wandering_terms(belief.model, belief.prior_std);
+ExpectedPose ColouredSlip::predict(const MotionPosterior& posterior, const SlipNow& now,
+                                   const DrivenSegment& segment) const {
+  return predict_both(posterior, now, segment).now;
+}
+
+ExpectedPoses ColouredSlip::predict_both(const MotionPosterior& posterior, const SlipNow& now,
+                                         const DrivenSegment& driven) const {
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, driven.inputs, driven.segment);
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
+  const ExpectedPose without{
+      at.predicted.vector(),
+      prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale)};
   check_fits(now, law_, terms);
+  return {.now = with_deviation(at, without, now, terms, driven.segment),
+          .nominal = with_deviation(at, without, this->now(posterior, {}), terms, driven.segment)};
+}
+
+/// Adds the mean of the deviation over the segment, and its covariance, as mixed by the candidates' weights.
+ExpectedPose ColouredSlip::with_deviation(const SegmentLinearization& at, const ExpectedPose& without,
+                                          const SlipNow& now, const WanderingTerms& terms,
+                                          const Segment& segment) const {
   const SeenSlip::ByDeviation h = at.by_parameter(Eigen::all, terms.places);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
@@ -141,9 +142,7 @@ ExpectedPose ColouredSlip::predict(const MotionPosterior& belief, const SlipNow&
     mean += weight * shift;
     square += weight * (h * covariance * h.transpose() + shift * shift.transpose());
   }
-  expected.pose += mean;
-  expected.covariance += square - mean * mean.transpose();
-  return expected;
+  return {without.pose + mean, without.covariance + square - mean * mean.transpose()};
 }
 
 }  // namespace slipwise

@@ -14,11 +14,6 @@ std::size_t index(Structure structure) { return static_cast<std::size_t>(structu
 
 }  // namespace
 
-ExpectedPose predict_segment(const Knowledge& known, std::span<const DrivenSegment> recent,
-                             const DrivenSegment& segment) {
-  return known.disturbance->predict(*known.motion, known.disturbance->now(*known.motion, recent), segment);
-}
-
 HorizonErrors::HorizonErrors() {
   Known nothing{.until = -std::numeric_limits<double>::infinity(), .students = {}};
   nothing.students.fill(StudentCalibration().fitted());

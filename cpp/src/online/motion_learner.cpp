@@ -22,8 +22,8 @@ namespace {
 
 constexpr double kReady = 1.0;           // [s] after which a segment has been learned, whatever the latency
 constexpr double kRounding = 1e-9;       // [s] of stamps
-constexpr double kRecentSeconds = 30.0;  // that tell of the slip now, at most
-constexpr std::size_t kRecent = 12;      // segments that tell of it, at most
+constexpr double kRecentSeconds = 30.0;   // that tell of the slip now, at most
+constexpr std::size_t kRecent = 12;       // segments that tell of it, at most
 constexpr std::size_t kMostEvents = 10000;
 constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
 constexpr double kLongest = 3600.0;         // [s] horizon
@@ -245,7 +245,7 @@ void MotionLearner::publish(const DrivenSegment& segment) {
     known_.pop_front();
   }
   recent_.push_back(segment);
-  while (recent_.size() > 4 * kRecent || recent_.front().segment.start < segment.segment.end - 2.0 * longest) {
+  while (recent_.front().segment.start < segment.segment.end - 2.0 * longest) {
     recent_.pop_front();
   }
   seconds_ += segment.segment.end - segment.segment.start;
@@ -292,8 +292,8 @@ void MotionLearner::judge(const TargetSegment& target) {
   const double horizon = settings_.stream.horizons[target.horizon];
   const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
   const std::vector<DrivenSegment> recent = recent_before(segment.start);
-  const ExpectedPose expected = predict_segment(known, recent, driven);
-  const ExpectedPose nominal = predict_segment(known, {}, driven);
+  const SlipNow slip = known.disturbance->now(*known.motion, recent);
+  const auto [expected, nominal] = known.disturbance->predict_both(*known.motion, slip, driven);
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;
   HorizonErrors& errors = errors_[target.horizon];
@@ -355,7 +355,7 @@ StudentT MotionLearner::student_for(double horizon, Structure structure) const {
 }
 
 /// The last segments that are complete with all that was pushed.
-std::vector<DrivenSegment> MotionLearner::recent_now() {
+std::vector<DrivenSegment> MotionLearner::recent_now() const {
   std::vector<DrivenSegment> recent = recent_before(stream_.newest());
   for (const StreamItem& item : waiting_) {
     if (const auto* segment = std::get_if<DrivenSegment>(&item)) {
@@ -379,7 +379,8 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   work_until(stream_.newest() - kReady);
   const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
   const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
-  const ExpectedPose expected = predict_segment(known, recent_now(), ahead);
+  const SlipNow slip = known.disturbance->now(*known.motion, recent_now());
+  const ExpectedPose expected = known.disturbance->predict(*known.motion, slip, ahead);
   const SegmentPath path =
       integrate_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
   const StudentT student = student_for(horizon, known.motion->structure);

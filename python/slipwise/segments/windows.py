@@ -65,16 +65,23 @@ def input_rows(inputs: Inputs | None) -> Floats:
     return np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
 
 
-def recording_of(run: Run, since: float = -np.inf, until: float = np.inf) -> _core.Recording:
-    """Return what was measured in a run from `since` on, and before `until` [s], as the core takes it."""
+def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return what was measured in a run, a row each in the order of the stamps.
+
+    Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame).
+    """
     poses = run.poses
     attitudes = np.empty((0, 3))
     if poses.roll is not None and poses.pitch is not None:
         attitudes = np.column_stack((poses.t, poses.roll, poses.pitch))
         attitudes = attitudes[np.isfinite(attitudes).all(axis=1)]
     measured = np.column_stack((poses.t, poses.x, poses.y, poses.yaw, poses.frame.astype(np.float64)))
-    streams = (input_rows(run.commands), input_rows(run.wheels), attitudes, measured)
-    return _core.Recording(*(_between(rows, since, until) for rows in streams))
+    return input_rows(run.commands), input_rows(run.wheels), attitudes, measured
+
+
+def recording_of(run: Run, since: float = -np.inf, until: float = np.inf) -> _core.Recording:
+    """Return what was measured in a run from `since` on, and before `until` [s], as the core takes it."""
+    return _core.Recording(*(_between(rows, since, until) for rows in recording_rows(run)))
 
 
 def _between(rows: Floats, since: float, until: float) -> Floats:

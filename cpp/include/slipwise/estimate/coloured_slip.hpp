@@ -29,13 +29,19 @@ struct ExpectedPose {
   Eigen::Matrix3d covariance;
 };
 
-/// Where slip is at some moment, under each candidate; empty where no term wanders.
+/// Where slip is at some time, under each candidate; empty where no term has a disturbance.
 struct SlipNow {
   std::vector<SlipDeviation> of_candidates;
 };
 
+/// A prediction that follows the slip disturbance of the moment, and one that knows nothing recent of it.
+struct ExpectedPoses {
+  ExpectedPose now;
+  ExpectedPose nominal;
+};
+
 /// Adds to the shares of V and w in the slip rates a deviation that decays, follows it through the last segments, and
-/// carries it into a prediction. How far and how slowly slip wanders is weighed among candidates by what they foretell;
+/// carries it into a prediction. How far and how slowly slip wanders is weighted among candidates by what they predict;
 /// the first candidate is that it does not (derivations.md, section 18).
 class ColouredSlip {
  public:
@@ -45,18 +51,23 @@ class ColouredSlip {
   /// \throws std::invalid_argument when the law's numbers contradict each other.
   explicit ColouredSlip(WanderLaw law);
 
-  /// Weighs the candidates by `segment`, foretold from `now`, which is as `predict` takes it.
+  /// Weights the candidates by `segment`, predicted from `now`, which is as `predict` takes it.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
-  void learn(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment);
-  /// What `recent` segments, in the order of time, say of the slip after them; without any, what is usual.
-  SlipNow now(const MotionPosterior& belief, std::span<const DrivenSegment> recent) const;
+  void learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment);
+  /// What `recent` segments, in the order of time, say of the slip after them; without any, its nominal spread.
+  SlipNow now(const MotionPosterior& posterior, std::span<const DrivenSegment> recent) const;
   /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
-  ExpectedPose predict(const MotionPosterior& belief, const SlipNow& now, const DrivenSegment& segment) const;
+  ExpectedPose predict(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;
+  /// The same, and what is predicted where nothing recent is known.
+  ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;
 
   const WanderLaw& law() const { return law_; }
 
  private:
+  ExpectedPose with_deviation(const SegmentLinearization& at, const ExpectedPose& without, const SlipNow& now,
+                              const WanderingTerms& terms, const Segment& segment) const;
+
   WanderLaw law_;
   WeighingSettings weighing_;
   Eigen::VectorXd prior_;  ///< weights beforehand

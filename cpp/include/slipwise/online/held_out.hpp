@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <deque>
 #include <memory>
-#include <span>
 
 #include "slipwise/estimate/coloured_slip.hpp"
 #include "slipwise/estimate/motion_posterior.hpp"
@@ -41,10 +40,6 @@ struct HeldOutPrediction {
   Eigen::Vector3d in_sample;   ///< the same model once it had learned the segment (thesis, Table 6.2)
   double learned_until;        ///< stamp of the last measurement that the prediction uses [s]
 };
-
-/// Predicts a segment from what was known, and from `recent` segments before its start.
-ExpectedPose predict_segment(const Knowledge& known, std::span<const DrivenSegment> recent,
-                             const DrivenSegment& segment);
 
 /// The errors of one horizon: each structure's are a population of their own.
 class HorizonErrors {

@@ -108,7 +108,7 @@ class MotionLearner {
   void judge(const TargetSegment& target);
   const Knowledge& known_at(double t) const;
   std::vector<DrivenSegment> recent_before(double t) const;
-  std::vector<DrivenSegment> recent_now();
+  std::vector<DrivenSegment> recent_now() const;
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
   void say(LearnerEvent event);
