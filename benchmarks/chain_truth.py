@@ -23,14 +23,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
-from slipwise.calibration.cascade_pass import CascadePass
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
-from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import prepare_drive
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.learner import CASCADED, Belief, belief_of
 from slipwise.logs import Inputs, Log, Poses
+from slipwise.segments import recording_of
 from slipwise.simulation import LandTamer, Scenario, simulate
 from slipwise.simulation.known_robot import KnownRobot, Pair, known_run
 from slipwise.simulation.truth import Truth
@@ -173,10 +172,16 @@ def from_wheels_too(seed: int, seconds: float = SECONDS) -> list[Found]:
     """Learn the chain from commands and wheel speeds, the rest from wheel speeds and poses."""
     robot = with_response(drawn_robot(seed), seed)
     run = known_run(robot, commands(seed, seconds), (0.0, seconds), random=np.random.default_rng([seed, 3]))
-    settings = make_settings(LEARN)
-    windows = learning_windows(prepare_drive(Log(runs=(run,)), "command"), "command", settings)
-    cascade = CascadePass(windows, settings)
-    return judged(cascade.motion, cascade.belief(len(windows), np.ones(3)), truth_of(robot, wheels=True))
+    alone = {"bases": [LEARN["basis"]], "structures": ["joint", "cascaded"]}
+    settings = make_settings({**LEARN, "basis": "auto", "auto": alone})
+    learner = _core.MotionLearner(core_settings(settings, "command", ()))
+    learner.start_run()
+    learner.push(recording_of(run))
+    learner.end_run()
+    learned = [event for event in learner.events() if event.kind == _core.EventKind.SegmentLearned]
+    cascaded = learned[-1].posterior(CASCADED)
+    assert cascaded is not None
+    return judged(cascaded.model, belief_of(cascaded), truth_of(robot, wheels=True))
 
 
 def in_physics(seed: int) -> list[Found]:

@@ -22,7 +22,6 @@ from simulated_log import BASIS, simulated_log
 
 from slipwise import _core
 from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
-from slipwise.calibration.learner import make_learner
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log, save_log
 
@@ -85,11 +84,11 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
     """Return the pass that `slipwise calibrate` makes: adapting priors and noise, one basis."""
     settings = Settings(basis=BASIS, learn_clock_offset=False)
     windows = collect_windows(prepare_drive(log, "wheel"), length, settings.rules())
-    learner, track = make_learner(settings, "wheel"), windows.drive[0].track
+    filters = (settings.filter_settings(), settings.average_settings())
 
     def work() -> None:
-        average = learner.fresh()
-        for segment in windows.segments:
+        average = _core.ModelAverage(BASIS, settings.bases(), False, False, False, *filters)
+        for track, segment in zip(windows.tracks, windows.segments, strict=True):
             average.learn(track, segment, True)
 
     return work
@@ -97,8 +96,8 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
 
 def core_filter(job: Job) -> tuple[Floats, Floats]:
     """Learn all windows with the core's IEKF."""
-    estimate, track = job.prior, job.windows.drive[0].track
-    for segment in job.windows.segments:
+    estimate = job.prior
+    for track, segment in zip(job.windows.tracks, job.windows.segments, strict=True):
         path = _core.integrate_segment(job.model, estimate.mean, track, segment, _core.Integrator.Exact)
         cov_z = _core.slip_covariance(path, job.shape) + _core.pose_noise_covariance(
             segment.measured, job.shape

@@ -26,7 +26,7 @@ import slipwise
 from slipwise import _core
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.drive import WindowSet, prepare_drive
-from slipwise.calibration.learner import make_learner
+from slipwise.calibration.estimators import learned_parts
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
@@ -80,7 +80,10 @@ NOISES = {"white": white, "heavy-tailed": heavy_tailed, "coloured": coloured}
 def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTest]]:
     """Learn a log causally by `auto`; return its windows and their tests for a change."""
     windows = learning_windows(prepare_drive(log, input_name), input_name, Settings())
-    average, tests = make_learner(Settings(), input_name).fresh(), []
+    settings, tests = Settings(), []
+    dynamics, offset = learned_parts(settings, input_name)
+    filters = (settings.filter_settings(), settings.average_settings())
+    average = _core.ModelAverage("auto", settings.bases(), dynamics, offset, False, *filters)
     for i in range(len(windows)):
         average.learn(windows.track(i), windows.segments[i], True)
         tests.append(average.change)

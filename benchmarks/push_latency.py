@@ -98,7 +98,9 @@ def main() -> int:
     if folder is None:
         print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
         return 2
-    print(f"{'log':44} {'pushes':>7} {'us/pose':>8} {'99.9 %':>8} {'longest':>8} {'>1ms %':>7} predict: median, longest us")
+    print(
+        f"{'log':44} {'pushes':>7} {'us/pose':>8} {'99.9 %':>8} {'longest':>8} {'>1ms %':>7} predict: median, longest us"
+    )
     found = []
     for data in (data for data in data_sets(folder) if arguments.only in data.name):
         for input_name in input_names(slipwise.open_log(data.path)):

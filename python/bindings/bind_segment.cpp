@@ -105,6 +105,8 @@ void bind_segment(nb::module_& m) {
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
       .def_ro("measured", &Segment::measured)
+      .def_ro("gx", &Segment::gx)
+      .def_ro("gy", &Segment::gy)
       .def_prop_ro(
           "known_drive", [](const Segment& segment) { return segment.known ? segment.known->twist : nullptr; },
           "What was measured of the drive's twist, None where it was not.");

@@ -34,9 +34,6 @@ class Made:
     wander: tuple[float, float, float] | None = (
         None  # drift, turn [-] and time constant [s] of wandering slip
     )
-    memories: tuple[float, float, float] | None = (
-        None  # of poses before a start: weight of none, and seconds and weight of one
-    )
     growth: Mapping[float, float] = field(default_factory=dict)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     speed: tuple[float, float] = SPEED
@@ -72,10 +69,6 @@ def _coloured(drift: float, turn: float, time_constant: float) -> dict[str, obje
     guesses = ((0.0, 0.0, 1.0, 0.2), (drift, turn, time_constant, 0.5), (0.0, turn, 4.0 * time_constant, 0.3))
     names = ("drift", "turn", "time_constant", "weight")
     return {"window": 1.0, "candidates": [dict(zip(names, guess, strict=True)) for guess in guesses]}
-
-
-def _start(alone: float, seconds: float, weight: float) -> dict[str, object]:
-    return {"memories": [{"seconds": 0.0, "weight": alone}, {"seconds": seconds, "weight": weight}]}
 
 
 def make_model(made: Made) -> Model:
@@ -140,7 +133,6 @@ def make_model(made: Made) -> Model:
             "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
         },
         "coloured": None if made.wander is None else _coloured(*made.wander),
-        "start": None if made.memories is None else _start(*made.memories),
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {
             "slipwise_version": "0.1.0",

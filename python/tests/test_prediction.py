@@ -19,7 +19,7 @@ from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
 from slipwise.models import Model
 from slipwise.models.schema import Tail
-from slipwise.prediction import predict, slip_seen, start_seen, tail_at
+from slipwise.prediction import predict, slip_seen, tail_at
 from slipwise.student import MOST_DOF
 
 BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
@@ -84,39 +84,6 @@ def test_slip_that_wanders_is_part_of_the_covariance_and_of_a_prediction_that_ha
     assert errors[1] < 0.3 * errors[0]
     with pytest.raises(ValueError, match="belongs to another model"):
         predict(without, inputs, **start, slip_now=slip_seen(model, inputs, seen))
-
-
-def test_a_start_is_the_mean_of_what_the_last_poses_say() -> None:
-    made = replace(named("edd-2", lon__V=-0.1, ang__w=-0.3), memories=(0.5, 0.2, 0.5))
-    model, inputs = make_model(made), held(np.arange(0.0, 4.0, 0.5), 1.0, 0.5)
-    t = np.arange(1.0, 2.01, 0.1)
-    path = predict(model, inputs, horizon=1.0, start=1.0)
-    truth = path.poses + np.array([5.0, -3.0, 0.0])  # in a frame that lies as the robot did at 1 s
-    assert start_seen(model, inputs, t, truth) == pytest.approx(truth[-1], abs=1e-9)
-    spread = np.random.default_rng(2).normal(0.0, (0.02, 0.02, 0.0), (400, *truth.shape))
-    missed = np.array([start_seen(model, inputs, t, truth + each) - truth[-1] for each in spread])[:, :2]
-    weights = np.exp(-(t[-1] - t) / 0.2)
-    share = 0.5 * weights / weights.sum()
-    share[-1] += 0.5
-    assert np.std(missed) == pytest.approx(0.02 * np.sqrt((share**2).sum()), rel=0.1)
-    usual = make_model(replace(made, memories=None))
-    assert start_seen(usual, inputs, t, truth + spread[0]) == pytest.approx((truth + spread[0])[-1])
-    assert start_seen(model, inputs, t[-1:], truth[-1:]) == pytest.approx(truth[-1])
-
-
-@pytest.mark.parametrize(
-    ("t", "poses", "fault"),
-    [
-        ([], np.zeros((0, 3)), "do not fit"),
-        ([1.0, 2.0], np.zeros((1, 3)), "do not fit"),
-        ([1.0, 1.0], np.zeros((2, 3)), "must increase"),
-        ([1.0, 2.0], np.full((2, 3), np.nan), "must be finite"),
-    ],
-)
-def test_poses_that_lead_to_no_start_are_refused(t: list[float], poses: np.ndarray, fault: str) -> None:
-    model = make_model(replace(named("edd-2"), memories=(0.5, 0.2, 0.5)))
-    with pytest.raises(SettingsError, match=fault):
-        start_seen(model, held(np.arange(0.0, 4.0, 0.5), 1.0, 0.5), t, poses)
 
 
 def windows_of(model: Model, inputs: Inputs, count: int) -> list[_core.Segment]:

@@ -24,6 +24,8 @@ constexpr double kWholeTurns = 4.0 * std::numbers::pi;  // [rad] a heading is wr
 constexpr double kNoise = 8.0;                          // standard deviations of the poses' own noise
 constexpr std::size_t kLongestOutlier = 3;              // poses
 constexpr double kBendOfNoise = 1.652;  // median of |second difference| of noise of 1: 0.6745 sqrt(1 + 4 + 1)
+constexpr double kFirstNoise = 0.5;        // [m] the poses' noise may be, while too few tell it
+constexpr std::size_t kFewBends = 8;
 constexpr double kLeastBend = 1e-3;     // [m] the finest that is told apart
 
 double distance(const MeasuredPose& from, const MeasuredPose& to) { return std::hypot(to.x - from.x, to.y - from.y); }
@@ -44,7 +46,8 @@ bool PoseGate::jumps(const MeasuredPose& from, const MeasuredPose& to, const Inp
   const double unknown = kUnknown * std::max(to.t - from.t - between.known, 0.0);
   const double path = kSlip * (widely.distance + std::hypot(now.v, now.vy) * late) + top.v * unknown;
   const double turn = kSlip * (widely.angle + std::abs(now.omega) * late) + top.omega * unknown;
-  const double noise = std::max(bends_[0].quantile(0.5, 0.0), bends_[1].quantile(0.5, 0.0)) / kBendOfNoise;
+  const double bend = std::max(bends_[0].quantile(0.5, 0.0), bends_[1].quantile(0.5, 0.0));
+  const double noise = bend_count_ < kFewBends ? kFirstNoise : bend / kBendOfNoise;
   const bool far = distance(from, to) > path + std::max(kDistance, kNoise * noise);
   const bool turned = angle(from, to) > turn + kAngle || std::abs(to.yaw - from.yaw) > turn + kWholeTurns;
   return far || turned;
@@ -67,6 +70,7 @@ void PoseGate::learn_noise(const MeasuredPose& pose) {
     const auto& [a, b, c] = std::tie(accepted_[0], accepted_[1], accepted_[2]);
     bends_[0].add(std::max(std::abs(c.x - 2.0 * b.x + a.x), kLeastBend), 1.0);
     bends_[1].add(std::max(std::abs(c.y - 2.0 * b.y + a.y), kLeastBend), 1.0);
+    ++bend_count_;
   }
 }
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 import tomllib
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
@@ -63,7 +63,6 @@ class FilterTable(_Section):
     """The iterated extended Kalman filter."""
 
     huber: Positive = _IEKF.huber
-    gate: Positive = _IEKF.gate
 
 
 class NoiseTable(_Section):
@@ -83,10 +82,21 @@ def _known_estimator(name: str) -> str:
     return name
 
 
+Drift = Literal["mean-reverting", "random-walk"]
+_DRIFTS = {"mean-reverting": _core.Drift.MeanReverting, "random-walk": _core.Drift.RandomWalk}
+
+
 class SmoothingTable(_Section):
     """Smoothing of slip that changes slowly, with the distance driven."""
 
+    drift: Drift = cast(Drift, {value: name for name, value in _DRIFTS.items()}[_DRIFT.drift])
     length: Positive = _DRIFT.length
+
+    def drift_settings(self) -> _core.DriftSettings:
+        """Return the core's settings."""
+        settings = _core.DriftSettings()
+        settings.drift, settings.length = _DRIFTS[self.drift], self.length
+        return settings
 
 
 def _with_joint(structures: list[Structure]) -> list[Structure]:

@@ -84,8 +84,7 @@ def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCo
     slip = slice(motion.slip_size)
     tracks = [windows.track(i) for i in range(len(windows))]
     noise = [_noise(belief, filters.noise.shape, windows, i) for i in range(len(windows))]
-    drift = _core.DriftSettings()
-    drift.length = settings.smoothing.length
+    drift = settings.smoothing.drift_settings()
     course = _core.rts_smooth(
         motion, _prior(belief), tracks, list(windows.segments), noise, drift, filters.iekf
     )

@@ -1,6 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Segments between measured poses, cut from the runs of a log."""
 
-from slipwise.segments.windows import WindowRules, Windows, cut_windows, recording_of, recording_rows, rejections
+from slipwise.segments.windows import (
+    WindowRules,
+    Windows,
+    cut_windows,
+    recording_of,
+    recording_rows,
+    rejections,
+)
 
 __all__ = ["WindowRules", "Windows", "cut_windows", "recording_of", "recording_rows", "rejections"]

@@ -90,7 +90,7 @@ def two_windows() -> Log:
 
 def test_little_data_leaves_the_average_of_bases_near_the_baseline() -> None:
     """The model moves towards the slip, and is not sure."""
-    settings = make_settings({"auto": {"baseline": False}})
+    settings = make_settings({"auto": {"structures": ["joint"]}})
     content = calibrate(two_windows(), input="wheel", settings=settings).model.content
     assert content.parameters
     assert all(abs(p.value) <= 2.0 * p.prior_std for p in content.parameters)

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from slipwise.calibration.learning_run import LearningRun, start_learning
-from slipwise.calibration.structure_choice import average_pass
 
 import slipwise as sw
 from slipwise import _core
@@ -14,13 +12,13 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.causal_pass import CausalPass
 from slipwise.calibration.drive import WindowSet, prepare_drive
+from slipwise.calibration.estimator_run import EstimatorRun, run_estimator
 from slipwise.calibration.estimators import (
     estimator_basis,
     estimator_learner,
     estimator_motion,
     fed_windows,
 )
-from slipwise.calibration.learner import make_learner
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
@@ -56,8 +54,8 @@ def windows(settings: Settings) -> WindowSet:
     return learning_windows(prepare_drive(circling_log(), "wheel"), "wheel", settings)
 
 
-def run_of(name: str, settings: Settings, windows: WindowSet) -> LearningRun:
-    return start_learning(settings.model_copy(update={"estimator": name}), "wheel", windows)
+def run_of(name: str, settings: Settings, windows: WindowSet) -> EstimatorRun:
+    return run_estimator(settings.model_copy(update={"estimator": name}), "wheel", windows)
 
 
 @pytest.mark.parametrize("name", _core.estimator_names())
@@ -105,15 +103,15 @@ def test_an_estimator_that_does_not_exist_is_refused_with_those_that_do() -> Non
         make_settings({"estimator": "magic"})
 
 
-def test_iekf_is_the_filter_that_calibrates_until_that_learns_anew(
-    settings: Settings, windows: WindowSet
-) -> None:
-    passing = average_pass(make_learner(settings, "wheel").fresh(), windows)
+def test_iekf_is_the_filter_that_calibrates_until_that_refits(settings: Settings, windows: WindowSet) -> None:
+    filters = (settings.filter_settings(), settings.average_settings())
+    average = _core.ModelAverage("one", settings.bases(), False, False, False, *filters)
     estimating = run_of("iekf", settings, windows)
-    belief, known = estimating.belief(7), passing.belief(7)
-    assert belief.mean == pytest.approx(known.mean, rel=1e-9)
-    assert belief.covariance == pytest.approx(known.covariance, rel=1e-9)
-    assert estimating.belief(8).mean != pytest.approx(passing.belief(8).mean, rel=1e-4)
+    for i in range(7):
+        average.learn(windows.track(i), windows.segments[i], True)
+    known, belief = average.state(), estimating.belief(7)
+    assert belief.mean == pytest.approx(np.array(known.estimate.mean), rel=1e-9)
+    assert belief.covariance == pytest.approx(np.array(known.estimate.covariance), rel=1e-9)
 
 
 def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(

@@ -7,11 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from slipwise.calibration.cascade_pass import CascadePass
 
-from slipwise.calibration import Settings, calibrate, make_settings
-from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration import calibrate, make_settings
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
 
@@ -46,16 +43,11 @@ def test_step_of_yaw_slip_is_found_within_three_windows(changing: Log) -> None:
     assert CHANGE < alarm[1] <= CHANGE + 3.2
 
 
-def test_step_is_told_where_slip_is_learned_in_cascade(changing: Log) -> None:
-    settings = Settings()
-    windows = learning_windows(prepare_drive(changing, "command"), "command", settings)
-    passing = CascadePass(windows, settings)
-    found = []
-    for count in range(1, len(windows) + 1):
-        passing.belief(count, np.ones(3))
-        found += [float(windows.end[count - 1])] * passing.change.alarm
-    assert len(found) == 1
-    assert CHANGE < found[0] <= CHANGE + 5.0
+def test_step_is_found_from_commands(changing: Log) -> None:
+    history = calibrate(changing, input="command").history
+    assert history is not None
+    (alarm,) = history.alarms()
+    assert CHANGE < alarm[1] <= CHANGE + 5.0
 
 
 def test_step_is_told_sooner_where_wheels_are_beside_the_commands(changing: Log) -> None:

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import pytest
 from judgements import BETTER, judged
@@ -32,20 +31,6 @@ NAN = (math.nan,) * 3
 def test_the_baseline_is_beaten_only_beyond_chance(position: Ratio, heading: Ratio, beats: bool) -> None:
     assert judged(position, heading).beats_baseline is beats
     assert bool(judged(position, heading).fault()) is not beats
-
-
-def test_errors_that_are_shown_are_not_worse_either() -> None:
-    judgement = judged(BETTER, BETTER)
-    shown = judgement.held_out.model_copy(update={"position": 1.2})
-    assert replace(judgement, held_out=shown).worse == ("position",)
-
-
-def test_what_the_start_gains_is_told_from_what_the_model_gains() -> None:
-    judgement = judged((1.0, 0.9, 1.1), (1.0, 0.9, 1.1))
-    shown = judgement.held_out.model_copy(update={"position": 0.7})
-    assert replace(judgement, held_out=shown).gains_by_start
-    assert "from the same measured pose" in replace(judgement, held_out=shown).fault()
-    assert not judged(BETTER, BETTER).gains_by_start
 
 
 def test_fewer_than_four_segments_are_too_few() -> None:

@@ -36,8 +36,7 @@ lag = 0.5
 delay = 0.2
 
 [filter]
-huber = 2.5
-gate = 50.0
+huber = 2.0
 
 [noise]
 psd_time = [1e-5, 1e-5, 1e-5]
@@ -58,6 +57,7 @@ learn = false
 detect = false
 
 [smoothing]
+drift = "random-walk"
 length = 20.0
 
 [log]
@@ -114,7 +114,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
     assert core.prior.clock_offset_std == 0.1
     assert core.prior.sensor.vector().tolist() == [1.5, -0.2, 0.1]
-    assert (core.iekf.huber, core.iekf.gate) == (2.5, 50.0)
+    assert core.iekf.huber == 2.0
     assert core.noise.shape.psd_motion == [2e-3, 2e-3, 2e-3]
     assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
@@ -132,7 +132,8 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert (log.command_scale, log.wheel_scale) == ((0.5, 1.0), (0.1, -1.0))
     assert (log.pose_yaw_offset, log.most_unpacked) == (0.2, 64.0)
     assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
-    assert settings.smoothing.length == 20.0
+    drift = settings.smoothing.drift_settings()
+    assert (drift.drift, drift.length) == (_core.Drift.RandomWalk, 20.0)
     assert not settings.average_settings().change.detect
     learner = core_settings(settings, "command", (1.0, 4.0))
     assert not learner.learn_disturbance

@@ -39,7 +39,10 @@ def test_what_was_rejected_is_named_with_its_cure() -> None:
     driven = run.wheels.t < 4.0
     parked = replace(run.wheels, v=run.wheels.v * driven, omega=run.wheels.omega * driven)
     advice = advice_of(replace(log, runs=(replace(run, wheels=parked, commands=None),)), "wheel")
-    assert "Rejected: 36 x the robot was told to stand still for the whole window; drive for more" in advice
+    assert (
+        "Rejected: 36 x the robot was commanded to stand still for the whole segment; drive for more"
+        in advice
+    )
     assert "at the very least 8 segments of 1 s, where this log has 4." in advice
 
 

@@ -11,7 +11,7 @@ import pytest
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
-from slipwise.calibration import Calibration, Settings, calibrate, make_settings
+from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.logs import Log
 
 BEFORE, AFTER = (-0.02, -0.1), (-0.06, -0.4)  # edd-2: lon.V, ang.w
@@ -91,8 +91,3 @@ def test_the_table_holds_every_window_and_parameter(calibration: Calibration, tm
     assert np.array_equal(rows[:, 1:3], np.column_stack((course.start, course.end)))
     assert np.array_equal(rows[:, 3::2], course.mean)
     assert np.array_equal(rows[:, 4::2], course.std)
-
-
-def test_the_default_drift_is_that_of_the_core() -> None:
-    core, settings = _core.DriftSettings(), Settings().smoothing.drift_settings()
-    assert (settings.drift, settings.length) == (core.drift, core.length)

@@ -37,7 +37,6 @@ def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) 
         learned_until=t,
         structure=np.zeros(size, np.int64),
         in_sample=np.zeros((size, 2)),
-        from_measured=pose,
     )
 
 

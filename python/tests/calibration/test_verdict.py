@@ -73,15 +73,6 @@ def test_perfect_robot_under_noise_is_not_said_to_be_improved(seed: int) -> None
         assert "does not beat the kinematic baseline: " in result.verdict.sentence
 
 
-def test_what_the_average_of_poses_gains_is_not_the_model_s_merit() -> None:
-    learned = verdict_of(Drive(seconds=90.0, seed=1, pose_std=(0.02, 0.01), slip_psd=(1e-9, 1e-9, 1e-9)))
-    held_out = learned.model.content.verdict.held_out
-    assert held_out is not None
-    assert held_out.position < 0.9 * held_out.plain_position  # by where predictions start
-    assert not learned.verdict.good
-    assert "It gains by averaging the last poses, not by what it learned." in learned.verdict.sentence
-
-
 @pytest.mark.slow
 def test_claims_about_perfect_robots_are_as_rare_as_chance() -> None:
     drives = [Drive(seconds=90.0, seed=s, pose_std=(0.02, 0.01), slip_psd=(0.0, 0.0, 0.0)) for s in range(30)]

@@ -87,7 +87,7 @@ def test_poses_within_the_embargo_do_not_reach_a_prediction(method: str) -> None
         embargo = float(whole.t_start[i]) - 2.0
         poses = log.runs[0].poses
         late = poses.t > embargo + 1e-6
-        spoilt = replace(poses, x=poses.x + 100.0 * late, y=poses.y - 50.0 * late)
+        spoilt = replace(poses, x=poses.x + 0.3 * late, y=poses.y - 0.2 * late)
         changed = replace(log, runs=(replace(log.runs[0], poses=spoilt),))
         (other,) = evaluate(changed, input="wheel", settings=SETTINGS, options=options).predictions
         np.testing.assert_array_equal(other.pose[i], whole.pose[i])

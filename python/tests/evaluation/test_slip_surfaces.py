@@ -23,9 +23,7 @@ LINEAR = ("surface-least-squares", "surface-bayesian")
 PROCESS = "surface-gaussian-process"
 SLIP = _core.named_basis("full-linear-6")
 ALPHA = (-0.1, 0.02, 0.03, 0.05, 0.02, -0.3)
-SETTINGS = make_settings(
-    {"basis": "full-linear-6", "start": {"learn": False}}  # surfaces start at the measured pose
-)
+SETTINGS = make_settings({"basis": "full-linear-6"})
 
 
 @cache

@@ -98,14 +98,21 @@ def test_a_model_without_an_actuator_model_reaches_its_speed_at_once_after_the_d
 def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
     content: Content, tmp_path: Path
 ) -> None:
-    later = ("coloured", "start")
-    older = {key: value for key, value in content.items() if key not in later} | {"slipwise_model": 2}
+    older = {key: value for key, value in content.items() if key != "coloured"} | {"slipwise_model": 2}
     model = load_model(saved(older, tmp_path / "m.yaml"))
-    assert (model.content.coloured, model.content.start) == (None, None)
+    assert model.content.coloured is None
     assert model.covariance_over(1.0).tobytes() == model.covariance.tobytes()
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
-    assert again.content.slipwise_model == 3
+    assert again.content.slipwise_model == 4
+
+
+def test_where_predictions_start_is_dropped_from_a_file_of_the_schema_before(
+    content: Content, tmp_path: Path
+) -> None:
+    start = {"memories": [{"seconds": 0.0, "weight": 1.0}]}
+    model = load_model(saved(content | {"slipwise_model": 3, "start": start}, tmp_path / "m.yaml"))
+    assert model.content == load_model(saved(content, tmp_path / "n.yaml")).content
 
 
 def set_key(path: str, value: object) -> Callable[[Content], None]:
@@ -122,18 +129,14 @@ def set_key(path: str, value: object) -> Callable[[Content], None]:
 WRONG = {
     "unknown key": (set_key("colour", "red"), "colour: there is no such key"),
     "unknown key in depth": (set_key("noise.colour", 1.0), r"noise\.colour: there is no such key"),
-    "newer schema": (set_key("slipwise_model", 4), "schema version 4, this slipwise reads 2 and 3"),
-    "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2 and 3"),
+    "newer schema": (set_key("slipwise_model", 5), "schema version 5, this slipwise reads 2 and 3 and 4"),
+    "older schema": (set_key("slipwise_model", 1), "schema version 1, this slipwise reads 2 and 3 and 4"),
     "no schema": (set_key("slipwise_model", None), "schema version None"),
     "schema is a flag": (set_key("slipwise_model", True), "schema version True"),
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),
     "slip wanders without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
     "weights of more than all": (set_key("coloured.candidates.0.weight", 1.5), "coloured: .*sum to 1"),
-    "memories of more than all": (set_key("start.memories.0.weight", 1.5), "start: .*sum to 1"),
-    "a memory of negative length": (
-        set_key("start.memories.1.seconds", -0.1),
-        r"start\.memories\.1\.seconds",
-    ),
+    "a section of the schema before": (set_key("start", {}), "start: there is no such key"),
     "wander of negative size": (
         set_key("coloured.candidates.1.turn", -0.1),
         r"coloured\.candidates\.1\.turn",

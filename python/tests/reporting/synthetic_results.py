@@ -199,7 +199,6 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         learned_until=t_start,
         structure=np.zeros(len(rows), np.int64),
         in_sample=np.full((len(rows), 2), 0.01),
-        from_measured=np.array(poses),
     )
 
 

@@ -7,9 +7,9 @@ import re
 
 import numpy as np
 import pytest
-from slipwise.calibration.learning_run import start_learning
 
 from slipwise import _core
+from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.forecast import forecast
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.logs import Log
@@ -134,7 +134,7 @@ def test_a_recording_believes_what_the_evaluation_does(name: str, circles: Log) 
     course = Course(name)
     recording = record(circles, course)
     settings = course.settings.model_copy(update={"estimator": name})
-    run = start_learning(settings, course.input_name, recording.windows)
+    run = run_estimator(settings, course.input_name, recording.windows)
     for count in (0, 7, len(recording.windows)):
         mine, theirs = recording.belief(count), run.belief(count)
         np.testing.assert_array_equal(mine.mean, theirs.mean)

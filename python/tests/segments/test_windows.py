@@ -17,8 +17,7 @@ RULES = WindowRules()
 
 
 def cut(run: Run, length: float, rules: WindowRules = RULES) -> Windows:
-    assert run.commands is not None
-    return cut_windows(run, run.commands, length, rules)
+    return cut_windows([run], rules.stream_settings(length, from_commands=True))
 
 
 def left_out(windows: Windows) -> dict[str, int]:
@@ -189,6 +188,10 @@ def test_no_window_changes_when_the_log_is_cut_off_after_its_end() -> None:
         assert here[:-1] == whole[: max(0, len(here) - 1)]
 
 
+def gravity(windows: Windows) -> list[tuple[float, float]]:
+    return [(segment.gx, segment.gy) for segment in windows.segments]
+
+
 def test_gravity_follows_rep_103() -> None:
     """Nose down (pitch > 0) pulls forward, right side down (roll > 0) pulls to the right."""
     run = steady_run(seconds=2.0)
@@ -199,20 +202,19 @@ def test_gravity_follows_rep_103() -> None:
         (0.0, 0.0, (0.0, 0.0)),
     ):
         tilted = replace(run.poses, roll=np.full(size, roll), pitch=np.full(size, pitch))
-        assert cut(with_poses(run, tilted), 1.0).gravity[0] == pytest.approx(expected, abs=1e-12)
-    assert cut(run, 1.0).gravity.tolist() == [[0.0, 0.0], [0.0, 0.0]]
+        assert gravity(cut(with_poses(run, tilted), 1.0))[0] == pytest.approx(expected, abs=1e-12)
+    assert gravity(cut(run, 1.0)) == [(0.0, 0.0), (0.0, 0.0)]
 
 
 def test_tilt_that_was_not_measured_counts_as_level() -> None:
     run = steady_run(seconds=2.0)
     unknown = np.full(len(run.poses), np.nan)
     windows = cut(with_poses(run, replace(run.poses, roll=unknown, pitch=unknown)), 1.0)
-    assert windows.gravity.tolist() == [[0.0, 0.0], [0.0, 0.0]]
+    assert gravity(windows) == [(0.0, 0.0), (0.0, 0.0)]
 
 
 def test_initial_twist_is_the_last_one_measured_and_only_where_fresh() -> None:
     run = steady_run(seconds=6.0)
-    windows = cut(run, 2.0)
     wheels = Inputs(
         t=np.array([0.5, 1.9, 2.01, 3.4]),
         v=np.array([1.0, 2.0, 3.0, 4.0]),
@@ -220,8 +222,8 @@ def test_initial_twist_is_the_last_one_measured_and_only_where_fresh() -> None:
         omega=np.array([0.5, 0.6, 0.7, 0.8]),
     )
     model = _core.MotionModel(_core.Basis("none", [], [], []), True, False)
-    fresh = windows.segments(wheels, WindowRules())
-    bare = windows.segments(None, WindowRules())
+    fresh = cut(replace(run, wheels=wheels), 2.0).segments
+    bare = cut(replace(run, wheels=None), 2.0).segments
     still = _core.InputTrack(np.array([-9.0]), np.zeros(1), np.zeros(1), np.zeros(1))
     lags = np.log([1.0, 1.0, 0.1, 0.1])
 
