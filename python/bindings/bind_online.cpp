@@ -176,6 +176,13 @@ void bind_results(nb::module_& m) {
       .def_ro("covariance", &PredictedPath::covariance)
       .def_ro("student", &PredictedPath::student)
       .def_prop_ro("structure", [](const PredictedPath& path) { return static_cast<int>(path.structure); });
+  nb::class_<ActuatorLimits>(m, "ActuatorLimits", "What a search for limits found.")
+      .def_ro("search", &ActuatorLimits::search)
+      .def_prop_ro("posterior",
+                   [](const ActuatorLimits& limits) -> std::optional<MotionPosterior> {
+                     return limits.posterior ? std::optional(*limits.posterior) : std::nullopt;
+                   })
+      .def_ro("score", &ActuatorLimits::score);
   nb::class_<LearnedModel>(m, "LearnedModel", "What was learned so far.")
       .def_prop_ro("motion", [](const LearnedModel& model) { return *model.known.motion; })
       .def_prop_ro("slip", [](const LearnedModel& model) { return *model.known.slip; })
@@ -267,6 +274,8 @@ void bind_online(nb::module_& m) {
           },
           "future"_a, "horizon"_a, "embargo"_a)
       .def("model", &MotionLearner::model, "What was learned of all that was pushed.")
+      .def("find_limits", &MotionLearner::find_limits, "wheel_separation"_a, nb::call_guard<nb::gil_scoped_release>(),
+           "Looks for limits of the actuator; None where there are too few wheel speeds beside commands.")
       .def("forget", &MotionLearner::forget, "fraction"_a)
       .def_prop_ro("newest", &MotionLearner::newest);
 }

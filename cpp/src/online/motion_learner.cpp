@@ -24,6 +24,8 @@ constexpr double kReady = 1.0;           // [s] after which a segment has been l
 constexpr double kRounding = 1e-9;       // [s] of stamps
 constexpr double kRecentSeconds = 30.0;   // that tell of the slip now, at most
 constexpr std::size_t kRecent = 12;       // segments that tell of it, at most
+constexpr std::size_t kMostWheelSegments = 200;    // in which limits are looked for
+constexpr std::size_t kMostCommandSegments = 100;  // by which they are judged
 constexpr std::size_t kMostEvents = 10000;
 constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
 constexpr double kLongest = 3600.0;         // [s] horizon
@@ -174,6 +176,10 @@ bool MotionLearner::work() {
   bool more = false;
   if (auto* wheels = std::get_if<WheelSegment>(&waiting_.front())) {
     hypotheses_.learn_actuator(*wheels);
+    wheel_segments_.push_back(std::move(*wheels));
+    if (wheel_segments_.size() > kMostWheelSegments) {
+      wheel_segments_.pop_front();
+    }
   } else if (auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
     hypotheses_.learn_slip(slip->driven);
   } else if (auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
@@ -247,6 +253,12 @@ void MotionLearner::publish(const DrivenSegment& segment) {
   recent_.push_back(segment);
   while (recent_.front().segment.start < segment.segment.end - 2.0 * longest) {
     recent_.pop_front();
+  }
+  if (settings_.stream.from_commands) {
+    command_segments_.push_back(segment);
+  }
+  if (command_segments_.size() > kMostCommandSegments) {
+    command_segments_.pop_front();
   }
   seconds_ += segment.segment.end - segment.segment.start;
   LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .run = runs_, .t = segment.segment.end};
@@ -417,6 +429,23 @@ LearnedModel MotionLearner::model() const {
     learned.held_out.emplace_back(complete.held_out_[i].begin(), complete.held_out_[i].end());
   }
   return learned;
+}
+
+std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation) const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
+  if (cascaded == nullptr) {
+    return std::nullopt;
+  }
+  const std::vector<WheelSegment> wheels(complete.wheel_segments_.begin(), complete.wheel_segments_.end());
+  const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
+  return find_actuator_limits({.wheels = wheels,
+                               .segments = segments,
+                               .cascaded = *cascaded,
+                               .kept = *complete.known_.back().motion,
+                               .filter = settings_.hypotheses.filter,
+                               .wheel_separation = wheel_separation});
 }
 
 void MotionLearner::forget(double fraction) {

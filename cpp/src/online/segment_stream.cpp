@@ -18,6 +18,7 @@ constexpr double kGravity = 9.80665;  // [m/s^2]
 constexpr double kSlipLength = 1.0;   // [s] of segments behind wheel speeds
 constexpr double kWheelLength = 1.0;  // [s] wheel speeds tell a step's response from its start on
 constexpr double kLookBack = 20.0;    // [s] of inputs before a segment; an actuator remembers no more
+constexpr double kActuatorBack = 5.0;    // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kWheelsBack = 3.0;   // [s] of wheel speeds before a segment; no clock offset is larger
 constexpr double kSpare = 10.0;       // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -204,7 +205,7 @@ void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
     if (!cut.rejected) {
       const double start = cut.first.t;
       const double end = cut.second.t;
-      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kLookBack, end, SliceKind::Commands),
+      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kActuatorBack, end, SliceKind::Commands),
                                        .wheels = wheels_.slice(start, end, SliceKind::Wheels),
                                        .start = start,
                                        .end = end});

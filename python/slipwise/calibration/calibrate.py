@@ -8,6 +8,7 @@ from importlib.metadata import version
 
 import numpy as np
 
+from slipwise import _core
 from slipwise.calibration.drive import (
     DriveRun,
     WindowSet,
@@ -19,8 +20,9 @@ from slipwise.calibration.drive import (
 from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all, tail_of
 from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
-from slipwise.calibration.learned_log import learn_log
+from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Belief, Progress
+from slipwise.calibration.limit_words import limits_advice
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import Calibration, History, Verdict
@@ -33,6 +35,7 @@ from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models import schema
+from slipwise.models.limits import limits_section
 from slipwise.models.model import Model
 
 JUDGING_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -49,6 +52,7 @@ class _Learned:
     tails: dict[float, schema.Tail]
     history: History | None
     bases: tuple[str, ...]
+    limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +108,8 @@ def calibrate(
 
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> _Learned:
     """Learn in one pass, which also makes the predictions that are judged."""
-    learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, record=True, progress=progress)
+    keep = Keep(settings.vehicle.track)
+    learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress)
     tails = {
         p.horizon: tail_of(student)
         for p, student in zip(learned.predictions, learned.students, strict=True)
@@ -118,6 +123,7 @@ def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | Non
         tails,
         learned.history,
         learned.bases,
+        learned.limits,
     )
 
 
@@ -196,7 +202,10 @@ def _judged(
         wheels_logged=has_wheels(windows.drive),
         wheels_advice=log.advice.get("wheel", ""),
     )
-    return _Judged(judgement, give_verdict(judgement, known, LogFacts(found, shortage, input_name)))
+    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
+    if learned.limits is not None and not any(each.spoils for each in found):
+        verdict = replace(verdict, advice=(*verdict.advice, *limits_advice(learned.limits)))
+    return _Judged(judgement, verdict)
 
 
 def _content(
@@ -214,6 +223,7 @@ def _content(
         clock_offset=motion.clock_offset,
         response=motion.response,
         mount=motion.mount,
+        limits=_limits(learned),
         parameters=_parameters(learned.kept),
         covariance=learned.kept.covariance.tolist(),
         noise=_noise(learned, settings),
@@ -242,6 +252,11 @@ def _content(
             held_out=judged.judgement.held_out,
         ),
     )
+
+
+def _limits(learned: _Learned) -> schema.LimitsSection | None:
+    """Limits that a search found, where they are kept."""
+    return None if learned.kept.limits is None or learned.limits is None else limits_section(learned.limits)
 
 
 def _parameters(belief: Belief) -> list[schema.Parameter]:

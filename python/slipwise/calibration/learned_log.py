@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.drive import DriveRun
-from slipwise.calibration.learner import STRUCTURES, Belief, Progress, belief_of
+from slipwise.calibration.learner import LIMITS, STRUCTURES, Belief, Progress, belief_of
 from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
@@ -36,6 +36,14 @@ class LearnedLog:
     bases: tuple[str, ...]
     segments: int
     seconds: float  # of all segments learned
+    limits: _core.LimitSearch | None = None  # what was found of the actuator's limits, where it was asked
+
+
+@dataclass(frozen=True)
+class Keep:
+    """What a model file and its report need beside predictions."""
+
+    wheel_separation: float  # m, nominal: where the search for limits of the sides begins
 
 
 def learn_log(
@@ -44,7 +52,7 @@ def learn_log(
     horizons: Sequence[float],
     *,
     method: str = "learned",
-    record: bool = False,
+    keep: Keep | None = None,
     progress: Progress | None = None,
 ) -> LearnedLog:
     """Push runs through a learner in one pass.
@@ -54,7 +62,7 @@ def learn_log(
         settings: what to learn and how.
         horizons: of the predictions [s].
         method: what the predictions are said to be by.
-        record: keep the history.
+        keep: what a model file and its report need beside predictions: the history, and limits.
         progress: called with the fraction done, 0 to 1.
 
     Raises:
@@ -63,23 +71,29 @@ def learn_log(
     core = core_settings(settings, drive[0].input_name, horizons)
     learner, events = _core.MotionLearner(core), []
     for done in _pushed(learner, drive):
-        events += [event for event in learner.events() if record and event.kind == _LEARNED]
+        events += [event for event in learner.events() if keep is not None and event.kind == _LEARNED]
         if progress is not None:
             progress(done)
     model = learner.model()
     bases = tuple(basis.name for basis in core.hypotheses.bases)
     several = core.hypotheses.several
     records = [[_Record(each, drive) for each in rows] for rows in model.held_out]
+    found = None if keep is None else learner.find_limits(keep.wheel_separation)
+    motion = (found.posterior if found is not None else None) or model.motion
+    kept = belief_of(motion, model.disturbance)
+    if found is not None and motion.structure == LIMITS:
+        kept = replace(kept, limits=found.search.limits)
     return LearnedLog(
-        kept=belief_of(model.motion, model.disturbance),
+        kept=kept,
         slip=belief_of(model.slip, model.disturbance),
         students=tuple(model.students),
         predictions=tuple(_predictions(method, h, rows) for h, rows in zip(horizons, records, strict=True)),
         baseline=tuple(_baseline(h, rows) for h, rows in zip(horizons, records, strict=True)),
-        history=_history(events, model.motion, bases, drive, several=several) if record else None,
+        history=None if keep is None else _history(events, model.motion, bases, drive, several=several),
         bases=bases,
         segments=model.segments,
         seconds=model.seconds,
+        limits=None if found is None else found.search,
     )
 
 

@@ -10,13 +10,10 @@ import numpy as np
 import pytest
 from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
 from sample_models import make_model, named
-from slipwise.calibration.limit_watch import FIRST, GROWTH_FAILING, MOST, LimitWatch
-from slipwise.calibration.recent_twists import SPACING
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate
-from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.limit_words import limits_advice
 from slipwise.export.body_limits import body_limits
 from slipwise.export.learned_number import LearnedNumbers
@@ -29,6 +26,7 @@ from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSectio
 from slipwise.planning import Controller, Start, Track, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
+from slipwise.segments import recording_of
 from slipwise.simulation import Scenario, dull_drive, simulate, steps_drive
 
 SLIP = (-0.06, -0.35)  # lon.V, ang.w
@@ -109,8 +107,8 @@ def test_limits_are_used_where_they_predict_better(model: Model) -> None:
     assert limits.track == pytest.approx(TRACK, rel=0.05)
 
 
-def test_without_the_setting_there_are_none(log: Log) -> None:
-    settings = Settings(auto={"limits": False})
+def test_without_the_cascaded_structure_there_are_none(log: Log) -> None:
+    settings = Settings(auto={"structures": ["joint"]})
     learned = calibrate(log, input="command", settings=settings).model
     assert learned.limits is None
 
@@ -177,47 +175,6 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
     assert dead_bands(None, numbers) == []
 
 
-def test_a_watch_sees_nothing_of_the_future(log: Log) -> None:
-    run, until = log.runs[0], 60.0
-    told = run.wheels.t <= until
-    cut = Inputs(
-        t=run.wheels.t[told], v=run.wheels.v[told], vy=run.wheels.vy[told], omega=run.wheels.omega[told]
-    )
-    short = replace(log, runs=(replace(run, wheels=cut),))
-    found = []
-    for each in (log, short):
-        watch = LimitWatch(prepare_drive(each, "command"), Settings())
-        assert watch.look(0, until)
-        found.append([(f.kind, f.value, f.std) for f in watch.search.found])
-    assert found[0] == found[1]
-    assert found[0]
-
-
-def test_searches_are_rare_and_their_data_bounded(log: Log) -> None:
-    drive = prepare_drive(log, "command")
-    watch = LimitWatch(drive, Settings())
-    windows = learning_windows(drive, "command", Settings())
-    searched = [watch.look(0, end) for end in windows.end]
-    assert sum(searched) == 2  # at FIRST and at three times as many
-    assert len(drive[0].wheels) > 3 * MOST >= 3 * FIRST
-    twists, commands = watch.kept
-    assert twists == MOST
-    assert commands < len(drive[0].inputs) / 2
-
-
-def test_what_fails_is_looked_for_again_but_ever_more_rarely() -> None:
-    seconds = 2.5 * SECONDS
-    commands = steps_drive(3, seconds)
-    drive = prepare_drive(driven(commands, wheels_behind(SIDES, commands, 1)), "command")
-    watch = LimitWatch(drive, Settings())
-    ends = np.arange(0.0, seconds, 1.0)
-    at = [end for end in ends.tolist() if watch.look(0, end, fails=True)]
-    gaps = np.diff(at)
-    assert len(at) > 3
-    assert gaps.min() >= (GROWTH_FAILING - 1.0) * FIRST * SPACING
-    assert gaps[-1] > 1.2 * gaps[0]
-
-
 @pytest.mark.slow
 def test_limits_that_change_are_found_again() -> None:
     commands, half = steps_drive(3, 2.0 * SECONDS), SECONDS
@@ -236,9 +193,31 @@ def test_limits_that_change_are_found_again() -> None:
 def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: Path, first: int) -> None:
     """Two stretches of a Husky that drives random commands show the same rates of its yaw rate."""
     log = open_log(real_log_dir / "drive_test" / "husky.csv.gz")
-    drive = prepare_drive(log, "command")[first : first + 2]
-    watch = LimitWatch(drive, Settings())
-    assert watch.look(1, float(drive[1].inputs.t[-1]))
-    found = {(f.lane, f.kind): f.value for f in watch.search.found}
+    learner = _core.MotionLearner(core_settings(Settings(), "command", ()))
+    for run in log.runs[first : first + 2]:
+        learner.start_run()
+        learner.push(recording_of(run))
+    found = {(f.lane, f.kind): f.value for f in learner.find_limits(TRACK).search.found}
     assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
     assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)
+
+
+def test_looking_for_limits_changes_nothing_that_is_learned(log: Log) -> None:
+    def learned(*, asked: bool) -> _core.MotionPosterior:
+        learner = _core.MotionLearner(core_settings(Settings(), "command", ()))
+        learner.start_run()
+        learner.push(recording_of(log.runs[0], until=60.0))
+        if asked:
+            learner.find_limits(TRACK)
+        learner.push(recording_of(log.runs[0], since=60.0))
+        return learner.model().motion
+
+    asked, other = learned(asked=True), learned(asked=False)
+    assert asked.estimate.mean.tobytes() == other.estimate.mean.tobytes()
+
+
+def test_too_few_wheel_speeds_show_no_limits(log: Log) -> None:
+    learner = _core.MotionLearner(core_settings(Settings(), "command", ()))
+    learner.start_run()
+    learner.push(recording_of(log.runs[0], until=10.0))
+    assert learner.find_limits(TRACK) is None

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/online/actuator_limits.hpp"
 #include "slipwise/online/held_out.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
@@ -90,6 +91,10 @@ class MotionLearner {
   PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
   /// What was learned of all that was pushed; as if the run ended now.
   LearnedModel model() const;
+  /// Looks for limits of the actuator in the last wheel speeds and commands, and keeps them where they predict better.
+  /// This takes up to seconds, and changes nothing of what is learned. Nothing where there are too few wheel speeds
+  /// beside commands.
+  std::optional<ActuatorLimits> find_limits(double wheel_separation) const;
   /// Gives what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
   /// \throws std::invalid_argument when the fraction is not between 0 and 1.
   void forget(double fraction);
@@ -123,6 +128,8 @@ class MotionLearner {
   bool started_ = false;              ///< whether the first of them is being learned
   std::deque<Knowledge> known_;       ///< of late; the last is the newest
   std::deque<DrivenSegment> recent_;  ///< segments of the run
+  std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
+  std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
   std::vector<HorizonErrors> errors_;
   std::vector<std::deque<HeldOutPrediction>> held_out_;
   std::deque<LearnerEvent> events_;
