@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
+from scipy.signal import lfilter  # type: ignore[import-untyped]
 
 from slipwise import _core
 from slipwise.logs import Inputs, Log, Poses, Run
@@ -113,7 +113,7 @@ def _slip_rates(
     drawn[1:] *= np.sqrt(1.0 - keep * keep)
     state = lfilter([1.0], [1.0, -keep], drawn, axis=0) * robot.slow * robot.disturbance.slow
     slow = (state[:, 0] * v, state[:, 1] * v, state[:, 2] * omega + state[:, 3] * v)
-    return np.column_stack((lon, lat, ang)) + white + np.column_stack(slow)
+    return np.asarray(np.column_stack((lon, lat, ang)) + white + np.column_stack(slow))
 
 
 def _poses(robot: Robot, twist: Floats, t: Floats, random: np.random.Generator) -> Poses:

@@ -30,6 +30,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
     : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise), scores_(model_) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
+  stated_ = Eigen::VectorXd::Ones(model_.size());
 }
 
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
@@ -64,6 +65,7 @@ void CausalFilter::forget(double share) {
   estimate_.covariance.leftCols(slip) *= keep;
   estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
   scores_.restart();
+  stated_.setOnes();
   noise_scale_.hurry();
   before_ = estimate_;
   kept_.clear();
@@ -71,11 +73,7 @@ void CausalFilter::forget(double share) {
 }
 
 Estimate CausalFilter::stated() const {
-  if (!settings_.noise.adapt) {
-    return estimate_;
-  }
-  const Eigen::VectorXd factors = scores_.std_factors(before_.covariance, estimate_.covariance);
-  return {estimate_.mean, factors.asDiagonal() * estimate_.covariance * factors.asDiagonal()};
+  return {estimate_.mean, stated_.asDiagonal() * estimate_.covariance * stated_.asDiagonal()};
 }
 
 Eigen::Matrix3d CausalFilter::expected_noise(const SegmentLinearization& at, const Segment& segment) const {
@@ -184,6 +182,9 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
     scores_.add(update.at, estimate_.covariance, segment, noise / update.weight);
   }
   keep(inputs, segment, update.at, heard);
+  if (settings_.noise.adapt) {
+    stated_ = scores_.std_factors(before_.covariance, estimate_.covariance);
+  }
   return update;
 }
 

@@ -71,6 +71,7 @@ class CausalFilter {
   Eigen::VectorXd slip_std_;
   NoiseScale noise_scale_;
   ScoreCovariance scores_;
+  Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
