@@ -69,32 +69,33 @@ void ScoreCovariance::add(const SegmentLinearization& at, const Eigen::MatrixXd&
   time_ = middle;
 }
 
-/// Of the variances of one group.
-double ScoreCovariance::factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& prior_information,
-                               const Eigen::MatrixXd& covariance) const {
-  const double prior = block_trace(covariance, prior_information, group);
+/// Of the variances of one group, as far as they come from the segments.
+double ScoreCovariance::factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const {
   const double information = block_trace(covariance, information_, group);
   const double scatter = block_trace(covariance, scatter_, group);
   if (!(scatter > 0.0)) {
     return 1.0;
   }
   const double expected = (segments_ * scatter + kModelSegments * information) / (segments_ + kModelSegments);
-  const double same_time = (prior + expected) / (prior + information);
   const double taken = std::min(2.0 * pairs_ / (segments_ * segments_), kMostTaken);
   const double lagged = 2.0 * block_trace(covariance, lagged_, group) / scatter;
   const double correlation = (lagged + taken) / (1.0 - taken);
   const double gain = (1.0 + kCorrelationTime / kKernelTime) * (1.0 + kFewCorrelations * taken);
-  return same_time * std::max(1.0 + gain * correlation, kLeast);
+  return expected / information * std::max(1.0 + gain * correlation, kLeast);
 }
 
 Eigen::VectorXd ScoreCovariance::std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const {
   if (groups_.empty()) {
     return {};
   }
-  const Eigen::MatrixXd prior_information = Cholesky(prior).inverse();
+  const Eigen::MatrixXd by_prior = covariance * Cholesky(prior).inverse() * covariance;
   Eigen::VectorXd factors = Eigen::VectorXd::Ones(covariance.rows());
   for (const auto& group : groups_) {
-    factors(group).setConstant(std::sqrt(factor(group, prior_information, covariance)));
+    const double of_segments = factor(group, covariance);
+    for (const Eigen::Index i : group) {
+      const double of_prior = std::clamp(by_prior(i, i) / covariance(i, i), 0.0, 1.0);
+      factors[i] = std::sqrt(of_prior + (1.0 - of_prior) * of_segments);
+    }
   }
   return factors;
 }

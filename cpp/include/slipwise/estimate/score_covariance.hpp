@@ -25,12 +25,12 @@ class ScoreCovariance {
   void restart();
 
   /// Factors of the standard deviations of an estimate of this covariance, learned from the segments added and, before
-  /// them, from a prior of this covariance: one per channel of slip, and one for all other parameters.
+  /// them, from a prior of this covariance. What comes from segments has one factor per channel of slip, and one for
+  /// all other parameters; what comes from the prior stays.
   Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const;
 
  private:
-  double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& prior_information,
-                const Eigen::MatrixXd& covariance) const;
+  double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const;
 
   std::vector<std::vector<Eigen::Index>> groups_;  ///< parameters whose factor is one
   Eigen::MatrixXd information_;                    ///< sum of J^T R^-1 J
