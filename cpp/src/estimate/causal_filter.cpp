@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
-#include "slipwise/estimate/sandwich.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 
@@ -28,7 +27,7 @@ bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedCh
 }  // namespace
 
 CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
-    : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise) {
+    : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise), scores_(model_) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
@@ -65,6 +64,7 @@ void CausalFilter::forget(double share) {
   estimate_.covariance.topRows(slip) *= keep;
   estimate_.covariance.leftCols(slip) *= keep;
   estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  scores_.restart();
   stated_.setOnes();
   noise_scale_.hurry();
   before_ = estimate_;
@@ -123,16 +123,16 @@ void CausalFilter::relearn() {
   if (fit.status != Status::Converged) {
     return;
   }
-  if (settings_.noise.adapt) {
-    stated_ = sandwich_factors(before_, fit, kept.data);
-  }
   estimate_ = std::move(fit.estimate);
   noise_scale_.restart();
+  scores_.restart();
   std::size_t fitted = 0;
   for (std::size_t i = 0; i < kept_.size(); ++i) {
     const auto& [inputs, segment] = kept_[i];
     if (fitted < kept.places.size() && kept.places[fitted] == i) {
-      learn_noise(fit.at[fitted++], segment);
+      learn_noise(fit.at[fitted], segment);
+      scores_.add(fit.at[fitted], estimate_.covariance, segment, kept.data[fitted].noise);
+      ++fitted;
     } else {
       learn_noise(linearize_segment(model_, estimate_.mean, inputs, segment), segment);
     }
@@ -178,7 +178,13 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
   IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_.iekf);
   estimate_ = update.estimate;
   noise_scale_.learn(update.at, estimate_.covariance, segment.measured, expected.diagonal());
+  if (update.weight > 0.0) {
+    scores_.add(update.at, estimate_.covariance, segment, noise / update.weight);
+  }
   keep(inputs, segment, update.at, heard);
+  if (settings_.noise.adapt) {
+    stated_ = scores_.std_factors(before_.covariance, estimate_.covariance);
+  }
   return update;
 }
 

@@ -11,6 +11,7 @@
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/noise_scale.hpp"
 #include "slipwise/estimate/prior.hpp"
+#include "slipwise/estimate/score_covariance.hpp"
 #include "slipwise/estimate/speed_range.hpp"
 
 namespace slipwise {
@@ -37,7 +38,7 @@ class CausalFilter {
   const MotionModel& model() const { return model_; }
   /// What learning goes on from: the noise is taken to be of the shape given.
   const Estimate& estimate() const { return estimate_; }
-  /// The same with a covariance that also holds where it is not.
+  /// The same with a covariance that also holds where it is not, or where slip is correlated in time.
   Estimate stated() const;
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
@@ -68,8 +69,9 @@ class CausalFilter {
   std::vector<Kept> kept_;  ///< the first since the start, or since the ground changed
   std::size_t since_ = 0;   ///< segments since then
   Eigen::VectorXd slip_std_;
-  Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the last fit's residuals show them
   NoiseScale noise_scale_;
+  ScoreCovariance scores_;
+  Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
