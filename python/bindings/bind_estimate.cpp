@@ -174,7 +174,7 @@ BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
   check_inputs(inputs, segments.size(), noise.size());
   std::vector<BatchDatum> data;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    data.push_back({inputs[i], segments[i], noise[i]});
+    data.push_back({*inputs[i], segments[i], noise[i]});
   }
   return batch_fit(model, prior, data, settings);
 }

@@ -59,7 +59,7 @@ void bind_smoother(nb::module_& m) {
         check_inputs(inputs, segments.size(), noise.size());
         std::vector<BatchDatum> data;
         for (std::size_t i = 0; i < segments.size(); ++i) {
-          data.push_back({inputs[i], segments[i], noise[i]});
+          data.push_back({*inputs[i], segments[i], noise[i]});
         }
         return rts_smooth(model, prior, data, drift, iekf);
       },

@@ -20,14 +20,6 @@ using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 /// Of the information's diagonal: what hardly slows the last steps, what shortens a step at all, and what leaves none.
 constexpr double kLeastDamping = 1e-4, kFelt = 0.1, kMostDamping = 1e12;
 
-/// Normal equations of the robust MAP problem at one point.
-struct NormalEquations {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;  ///< of half the cost, downhill
-  double cost;
-  std::vector<SegmentLinearization> at;  ///< the data
-};
-
 struct HuberLoss {
   double cost;
   double weight;
@@ -42,12 +34,6 @@ HuberLoss huber_loss(double squared, double threshold) {
   return {2.0 * threshold * distance - threshold * threshold, threshold / distance};
 }
 
-/// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.
-struct NewError {
-  Eigen::Matrix3d by_before;          ///< of what was new in the one before, how much comes again
-  Eigen::LLT<Eigen::Matrix3d> noise;  ///< of what is new
-};
-
 std::vector<NewError> new_errors(std::span<const BatchDatum> data) {
   std::vector<NewError> errors;
   errors.reserve(data.size());
@@ -60,54 +46,6 @@ std::vector<NewError> new_errors(std::span<const BatchDatum> data) {
   }
   return errors;
 }
-
-class BatchProblem {
- public:
-  BatchProblem(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data, double huber)
-      : model_(model),
-        prior_(prior),
-        data_(data),
-        errors_(new_errors(data)),
-        huber_(huber),
-        prior_information_(Cholesky(prior.covariance).inverse()) {}
-
-  NormalEquations linearize(const Eigen::VectorXd& mean) const {
-    std::vector<SegmentLinearization> at;
-    at.reserve(data_.size());
-    for (const BatchDatum& datum : data_) {
-      at.push_back(linearize_segment(model_, mean, *datum.inputs, datum.segment));
-    }
-    return normal_equations(mean, std::move(at));
-  }
-
-  NormalEquations normal_equations(const Eigen::VectorXd& mean, std::vector<SegmentLinearization> data_at) const {
-    const Eigen::VectorXd back = prior_.mean - mean;
-    NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back),
-                              std::move(data_at)};
-    Eigen::Vector3d r = Eigen::Vector3d::Zero();
-    Jacobian by_parameter = Jacobian::Zero(3, model_.size());
-    for (std::size_t i = 0; i < data_.size(); ++i) {
-      const SegmentLinearization& at = equations.at[i];
-      r = data_[i].segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
-      by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
-      const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
-      const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), huber_);
-      const Jacobian weighted = noise.solve(by_parameter) * loss.weight;
-      equations.cost += loss.cost;
-      equations.information.noalias() += by_parameter.transpose() * weighted;
-      equations.gradient.noalias() += weighted.transpose() * r;
-    }
-    return equations;
-  }
-
- private:
-  const MotionModel& model_;
-  const Estimate& prior_;
-  std::span<const BatchDatum> data_;
-  std::vector<NewError> errors_;
-  double huber_;
-  Eigen::MatrixXd prior_information_;
-};
 
 void check(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
            const Eigen::VectorXd& start) {
@@ -128,10 +66,10 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
   }
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Segment& segment = data[i].segment;
-    if (data[i].inputs == nullptr || !(segment.end > segment.start) || !segment.measured.vector().allFinite() ||
+    if (!(segment.end > segment.start) || !segment.measured.vector().allFinite() ||
         !Cholesky(data[i].noise).positive_definite()) {
       throw std::invalid_argument("segment " + std::to_string(i) +
-                                  " must have inputs, end after it starts, and have finite measurements and a positive "
+                                  " must end after it starts, and have finite measurements and a positive "
                                   "definite noise covariance");
     }
   }
@@ -147,46 +85,112 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
 
 }  // namespace
 
-BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
-                   const BatchSettings& settings, std::vector<SegmentLinearization> at_start) {
-  check(model, prior, data, settings.start);
-  if (!at_start.empty() && at_start.size() != data.size()) {
+BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, BatchSettings settings,
+                         std::vector<SegmentLinearization> at_start)
+    : model_(std::move(model)),
+      prior_(std::move(prior)),
+      data_(std::move(data)),
+      settings_(std::move(settings)),
+      damping_(kLeastDamping),
+      fit_{prior_, 0.0, 0, Status::NotConverged, {}} {
+  check(model_, prior_, data_, settings_.start);
+  if (!at_start.empty() && at_start.size() != data_.size()) {
     throw std::invalid_argument("of all data or of none the linearisation at the start must be given");
   }
-  const BatchProblem problem(model, prior, data, settings.huber);
-  Eigen::VectorXd mean = settings.start.size() > 0 ? settings.start : prior.mean;
-  NormalEquations now =
-      at_start.empty() ? problem.linearize(mean) : problem.normal_equations(mean, std::move(at_start));
-  double damping = kLeastDamping;
-  BatchFit fit{prior, now.cost, 0, Status::NotConverged, {}};
-  while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
-    ++fit.iterations;
-    Eigen::MatrixXd damped = now.information;
-    damped.diagonal() *= 1.0 + damping;
-    const Eigen::VectorXd step = Cholesky(damped).solve(now.gradient);
-    const double promised = step.dot(now.gradient + damping * now.information.diagonal().cwiseProduct(step));
-    const double little = settings.tolerance * now.cost;
-    if (damping == kLeastDamping && promised <= little) {
-      fit.status = Status::Converged;  // not even what a parabola promises is worth a look
-      break;
-    }
-    const Eigen::VectorXd candidate = mean + step;
-    NormalEquations next = problem.linearize(candidate);
-    if (!(next.cost <= now.cost)) {
-      damping = std::max(10.0 * damping, kFelt);
-      fit.status = damping > kMostDamping ? Status::Converged : fit.status;  // no downhill step at working precision
-      continue;
-    }
-    const double gained = now.cost - next.cost;
-    fit.status = gained <= little ? Status::Converged : fit.status;
-    mean = candidate;
-    now = std::move(next);
-    damping = std::max(damping * std::max(0.1, 1.0 - std::pow(2.0 * gained / promised - 1.0, 3)), kLeastDamping);
+  errors_ = new_errors(data_);
+  prior_information_ = Cholesky(prior_.covariance).inverse();
+  mean_ = candidate_ = settings_.start.size() > 0 ? settings_.start : prior_.mean;
+  if (!at_start.empty()) {
+    now_ = normal_equations(std::move(at_start));
+    propose();
   }
-  fit.cost = now.cost;
-  fit.at = std::move(now.at);
-  fit.estimate = {mean, Cholesky(now.information).inverse()};
-  return fit;
+}
+
+/// At the candidate.
+NormalEquations BatchSearch::normal_equations(std::vector<SegmentLinearization> data_at) const {
+  const Eigen::VectorXd back = prior_.mean - candidate_;
+  NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back),
+                            std::move(data_at)};
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();
+  Jacobian by_parameter = Jacobian::Zero(3, model_.size());
+  for (std::size_t i = 0; i < data_.size(); ++i) {
+    const SegmentLinearization& at = equations.at[i];
+    r = data_[i].segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
+    by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
+    const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
+    const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), settings_.huber);
+    const Jacobian weighted = noise.solve(by_parameter) * loss.weight;
+    equations.cost += loss.cost;
+    equations.information.noalias() += by_parameter.transpose() * weighted;
+    equations.gradient.noalias() += weighted.transpose() * r;
+  }
+  return equations;
+}
+
+/// The next point to look at, where one is worth a look.
+void BatchSearch::propose() {
+  const NormalEquations& now = now_.value();
+  if (fit_.iterations >= settings_.iterations || fit_.status != Status::NotConverged) {
+    over_ = true;
+    return;
+  }
+  ++fit_.iterations;
+  Eigen::MatrixXd damped = now.information;
+  damped.diagonal() *= 1.0 + damping_;
+  const Eigen::VectorXd step = Cholesky(damped).solve(now.gradient);
+  predicted_ = step.dot(now.gradient + damping_ * now.information.diagonal().cwiseProduct(step));
+  if (damping_ == kLeastDamping && predicted_ <= settings_.tolerance * now.cost) {
+    fit_.status = Status::Converged;  // not even what a parabola predicts is worth a look
+    over_ = true;
+    return;
+  }
+  candidate_ = mean_ + step;
+}
+
+/// Whether the candidate is better.
+void BatchSearch::judge(NormalEquations next) {
+  if (!now_) {
+    now_ = std::move(next);
+  } else if (!(next.cost <= now_->cost)) {
+    damping_ = std::max(10.0 * damping_, kFelt);
+    fit_.status = damping_ > kMostDamping ? Status::Converged : fit_.status;  // no downhill step at working precision
+  } else {
+    const double gained = now_->cost - next.cost;
+    fit_.status = gained <= settings_.tolerance * now_->cost ? Status::Converged : fit_.status;
+    mean_ = candidate_;
+    now_ = std::move(next);
+    const double ratio = gained / predicted_;
+    damping_ = std::max(damping_ * std::max(0.1, 1.0 - std::pow(2.0 * ratio - 1.0, 3)), kLeastDamping);
+  }
+  propose();
+}
+
+bool BatchSearch::advance(std::size_t segments) {
+  for (std::size_t i = 0; i < segments && !over_; ++i) {
+    const BatchDatum& datum = data_[at_.size()];
+    at_.push_back(linearize_segment(model_, candidate_, datum.inputs, datum.segment));
+    if (at_.size() == data_.size()) {
+      judge(normal_equations(std::exchange(at_, {})));
+    }
+  }
+  return !over_;
+}
+
+BatchFit BatchSearch::result() && {
+  NormalEquations& now = now_.value();
+  fit_.cost = now.cost;
+  fit_.at = std::move(now.at);
+  fit_.estimate = {mean_, Cholesky(now.information).inverse()};
+  return std::move(fit_);
+}
+
+BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::vector<BatchDatum> data,
+                   const BatchSettings& settings, std::vector<SegmentLinearization> at_start) {
+  const std::size_t all = data.size();
+  BatchSearch search(model, prior, std::move(data), settings, std::move(at_start));
+  while (search.advance(all)) {
+  }
+  return std::move(search).result();
 }
 
 }  // namespace slipwise

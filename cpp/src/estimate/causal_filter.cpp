@@ -17,17 +17,19 @@ namespace {
 
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
-constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, all are learned anew
-constexpr std::size_t kHeeded = 64;             // segments from which only what is heard is learned anew
-constexpr double kLittle = 0.03;                // of -2 log posterior: a sixth of a standard deviation
-constexpr double kSameStamp = 1e-6;             // [s] segments closer than this meet at one pose
+constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, a refit begins
+constexpr std::size_t kActive = 64;             // segments from which only filters with weight are refitted
+constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
+
+/// Segments after which a refit takes effect that began after so many.
+std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }
 
 bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
 
 }  // namespace
 
 CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
-    : model_(std::move(model)), settings_(settings), noise_scale_(settings.noise), scores_(model_) {
+    : model_(std::move(model)), settings_(settings), state_(model_, settings.noise) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
@@ -36,14 +38,14 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
   if (!started_) {
-    estimate_ = before_ = prior_estimate(model_, speeds, settings_.prior);
+    state_.estimate = before_ = prior_estimate(model_, speeds, settings_.prior);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
-    std::optional<Estimate> changed = change_slip_prior(estimate_, slip_std_, std);
+    std::optional<Estimate> changed = change_slip_prior(state_.estimate, slip_std_, std);
     std::optional<Estimate> before = change_slip_prior(before_, slip_std_, std);
     if (!changed || !before) {
       return;  // the old prior stays in force
     }
-    estimate_ = std::move(*changed);
+    state_.estimate = std::move(*changed);
     before_ = std::move(*before);
   } else {
     return;
@@ -61,129 +63,72 @@ Eigen::VectorXd CausalFilter::prior_std() const {
 void CausalFilter::forget(double share) {
   const Eigen::Index slip = model_.slip_size();
   const double keep = std::sqrt(1.0 - share);
-  estimate_.covariance.topRows(slip) *= keep;
-  estimate_.covariance.leftCols(slip) *= keep;
-  estimate_.covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
-  scores_.restart();
+  Eigen::MatrixXd& covariance = state_.estimate.covariance;
+  covariance.topRows(slip) *= keep;
+  covariance.leftCols(slip) *= keep;
+  covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  state_.scores.restart();
   stated_.setOnes();
-  noise_scale_.hurry();
-  before_ = estimate_;
+  state_.noise_scale.hurry();
+  before_ = state_.estimate;
+  refit_.reset();
   kept_.clear();
-  since_ = 0;
+  full_ = false;
 }
 
 Estimate CausalFilter::stated() const {
-  return {estimate_.mean, stated_.asDiagonal() * estimate_.covariance * stated_.asDiagonal()};
-}
-
-Eigen::Matrix3d CausalFilter::expected_noise(const SegmentLinearization& at, const Segment& segment) const {
-  const MotionNoise& shape = settings_.noise.shape;
-  return slip_covariance(at.path, shape) + pose_noise_covariance(segment.measured, shape);
-}
-
-/// `at` is the segment at the estimate.
-void CausalFilter::learn_noise(const SegmentLinearization& at, const Segment& segment) {
-  noise_scale_.learn(at, estimate_.covariance, segment.measured, expected_noise(at, segment).diagonal());
+  return {state_.estimate.mean, stated_.asDiagonal() * state_.estimate.covariance * stated_.asDiagonal()};
 }
 
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
-void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at, bool heard) {
-  if (since_ == kLast) {
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, bool active) {
+  kept_.push_back({.inputs = inputs, .segment = segment});
+  const std::size_t count = kept_.size();
+  if (refit_ && count == refit_->until) {
+    end_refit();
+  }
+  if (count >= kFirst && count <= kLast && std::has_single_bit(count) && (active || count < kActive)) {
+    refit_.emplace(Refit{.work = {model_, before_, state_, settings_.noise, settings_.iekf, count},
+                         .slip_std = slip_std_,
+                         .until = refitted_after(count)});
+  }
+  if (count >= kLast && !refit_) {
     kept_ = {};
-    return;
-  }
-  if (at.by_parameter.isZero(0.0)) {
-    return;
-  }
-  ++since_;
-  kept_.push_back({inputs, segment});
-  if (since_ >= kFirst && std::has_single_bit(since_) && (heard || since_ < kHeeded)) {
-    relearn();
+    full_ = true;
   }
 }
 
-/// What is kept, but for what the gate leaves out.
-struct CausalFilter::KeptData {
-  std::vector<BatchDatum> data;
-  std::vector<SegmentLinearization> at;  ///< at the estimate
-  std::vector<std::size_t> places;       ///< among what is kept
-};
+bool CausalFilter::refit_slice() { return refit_ && refit_->work.advance(kept_); }
 
-/// The first segments were learned with a first guess of the noise, and linearised where little was known. Where the
-/// fit does not settle, what was learned one by one stands.
-void CausalFilter::relearn() {
-  KeptData kept = kept_data();
-  if (kept.data.empty() || !Cholesky(before_.covariance).positive_definite()) {
+/// What is left of the refit is done; its prior may have followed the speeds meanwhile.
+void CausalFilter::end_refit() {
+  while (refit_slice()) {
+  }
+  std::optional<FilterState> found = std::move(refit_.value().work).result();
+  const Eigen::VectorXd slip_std = refit_->slip_std;
+  refit_.reset();
+  if (!found) {
     return;
   }
-  constexpr double kWeighed = std::numeric_limits<double>::infinity();
-  const double expected_cost = 3.0 * static_cast<double>(kept.data.size());
-  const BatchSettings settings{.tolerance = kLittle / expected_cost, .huber = kWeighed, .start = estimate_.mean};
-  BatchFit fit = batch_fit(model_, before_, kept.data, settings, std::move(kept.at));
-  if (fit.status != Status::Converged) {
-    return;
-  }
-  estimate_ = std::move(fit.estimate);
-  noise_scale_.restart();
-  scores_.restart();
-  std::size_t fitted = 0;
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const auto& [inputs, segment] = kept_[i];
-    if (fitted < kept.places.size() && kept.places[fitted] == i) {
-      learn_noise(fit.at[fitted], segment);
-      scores_.add(fit.at[fitted], estimate_.covariance, segment, kept.data[fitted].noise);
-      ++fitted;
-    } else {
-      learn_noise(linearize_segment(model_, estimate_.mean, inputs, segment), segment);
+  if (slip_std != slip_std_) {
+    std::optional<Estimate> changed = change_slip_prior(found->estimate, slip_std, slip_std_);
+    if (!changed) {
+      return;
     }
+    found->estimate = std::move(*changed);
   }
-}
-
-/// Weighed by the rule of the IEKF. From wheels, neighbours share the noise of the pose where they meet; from commands,
-/// what is not known of the drive there is far more.
-CausalFilter::KeptData CausalFilter::kept_data() const {
-  KeptData data;
-  const Segment* last = nullptr;
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const auto& [inputs, segment] = kept_[i];
-    auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
-    const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, settings_.noise.shape, noise_scale_.value());
-    const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-    const Eigen::Matrix3d covariance = at.by_parameter * estimate_.covariance * at.by_parameter.transpose() + noise;
-    const double nis = normalised_square(innovation, covariance);
-    if (!(nis <= settings_.iekf.gate)) {
-      last = nullptr;
-      continue;
-    }
-    Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-    if (!model_.learned().dynamics && last != nullptr && std::abs(segment.start - last->end) < kSameStamp) {
-      shared = scaled_covariance(shared_pose_noise(segment.measured, last->measured, settings_.noise.shape),
-                                 noise_scale_.value());
-    }
-    const double larger = std::max(std::sqrt(nis) / settings_.iekf.huber, 1.0);
-    data.data.push_back({.inputs = &inputs, .segment = segment, .noise = noise * larger, .shared = shared});
-    data.at.push_back(std::move(at));
-    data.places.push_back(i);
-    last = &segment;
-  }
-  return data;
+  state_ = std::move(*found);
 }
 
 IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds,
-                               bool heard) {
+                               bool active) {
   follow(speeds);
-  auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
-  const Eigen::Matrix3d expected = expected_noise(at, segment);
-  const Eigen::Matrix3d noise = scaled_covariance(expected, noise_scale_.value());
-  IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_.iekf);
-  estimate_ = update.estimate;
-  noise_scale_.learn(update.at, estimate_.covariance, segment.measured, expected.diagonal());
-  if (update.weight > 0.0) {
-    scores_.add(update.at, estimate_.covariance, segment, noise / update.weight);
+  IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
+  if (!full_ && !update.at.by_parameter.isZero(0.0)) {
+    keep(inputs, segment, active);
   }
-  keep(inputs, segment, update.at, heard);
   if (settings_.noise.adapt) {
-    stated_ = scores_.std_factors(before_.covariance, estimate_.covariance);
+    stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);
   }
   return update;
 }

@@ -19,7 +19,7 @@ double kept(double distance, const DriftSettings& settings) {
 double travel(const BatchDatum& datum) {
   double sum = 0.0;
   const DriveWindow window{.start = datum.segment.start, .end = datum.segment.end};
-  for (const DriveStep& step : drive_steps(*datum.inputs, {}, window).steps) {
+  for (const DriveStep& step : drive_steps(datum.inputs, {}, window).steps) {
     sum += std::hypot(step.forward, step.left) + kTurnRadius * std::abs(step.turn);
   }
   return sum;
@@ -42,7 +42,7 @@ std::vector<Estimate> rts_smooth(const MotionModel& model, const Estimate& prior
   std::vector<double> distances;
   for (const BatchDatum& datum : data) {  // forward: drift over the last segment's travel, then learn
     predicted.push_back(smoothed.empty() ? prior : drifted(smoothed.back(), prior, distances.back(), drift));
-    const IekfUpdate update = iekf_update(model, predicted.back(), *datum.inputs, datum.segment, datum.noise, iekf);
+    const IekfUpdate update = iekf_update(model, predicted.back(), datum.inputs, datum.segment, datum.noise, iekf);
     smoothed.push_back(update.estimate);
     distances.push_back(travel(datum));
   }

@@ -26,7 +26,7 @@ std::vector<BatchDatum> data_of(const MotionModel& model, const tests::Simulated
   std::vector<BatchDatum> data;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(model.size());
   for (const Segment& segment : drive.segments) {
-    data.push_back({&drive.inputs, segment, tests::window_noise(model, zero, drive.inputs, segment, kNoise)});
+    data.push_back({drive.inputs, segment, tests::window_noise(model, zero, drive.inputs, segment, kNoise)});
   }
   return data;
 }
@@ -41,7 +41,7 @@ struct LinearDrive {
     for (int i = 1; i < 18; ++i) {
       Segment segment{.start = i + 0.3, .end = i + 1.3};
       segment.measured = {0.55 + 0.1 * i + 0.03 * std::sin(3.0 * i), 0.02 * i, 0.001};
-      data.push_back({&inputs, segment, 0.01 * Eigen::Matrix3d::Identity(), shared});
+      data.push_back({inputs, segment, 0.01 * Eigen::Matrix3d::Identity(), shared});
     }
     data.front().shared.setZero();
   }

@@ -2,7 +2,10 @@
 // Levenberg-Marquardt MAP over all segments at once, with a Huber loss.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,7 +26,7 @@ struct BatchSettings {
 
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
 struct BatchDatum {
-  const InputTrack* inputs;
+  InputTrack inputs;
   Segment segment;
   Eigen::Matrix3d noise;
   /// Covariance of its error with that of the datum before.
@@ -38,9 +41,58 @@ struct BatchFit {
   std::vector<SegmentLinearization> at;  ///< the data, at the estimate
 };
 
-/// `at_start` are the data at the search's start, where they were linearised there before.
+/// Normal equations of the robust MAP problem at one point.
+struct NormalEquations {
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;  ///< of half the cost, downhill
+  double cost;
+  std::vector<SegmentLinearization> at;  ///< the data
+};
+
+/// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.
+struct NewError {
+  Eigen::Matrix3d by_before;          ///< of what was new in the one before, how much comes again
+  Eigen::LLT<Eigen::Matrix3d> noise;  ///< of what is new
+};
+
+/// The search for the fit in slices of bounded work, so that it can run beside something that must not wait.
+class BatchSearch {
+ public:
+  /// `at_start` are the data at the search's start, where they were linearised there before.
+  /// \throws std::invalid_argument when sizes do not fit or there is no datum.
+  BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, BatchSettings settings,
+              std::vector<SegmentLinearization> at_start = {});
+
+  /// Linearises `segments` data at most; whether there is more to do.
+  bool advance(std::size_t segments);
+  /// What was found; the search must be over.
+  BatchFit result() &&;
+  const std::vector<BatchDatum>& data() const { return data_; }
+
+ private:
+  NormalEquations normal_equations(std::vector<SegmentLinearization> at) const;
+  void propose();
+  void judge(NormalEquations next);
+
+  MotionModel model_;
+  Estimate prior_;
+  std::vector<BatchDatum> data_;
+  BatchSettings settings_;
+  std::vector<NewError> errors_;
+  Eigen::MatrixXd prior_information_;
+  Eigen::VectorXd mean_;       ///< the best so far
+  Eigen::VectorXd candidate_;  ///< that is being linearised
+  std::vector<SegmentLinearization> at_;  ///< the first data, at the candidate
+  std::optional<NormalEquations> now_;    ///< at the mean; nothing before the start is linearised
+  double damping_;
+  double predicted_ = 0.0;  ///< decrease of the cost, of the step to the candidate
+  BatchFit fit_;
+  bool over_ = false;
+};
+
+/// The same at once.
 /// \throws std::invalid_argument when sizes do not fit or there is no datum.
-BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::span<const BatchDatum> data,
+BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::vector<BatchDatum> data,
                    const BatchSettings& settings = {}, std::vector<SegmentLinearization> at_start = {});
 
 }  // namespace slipwise

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learning one model segment by segment: prior that follows the speeds, IEKF update, noise that follows the residuals,
-// and the first segments learned anew where noise and linearisation were guesses.
+// and refits of the first segments, where noise and linearisation were guesses.
 #pragma once
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
-#include "slipwise/estimate/batch.hpp"
+#include "slipwise/estimate/filter_refit.hpp"
+#include "slipwise/estimate/filter_state.hpp"
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/noise_scale.hpp"
 #include "slipwise/estimate/prior.hpp"
@@ -26,10 +28,13 @@ class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
-  /// Learns one segment. `speeds` are those seen up to the segment's end. After 8, 16, ... 256 segments all of them are
-  /// learned anew, but not so many for a filter to whose predictions nobody listens (`heard`). The update returned is
-  /// that of the segment alone.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds, bool heard = true);
+  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 16, ... 256 segments a refit of all
+  /// of them begins, but of not so many for a filter that has no weight (`active`); it takes effect a sixteenth as many
+  /// segments later, whether `refit_slice` was called meanwhile or not. The update returned is that of the segment
+  /// alone.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds, bool active = true);
+  /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
+  bool refit_slice();
 
   /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
   /// robot's, not the ground's: they stay as learned.
@@ -37,41 +42,38 @@ class CausalFilter {
 
   const MotionModel& model() const { return model_; }
   /// What learning goes on from: the noise is taken to be of the shape given.
-  const Estimate& estimate() const { return estimate_; }
+  const Estimate& estimate() const { return state_.estimate; }
   /// The same with a covariance that also holds where it is not, or where slip is correlated in time.
   Estimate stated() const;
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Learned factor of the noise variances of (x, y, theta).
-  Eigen::Vector3d noise_scale() const { return noise_scale_.value(); }
+  Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }
 
  private:
-  struct Kept {
-    InputTrack inputs;
-    Segment segment;
-  };
-
   void follow(const ReferenceSpeeds& speeds);
-  Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment) const;
-  void learn_noise(const SegmentLinearization& at, const Segment& segment);
-  void keep(const InputTrack& inputs, const Segment& segment, const SegmentLinearization& at, bool heard);
-  void relearn();
-  struct KeptData;
-  KeptData kept_data() const;
+  void keep(const InputTrack& inputs, const Segment& segment, bool active);
+  void end_refit();
+
+  /// A refit that is under way.
+  struct Refit {
+    FilterRefit work;
+    Eigen::VectorXd slip_std;  ///< of the prior under which it began
+    std::size_t until;         ///< segments after which it takes effect
+  };
 
   MotionModel model_;
   CausalFilterSettings settings_;
   ReferenceSpeeds speeds_{};
   bool started_ = false;
-  Estimate estimate_;
-  Estimate before_;         ///< what was known before the segments that are kept
-  std::vector<Kept> kept_;  ///< the first since the start, or since the ground changed
-  std::size_t since_ = 0;   ///< segments since then
+  FilterState state_;
+  Estimate before_;                  ///< what was known before the segments that are kept
+  std::vector<DrivenSegment> kept_;  ///< the first since the start, or since the terrain changed
+  bool full_ = false;                ///< no more are kept
   Eigen::VectorXd slip_std_;
-  NoiseScale noise_scale_;
-  ScoreCovariance scores_;
   Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
+  std::optional<Refit> refit_;
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a causal filter has learned of one model: its posterior, the size of the noise, and how scores scatter.
+#pragma once
+
+#include "slipwise/estimate/iekf.hpp"
+#include "slipwise/estimate/noise_scale.hpp"
+#include "slipwise/estimate/score_covariance.hpp"
+
+namespace slipwise {
+
+struct FilterState {
+  Estimate estimate;
+  NoiseScale noise_scale;
+  ScoreCovariance scores;
+
+  FilterState(const MotionModel& model, const NoiseSettings& noise)
+      : estimate{}, noise_scale(noise), scores(model) {}
+
+  /// Learns one segment.
+  IekfUpdate learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,
+                   const NoiseSettings& noise, const IekfSettings& iekf);
+};
+
+/// Covariance of a segment's measured chart under the noise model alone.
+Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise);
+
+}  // namespace slipwise
