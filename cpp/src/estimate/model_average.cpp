@@ -111,22 +111,49 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
 }
 
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment, bool active) {
+  start(inputs, segment, active);
+  while (advance()) {
+  }
+  return update();
+}
+
+void ModelAverage::start(const InputTrack& inputs, const Segment& segment, bool active) {
+  learning_.emplace(DrivenSegment{.inputs = inputs, .segment = segment});
+  active_ = active;
+  updates_.clear();
   speeds_.see(inputs, segment);
   change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(inputs, segment);
   if (change_.alarm) {
     doubt();
   }
-  std::vector<IekfUpdate> updates;
+}
+
+bool ModelAverage::advance() {
+  const std::size_t i = updates_.size();
+  if (i < filters_.size()) {
+    const bool active = active_ && weights_[static_cast<Eigen::Index>(i)] > kHeard;
+    const DrivenSegment& driven = learning_.value();
+    updates_.push_back(filters_[i].learn(driven.inputs, driven.segment, speeds_.reference(), active));
+    return true;
+  }
+  update_weights();
+  return false;
+}
+
+bool ModelAverage::refit_slice() {
+  return std::ranges::any_of(filters_, [](CausalFilter& filter) { return filter.refit_slice(); });
+}
+
+void ModelAverage::update_weights() {
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const bool heard = active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
-    updates.push_back(filters_[i].learn(inputs, segment, speeds_.reference(), heard));
-    innovations.push_back(updates.back().innovation);
-    covariances.push_back(updates.back().innovation_covariance);
+  for (const IekfUpdate& update : updates_) {
+    innovations.push_back(update.innovation);
+    covariances.push_back(update.innovation_covariance);
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
+  heaviest_ = static_cast<std::size_t>(heaviest);
   const Eigen::Index rivals = weights_.size() / prior_.size();
   const Eigen::VectorXd prior = prior_.replicate(rivals, 1) / static_cast<double>(rivals);
   weights_ =
@@ -138,7 +165,6 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment,
       settle();
     }
   }
-  return updates[static_cast<std::size_t>(heaviest)];
 }
 
 /// By what the average predicted as it was before the segments that are tested together: the noise factors and the

@@ -50,11 +50,14 @@ CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& sett
   refresh();
 }
 
-void CascadedModel::learn_slip(const DrivenSegment& segment) {
-  slip_.learn(segment.inputs, segment.segment);
+bool CascadedModel::advance_slip() {
+  if (slip_.advance()) {
+    return true;
+  }
   if (stronger(slip_.change(), change_since_)) {
     change_since_ = slip_.change();
   }
+  return false;
 }
 
 void CascadedModel::learn_actuator(const WheelSegment& segment) {

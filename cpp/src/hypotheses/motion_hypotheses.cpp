@@ -111,10 +111,17 @@ void MotionHypotheses::join_cascade() {
   evidence_[index(Structure::Cascaded)] = evidence_[index(Structure::Joint)];
 }
 
-void MotionHypotheses::learn_slip(const DrivenSegment& segment) {
+void MotionHypotheses::start_slip(const DrivenSegment& segment) {
   if (cascaded_) {
-    cascaded_->learn_slip(segment);
+    cascaded_->start_slip(segment);
   }
+}
+
+bool MotionHypotheses::advance_slip() { return cascaded_ && cascaded_->advance_slip(); }
+
+bool MotionHypotheses::refit_slice() {
+  return joint_.refit_slice() || (tried(Structure::Direct) && direct_->refit_slice()) ||
+         (cascaded_ && cascaded_->refit_slice());
 }
 
 void MotionHypotheses::learn_actuator(const WheelSegment& segment) {
@@ -146,44 +153,48 @@ bool MotionHypotheses::advance() {
   if (!segment_) {
     return false;
   }
-  if (predicted_.size() < to_predict_.size()) {
-    predicted_.push_back(predict(to_predict_[predicted_.size()]));
-    return true;
+  if (predicted_.size() == to_predict_.size()) {
+    update_weights();
+    drop_refuted();
+    ++count_;
+    segment_.reset();
+    return false;
   }
-  update_weights();
-  drop_refuted();
-  ++count_;
-  segment_.reset();
-  return false;
+  const Structure structure = to_predict_[predicted_.size()];
+  ModelAverage* average = average_of(structure);
+  if (average == nullptr) {
+    predicted_.push_back(predict(structure));
+  } else if (!averaging_) {
+    average->start(segment_->inputs, segment_->segment, may_predict(structure));
+    averaging_ = true;
+  } else if (!average->advance()) {
+    predicted_.push_back(learned(*average, structure));
+    averaging_ = false;
+  }
+  return true;
 }
 
-/// Predicts the segment; what learns it itself does so at once.
-ScoredSegment MotionHypotheses::predict(Structure structure) {
-  StructureUpdate& update = updates_[index(structure)];
-  ScoredSegment scored{};
-  switch (structure) {
-    case Structure::Joint:
-      return learned(joint_, structure);
-    case Structure::Direct:
-      return learned(direct_.value(), structure);
-    case Structure::Cascaded:
-      scored = cascaded_.value().predict(*segment_);
-      break;
-    case Structure::Baseline: {
-      const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-      scored = baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
-      break;
-    }
-    case Structure::CascadedWithLimits:
-      break;  // learned off line
+/// What learns the segments themselves.
+ModelAverage* MotionHypotheses::average_of(Structure structure) {
+  if (structure == Structure::Joint) {
+    return &joint_;
   }
-  update.nis = scored.nis;
+  return structure == Structure::Direct && direct_ ? &*direct_ : nullptr;
+}
+
+/// Predicts the segment by what is learned elsewhere, or not at all.
+ScoredSegment MotionHypotheses::predict(Structure structure) {
+  const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
+  const ScoredSegment scored =
+      structure == Structure::Cascaded && cascaded_
+          ? cascaded_->predict(*segment_)
+          : baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
+  updates_[index(structure)].nis = scored.nis;
   return scored;
 }
 
-ScoredSegment MotionHypotheses::learned(ModelAverage& average, Structure structure) {
-  const bool active = may_predict(structure);
-  const IekfUpdate update = average.learn(segment_->inputs, segment_->segment, active);
+ScoredSegment MotionHypotheses::learned(const ModelAverage& average, Structure structure) {
+  const IekfUpdate& update = average.update();
   updates_[index(structure)] = {.nis = update.nis, .weight = update.weight, .change = average.change()};
   return {update.innovation, update.innovation_covariance, update.nis};
 }

@@ -171,6 +171,7 @@ void MotionLearner::take_in() {
 /// One bounded piece; whether there is more.
 bool MotionLearner::work() {
   if (waiting_.empty()) {
+    hypotheses_.refit_slice();
     return false;
   }
   bool more = false;
@@ -181,7 +182,10 @@ bool MotionLearner::work() {
       wheel_segments_.pop_front();
     }
   } else if (auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
-    hypotheses_.learn_slip(slip->driven);
+    if (!started_) {
+      hypotheses_.start_slip(slip->driven);
+    }
+    more = !started_ || hypotheses_.advance_slip();
   } else if (auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
     judge(*target);
   } else {

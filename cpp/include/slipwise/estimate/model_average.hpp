@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "slipwise/estimate/change_detector.hpp"
 #include "slipwise/estimate/driven_speeds.hpp"
 #include "slipwise/estimate/weighing.hpp"
+#include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
 
@@ -39,10 +41,17 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
-  /// weighed most before. Where the average is not `active`, since others predict better, the first segments are
-  /// learned again less often, as those of a filter without weight are.
+  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model that
+  /// weighed most before. Where the average is not `active`, since others predict better, refits are as rare as those of
+  /// a filter without weight.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
+  /// The same piece by piece: `advance` does one, and says whether there is more to do; then `update` is that of the
+  /// segment. What was learned before stands until then, but for the models that have learned the segment.
+  void start(const InputTrack& inputs, const Segment& segment, bool active = true);
+  bool advance();
+  const IekfUpdate& update() const { return updates_[heaviest_]; }
+  /// Does a bounded slice of the models' refits; whether there was any to do. Results do not depend on it.
+  bool refit_slice();
 
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
@@ -55,6 +64,7 @@ class ModelAverage {
 
  private:
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  void update_weights();
   void doubt();
   void settle();
   Eigen::VectorXd basis_weights() const;
@@ -72,6 +82,10 @@ class ModelAverage {
   std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;
+  std::optional<DrivenSegment> learning_;  ///< the segment that is being learned
+  bool active_ = true;               ///< as it was started
+  std::vector<IekfUpdate> updates_;  ///< of the models that have learned it
+  std::size_t heaviest_ = 0;         ///< model before it
   int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
 };
 

@@ -29,8 +29,12 @@ class CascadedModel {
   /// `slip` has learned nothing yet; its inputs are wheel speeds.
   CascadedModel(ModelAverage slip, const CausalFilterSettings& settings);
 
-  /// Learns the slip from a segment whose inputs are wheel speeds.
-  void learn_slip(const DrivenSegment& segment);
+  /// Begins to learn the slip from a segment whose inputs are wheel speeds; `advance_slip` does a piece of it, and says
+  /// whether there is more.
+  void start_slip(const DrivenSegment& segment) { slip_.start(segment.inputs, segment.segment); }
+  bool advance_slip();
+  /// Does a bounded slice of the refits; whether there was any to do.
+  bool refit_slice() { return slip_.refit_slice(); }
   /// Learns the actuator model from commands and wheel speeds.
   void learn_actuator(const WheelSegment& segment);
   /// Predicts a segment of the commands by what was known when `refresh` was called last.

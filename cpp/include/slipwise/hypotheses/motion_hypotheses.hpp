@@ -51,9 +51,14 @@ class MotionHypotheses {
   void start(const DrivenSegment& segment, bool wheels_known);
   /// Does a bounded piece of it; whether there is more to do.
   bool advance();
-  /// Learns the parts of the cascaded structure.
-  void learn_slip(const DrivenSegment& segment);
+  /// Begins to learn the slip of the cascaded structure; `advance_slip` does a piece of it, and says whether there is
+  /// more.
+  void start_slip(const DrivenSegment& segment);
+  bool advance_slip();
+  /// Learns its actuator.
   void learn_actuator(const WheelSegment& segment);
+  /// Does a bounded slice of the refits of all filters; whether there was any to do. Results do not depend on it.
+  bool refit_slice();
   /// Gives all slip parameters `fraction` of their prior variance back: another sensor says that the terrain changed.
   void forget(double fraction);
 
@@ -77,7 +82,8 @@ class MotionHypotheses {
   bool may_predict(Structure structure) const;
   void join_cascade();
   ScoredSegment predict(Structure structure);
-  ScoredSegment learned(ModelAverage& average, Structure structure);
+  ModelAverage* average_of(Structure structure);
+  ScoredSegment learned(const ModelAverage& average, Structure structure);
   void update_weights();
   void drop_refuted();
   std::vector<Structure> structures() const;
@@ -97,6 +103,7 @@ class MotionHypotheses {
   std::optional<DrivenSegment> segment_;  ///< that is being learned
   std::vector<Structure> to_predict_;     ///< it, in this order
   std::vector<ScoredSegment> predicted_;  ///< so far
+  bool averaging_ = false;                ///< an average is learning it
 };
 
 }  // namespace slipwise
