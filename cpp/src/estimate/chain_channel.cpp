@@ -19,27 +19,11 @@ constexpr double kLeastSize = 1e-4 * 1e-4;             // nothing is computed or
 constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
 constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
 constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
-constexpr double kSettled = 0.1;                       // in standard deviations
-constexpr std::array kShares{1.0, 0.5, 0.25};          // of a step, until one helps
-constexpr double kLittle = 0.1;                        // what a step has to gain of -2 log posterior
-constexpr int kMostPasses = 7;                         // over all windows; with more of them it goes on from there
-constexpr int kMostAnew = 30;                          // the same from a start elsewhere
-constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowShare = 3, kSlowLag = 4;
+constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowLag = 4;
 constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
-constexpr double kApart = 1.4;                        // in the logarithm: lags closer than that may pass for each other
 
 /// Of the state of the lane that is followed as the i-th.
 Eigen::Index place(std::size_t i) { return kChannelParameters + kLaneStates * static_cast<Eigen::Index>(i); }
-
-/// All in one lag, and a slower one beside it.
-ChannelParameters without_slow_part(ChannelParameters chain) {
-  const double share = chain[kSlowShare];
-  const double lag = (1.0 - share) * std::exp(chain[kLag]) + share * std::exp(chain[kSlowLag]);
-  chain[kLag] = lag > 0.0 ? std::log(lag) : chain[kLag];
-  chain[kSlowShare] = 0.0;
-  chain[kSlowLag] = chain[kLag] + kApart;
-  return chain;
-}
 
 }  // namespace
 
@@ -80,10 +64,6 @@ bool ChainChannel::begin(const ChannelWindow& window) {
 void ChainChannel::lose_track() {
   live_.clear();
   joint_ = estimate();
-}
-
-DriveNoiseMeans ChainChannel::noise_means(const WheelMeans& seen) const {
-  return drive_noise_means(model_.noise, seen.edges, seen.samples);
 }
 
 Passage ChainChannel::foretell(const ChannelWindow& window, const DriveNoiseMeans& noise,
@@ -204,7 +184,7 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
   }
   const WheelMeans& seen = window.seen;
   const Eigen::VectorXd z = measured(seen);
-  const DriveNoiseMeans noise = noise_means(seen);
+  const DriveNoiseMeans noise = drive_noise_means(model_.noise, seen.edges, seen.samples);
   Passage expected = foretell(window, noise, joint_.mean);
   const Eigen::VectorXd innovation = z - expected.seen();
   const Eigen::MatrixXd s = innovation_covariance(joint_, expected);
@@ -240,48 +220,10 @@ ChannelUpdate ChainChannel::learn(const ChannelWindow& window, bool carefully) {
   return update;
 }
 
-/// From a start to where all windows lead to together: Gauss-Newton, whose steps are halved until they help. Lag and
-/// delay zigzag towards it, and more is gained by the next windows than by the last of these steps.
-ChainPass ChainChannel::fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise,
-                            ChannelParameters point, int most_passes) const {
-  ChainPass best = chain_pass(model_, size_, past, noise, point);
-  int left = most_passes - 1;
-  double gained = kLittle;
-  while (gained >= kLittle && left > 0) {
-    const ChannelParameters full = best.joint.mean.head<kChannelParameters>() - point;
-    const ChannelParameters std = best.joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
-    if ((full.cwiseAbs() - kSettled * std).maxCoeff() <= 0.0) {
-      break;
-    }
-    gained = 0.0;
-    for (auto share = kShares.begin(); share != kShares.end() && gained <= 0.0 && left > 0; ++share, --left) {
-      ChainPass next = chain_pass(model_, size_, past, noise, point + *share * full);
-      gained = best.cost - next.cost;
-      if (gained > 0.0) {
-        point += *share * full;
-        best = std::move(next);
-      }
-    }
-  }
-  return best;
-}
-
-void ChainChannel::relearn(std::span<const ChannelWindow> past) {
-  std::vector<DriveNoiseMeans> noise;
-  for (const ChannelWindow& window : past) {
-    noise.push_back(noise_means(window.seen));
-  }
-  ChainPass best = fit(past, noise, joint_.mean.head<kChannelParameters>(), kMostPasses);
-  const ChannelParameters found = best.joint.mean.head<kChannelParameters>();
-  if (found[kSlowLag] < found[kLag] + kApart) {
-    ChainPass other = fit(past, noise, without_slow_part(found), kMostAnew);
-    if (other.cost < best.cost) {
-      best = std::move(other);
-    }
-  }
-  joint_ = std::move(best.joint);
-  live_ = std::move(best.live);
-  until_ = best.until;
+void ChainChannel::take(ChainPass found) {
+  joint_ = std::move(found.joint);
+  live_ = std::move(found.live);
+  until_ = found.until;
 }
 
 }  // namespace slipwise

@@ -19,9 +19,10 @@ constexpr std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time
                                              {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 5.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 25.0}}};
-constexpr std::size_t kFirst = 4, kLast = 256;  // windows from which and up to which all are learned anew
+constexpr std::size_t kFirst = 4, kLast = 256;  // windows from which and up to which all are refitted
+constexpr std::size_t kAtOnce = 16;             // windows that are refitted at once: few enough for that
 constexpr double kGrowth = 1.25;                // of their number, until that is done again
-constexpr double kHeard = 0.01;                 // weight from which a rival learns anew and has a say
+constexpr double kHeard = 0.01;                 // weight from which a rival is refitted and has a say
 
 }  // namespace
 
@@ -61,12 +62,25 @@ double ChainLearner::Bank::learn(const ChannelWindow& window, std::size_t learne
   return nis;
 }
 
-void ChainLearner::Bank::relearn(std::span<const ChannelWindow> past) {
+void ChainLearner::Bank::begin_refit(std::size_t windows) {
+  refits.clear();
   for (std::size_t i = 0; i < rivals.size(); ++i) {
-    if (weights[static_cast<Eigen::Index>(i)] > kHeard) {
-      rivals[i].relearn(past);
+    const bool active = weights[static_cast<Eigen::Index>(i)] > kHeard;
+    refits.push_back(active ? std::optional(ChannelRefit(rivals[i], windows)) : std::nullopt);
+  }
+}
+
+bool ChainLearner::Bank::refit_slice(std::span<const ChannelWindow> past) {
+  return std::ranges::any_of(refits, [&](auto& refit) { return refit && refit->advance(past); });
+}
+
+void ChainLearner::Bank::end_refit() {
+  for (std::size_t i = 0; i < refits.size(); ++i) {
+    if (refits[i]) {
+      rivals[i] = refits[i]->result();
     }
   }
+  refits.clear();
 }
 
 /// Mean and covariance of the weighed rivals. One that is as good as refuted has no say: weight is dealt out anew at
@@ -94,20 +108,39 @@ ChainUpdate ChainLearner::learn(const InputTrack& inputs, const InputTrack& whee
     update.nis += bank.learn(window, learned_);
   }
   ++learned_;
-  if (learned_ > kLast) {
-    return update;
+  if (learned_ <= kLast || refitted_after_) {
+    past_.push_back(std::move(window));
   }
-  past_.push_back(std::move(window));
-  if (learned_ >= next_) {
+  if (refitted_after_ && learned_ >= *refitted_after_) {
+    end_refit();
+  }
+  if (learned_ >= next_ && learned_ <= kLast && !refitted_after_) {
     next_ = static_cast<std::size_t>(std::ceil(kGrowth * static_cast<double>(learned_)));
+    refitted_after_ = learned_ + std::max<std::size_t>(1, learned_ / 32);
     for (Bank& bank : banks_) {
-      bank.relearn(past_);
+      bank.begin_refit(learned_);
+    }
+    if (learned_ < kAtOnce) {
+      end_refit();
     }
   }
-  if (learned_ == kLast) {
+  if (learned_ >= kLast && !refitted_after_) {
     past_ = {};
   }
   return update;
+}
+
+bool ChainLearner::refit_slice() {
+  return std::ranges::any_of(banks_, [&](Bank& bank) { return bank.refit_slice(past_); });
+}
+
+void ChainLearner::end_refit() {
+  while (refit_slice()) {
+  }
+  for (Bank& bank : banks_) {
+    bank.end_refit();
+  }
+  refitted_after_.reset();
 }
 
 Estimate ChainLearner::estimate() const {

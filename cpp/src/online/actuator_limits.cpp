@@ -69,6 +69,7 @@ Estimate learned_actuator(std::span<const WheelSegment> wheels, const CausalFilt
     const InputTrack commands = limits == nullptr ? segment.commands : limited_track(segment.commands, *limits);
     learner.learn(commands, segment.wheels, segment.start, segment.end);
   }
+  learner.end_refit();
   return learner.estimate();
 }
 

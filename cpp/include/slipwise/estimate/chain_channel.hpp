@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <functional>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "slipwise/estimate/chain_pass.hpp"
@@ -29,8 +28,9 @@ class ChainChannel {
 
   /// Learns a window. It goes on from the last one where it begins at its end; otherwise nothing is known of the drive.
   ChannelUpdate learn(const ChannelWindow& window, bool carefully = true);
-  /// Learns all windows so far anew from the prior, linearised at the parameters that all of them lead to together.
-  void relearn(std::span<const ChannelWindow> past);
+  /// Takes over what a refit found, and has learned since.
+  void take(ChainPass found);
+  const ChannelModel& model() const { return model_; }
 
   Estimate estimate() const;  ///< of the parameters
   /// Variance of one wheel speed's noise, as learned [(m/s)^2 or (rad/s)^2].
@@ -43,15 +43,12 @@ class ChainChannel {
   Passage foretell(const ChannelWindow& window, const DriveNoiseMeans& noise, const Eigen::VectorXd& state) const;
   Eigen::VectorXd foretell_values(const ChannelWindow& window, const DriveNoiseMeans& noise,
                                   const Eigen::VectorXd& state) const;
-  DriveNoiseMeans noise_means(const WheelMeans& seen) const;
   Eigen::VectorXd measured(const WheelMeans& seen) const;
   double mean_nis(const WheelMeans& seen, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) const;
   void learn_size(const Eigen::VectorXd& innovation, const Cholesky& covariance, const Eigen::MatrixXd& noise);
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd bending(const Values& values, const PassagePoint& point) const;
   void carry_times(const Estimate& before);
-  ChainPass fit(std::span<const ChannelWindow> past, std::span<const DriveNoiseMeans> noise, ChannelParameters point,
-                int most_passes) const;
 
   ChannelModel model_;
   std::vector<std::size_t> live_;  ///< lanes that are followed, by their places among the parts

@@ -4,11 +4,13 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "slipwise/estimate/causal_filter.hpp"
 #include "slipwise/estimate/chain_channel.hpp"
+#include "slipwise/estimate/channel_refit.hpp"
 #include "slipwise/estimate/weighing.hpp"
 
 namespace slipwise {
@@ -22,13 +24,18 @@ struct ChainUpdate {
 /// how well they foretell the wheels; the belief is their mixture.
 class ChainLearner {
  public:
-  /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, nothing is
-  /// learned anew before they are all learned.
+  /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, no refit begins
+  /// before they are all learned.
   explicit ChainLearner(const CausalFilterSettings& settings, std::size_t waiting = 0);
 
   /// Learns the wheel speeds from `start` to `end` [s], in input stamps. Nothing later is used.
   /// \throws std::invalid_argument when the end is not after the start.
+  /// After 4, 5, ... 256 windows a refit of all of them begins, which takes effect a thirty-second as many windows later.
   ChainUpdate learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end);
+  /// Does a bounded slice of the refit's work; whether there was any to do. Results do not depend on it.
+  bool refit_slice();
+  /// A refit that is under way takes effect now.
+  void end_refit();
 
   const MotionModel& model() const { return model_; }  ///< the chain alone
   Estimate estimate() const;
@@ -39,9 +46,12 @@ class ChainLearner {
     std::vector<Eigen::Index> places;  ///< of its parameters among the model's
     std::vector<ChainChannel> rivals;
     Eigen::VectorXd weights;
+    std::vector<std::optional<ChannelRefit>> refits;  ///< of the rivals; none of those without weight
 
     double learn(const ChannelWindow& window, std::size_t learned);
-    void relearn(std::span<const ChannelWindow> past);
+    void begin_refit(std::size_t windows);
+    bool refit_slice(std::span<const ChannelWindow> past);
+    void end_refit();
     Estimate mixture() const;
   };
 
@@ -49,7 +59,8 @@ class ChainLearner {
   Eigen::VectorXd prior_std_;
   std::vector<Bank> banks_;
   std::size_t learned_ = 0;
-  std::size_t next_;  ///< windows after which all are learned anew
+  std::size_t next_;                          ///< windows after which a refit begins
+  std::optional<std::size_t> refitted_after_;  ///< windows after which the one under way takes effect
   std::vector<ChannelWindow> past_;
 };
 

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
-#include <span>
 #include <vector>
 
 #include "slipwise/estimate/iekf.hpp"
@@ -36,11 +35,39 @@ struct ChainPass {
   double until = -std::numeric_limits<double>::infinity();  ///< [s] the end
 };
 
+/// A lane's state for given parameters, and how it moves with them.
+struct FollowedLane {
+  std::size_t place;  ///< among the parts
+  LaneVector mean;
+  Eigen::Matrix<double, kLaneStates, kLaneStates> covariance;
+  Eigen::Matrix<double, kLaneStates, kChannelParameters> by_chain;
+};
+
 /// For given parameters the chain is linear in its state, and the lanes are independent: small filters follow them
 /// exactly, and their likelihood is that of the parameters. How their innovations move with the parameters tells these
-/// (Friedland 1969): the joint filter, linearised along the way. `size` is that of the noise; `noise` has one for each
-/// window.
-ChainPass chain_pass(const ChannelModel& model, double size, std::span<const ChannelWindow> past,
-                     std::span<const DriveNoiseMeans> noise, const ChannelParameters& point);
+/// (Friedland 1969): the joint filter, linearised along the way. `size` is that of the noise.
+class ChannelWalk {
+ public:
+  /// `model` must outlive the walk.
+  ChannelWalk(const ChannelModel& model, double size, const ChannelParameters& point);
+  /// Learns a window that follows all before it; `noise` is that of its means.
+  void learn(const ChannelWindow& window, const DriveNoiseMeans& noise);
+  ChainPass result() const;
+
+ private:
+  struct Observed;
+  void begin(const ChannelWindow& window);
+  Observed observe(const FollowedLane& followed, const ChannelWindow& window, const DriveNoiseMeans& noise) const;
+  void update(FollowedLane& lane, const Observed& seen, double size, const DriveNoiseMeans& noise);
+
+  const ChannelModel* model_;
+  double size_;
+  ChannelParameters point_;
+  double cost_;
+  Eigen::Matrix<double, kChannelParameters, kChannelParameters> information_;  ///< of the parameters
+  ChannelParameters gradient_;  ///< of half the cost by them, downhill
+  std::vector<FollowedLane> lanes_;
+  double until_ = -std::numeric_limits<double>::infinity();
+};
 
 }  // namespace slipwise
