@@ -293,6 +293,9 @@ const Knowledge& MotionLearner::known_at(double t) const {
 /// The last segments that were complete at `t` [s].
 std::vector<DrivenSegment> MotionLearner::recent_before(double t) const {
   std::vector<DrivenSegment> found;
+  if (!settings_.learn_disturbance) {
+    return found;
+  }
   for (auto segment = recent_.rbegin(); segment != recent_.rend() && found.size() < kRecent; ++segment) {
     if (segment->known_at <= t + kRounding && segment->segment.start > t - kRecentSeconds) {
       found.push_back(*segment);

@@ -83,11 +83,11 @@ def push(learner: _core.MotionLearner, item: Item) -> None:
 
 def inputs_ahead(run: CsvRun, place: int, stream: str, end: float) -> np.ndarray:
     """Return the inputs of a run behind item `place` and until `end` [s]; rows of (t, v, vy, omega), [N, 4]."""
-    rows = []
+    rows = list[Numbers]()
     for name, numbers in run.items[place + 1 :]:
         if numbers[0] > end:
             break
-        if name == stream:
+        if name == stream and (not rows or numbers[0] > rows[-1][0]):  # a stamp that comes again is rejected
             t, v, omega, vy = numbers
             rows.append((t, v, vy, omega))
     return np.array(rows).reshape(-1, 4)

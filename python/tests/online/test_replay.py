@@ -44,9 +44,12 @@ def new_learner(input_name: str, horizons: Sequence[float]) -> _core.MotionLearn
     return _core.MotionLearner(core_settings(Settings(), input_name, horizons))
 
 
-def differences(path: Path, input_name: str, log: Log) -> tuple[int, list[str]]:
+def differences(
+    path: Path, input_name: str, log: Log, horizons: tuple[float, ...]
+) -> tuple[int, list[str]]:
     """Push a file's rows; return how many predictions were compared, and those that differ from `evaluate`'s."""
-    result = evaluate(log, input=input_name, options=EvaluationOptions(methods=("auto",)))
+    options = EvaluationOptions(horizons=horizons, methods=("auto",))
+    result = evaluate(log, input=input_name, options=options)
     learner, compared, differing = new_learner(input_name, result.horizons), 0, list[str]()
     names = {run.name: k for k, run in enumerate(log.runs)}
     for run in read_runs(path):
@@ -85,9 +88,13 @@ def difference(p: Predictions, i: int, other: _core.PredictedPath) -> list[str]:
     return [f"{where}: {', '.join(unequal)} (pose by {largest:g})"] if unequal else []
 
 
-def same_model(content: schema.ModelFile, learned: _core.LearnedModel) -> None:
-    """Both hold the same, to the last bit."""
-    posterior, noise = learned.motion, content.noise
+def same_model(
+    content: schema.ModelFile, learned: _core.LearnedModel, limits: _core.ActuatorLimits | None
+) -> None:
+    """Both hold the same, to the last bit; `limits` are what was found of the actuator's."""
+    kept = None if limits is None else limits.posterior
+    assert (content.limits is not None) == (kept is not None)
+    posterior, noise = kept or learned.motion, content.noise
     assert [p.name for p in content.parameters] == [info.name for info in posterior.model.parameters]
     assert [p.value for p in content.parameters] == posterior.estimate.mean.tolist()
     assert [p.prior_std for p in content.parameters] == list(posterior.prior_std)
@@ -103,9 +110,11 @@ def same_model(content: schema.ModelFile, learned: _core.LearnedModel) -> None:
     assert content.range.speed + content.range.yaw_rate == list(learned.range)
 
 
-def check_predictions(folder: Path, name: str, input_name: str) -> None:
+def check_predictions(
+    folder: Path, name: str, input_name: str, horizons: tuple[float, ...] = JUDGING_HORIZONS
+) -> None:
     path = folder / f"{name}.csv.gz"
-    compared, differing = differences(path, input_name, open_log(path))
+    compared, differing = differences(path, input_name, open_log(path), horizons)
     assert compared > 0
     assert not differing, f"{len(differing)} of {compared} predictions differ: {differing[0]}"
 
@@ -117,7 +126,9 @@ def check_model(folder: Path, name: str, input_name: str) -> None:
         learner.start_run()
         for item in run.items:
             push(learner, item)
-    same_model(calibrate(open_log(path), input=input_name).model.content, learner.model())
+    learner.end_run()
+    limits = learner.find_limits(Settings().vehicle.track)
+    same_model(calibrate(open_log(path), input=input_name).model.content, learner.model(), limits)
 
 
 @pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
@@ -125,6 +136,10 @@ def test_rows_pushed_one_by_one_give_the_predictions_of_evaluate(
     real_log_dir: Path, name: str, input_name: str
 ) -> None:
     check_predictions(real_log_dir, name, input_name)
+
+
+def test_predictions_of_less_than_a_second_are_the_same_too(real_log_dir: Path) -> None:
+    check_predictions(real_log_dir, "warthog/grass_7_29_14h8s51", "command", horizons=(0.5, 10.0))
 
 
 @pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
