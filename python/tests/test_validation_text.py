@@ -18,16 +18,15 @@ FOREIGN = re.compile(
     ("content", "words"),
     [
         ({"estimator": "magic"}, "estimator: unknown estimator 'magic'; known are average"),
-        ({"filter": {"iterations": 0}}, "filter.iterations: must be at least 1, not 0"),
-        ({"filter": {"iterations": 2.5}}, "filter.iterations: must be a whole number, not 2.5"),
-        ({"filter": {"tolerance": -1.0}}, "filter.tolerance: must be at least 1e-09, not -1.0"),
+        ({"filter": {"huber": -1.0}}, "filter.huber: must be at least 1e-09, not -1.0"),
+        ({"prior": {"slip_fraction": 11}}, "prior.slip_fraction: must be at most 10, not 11"),
         ({"log": {"track": -1.0}}, "log.track: must be more than 0, not -1.0"),
-        ({"filter": {"tolerance": "much"}}, "filter.tolerance: must be a number, not 'much'"),
+        ({"filter": {"huber": "much"}}, "filter.huber: must be a number, not 'much'"),
         ({"log": {"track": float("inf")}}, "log.track: must be a finite number, not inf"),
         ({"filter": 3}, "filter: must be a table of keys, not 3"),
         ({"auto": {"bases": []}}, "auto.bases: needs at least 1 entries"),
         ({"auto": {"bases": "edd-2"}}, "auto.bases: must be a list, not 'edd-2'"),
-        ({"auto": {"cascade": "perhaps"}}, "auto.cascade: must be true or false, not 'perhaps'"),
+        ({"change": {"detect": "perhaps"}}, "change.detect: must be true or false, not 'perhaps'"),
         (
             {"smoothing": {"drift": "up"}},
             "smoothing.drift: must be 'mean-reverting' or 'random-walk', not 'up'",
@@ -47,5 +46,5 @@ def test_wrong_settings_are_named_in_plain_words(content: dict[str, Any], words:
 
 def test_a_long_wrong_value_is_shortened() -> None:
     with pytest.raises(SettingsError) as caught:
-        make_settings({"auto": {"cascade": "x" * 500}})
+        make_settings({"change": {"detect": "x" * 500}})
     assert len(caught.value.what) < 120

@@ -114,23 +114,24 @@ void MotionLearner::see_stamp(double t) {
   }
 }
 
-void MotionLearner::see_input(double t, const BodyTwist& twist) {
+void MotionLearner::see_input(Stream stream, double t, const BodyTwist& twist) {
   see_stamp(t);
-  if (std::isfinite(twist.v) && std::isfinite(twist.omega)) {
+  const bool learned_from = stream == (settings_.stream.from_commands ? Stream::Command : Stream::Wheels);
+  if (learned_from && std::isfinite(twist.v) && std::isfinite(twist.omega)) {
     range_ = {std::min(range_[0], twist.v), std::max(range_[1], twist.v), std::min(range_[2], twist.omega),
               std::max(range_[3], twist.omega)};
   }
 }
 
 void MotionLearner::push_command(double t, const BodyTwist& twist) {
-  see_input(t, settings_.stream.from_commands ? twist : BodyTwist{});
+  see_input(Stream::Command, t, twist);
   stream_.push_command({t, twist});
   take_in();
   work();
 }
 
 void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
-  see_input(t, settings_.stream.from_commands ? BodyTwist{} : twist);
+  see_input(Stream::Wheels, t, twist);
   stream_.push_wheels({t, twist});
   take_in();
   work();
@@ -294,6 +295,9 @@ const Knowledge& MotionLearner::known_at(double t) const {
 /// The last segments that were complete at `t` [s].
 std::vector<DrivenSegment> MotionLearner::recent_before(double t) const {
   std::vector<DrivenSegment> found;
+  if (!settings_.learn_disturbance) {
+    return found;
+  }
   for (auto segment = recent_.rbegin(); segment != recent_.rend() && found.size() < kRecent; ++segment) {
     if (segment->known_at <= t + kRounding && segment->segment.start > t - kRecentSeconds) {
       found.push_back(*segment);
@@ -315,7 +319,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;
   HorizonErrors& errors = errors_[target.horizon];
-  const HorizonErrors::Known earlier = errors.before(segment.start - horizon);
+  const HorizonErrors::Known earlier = errors.before(segment.start - std::max(horizon, kReady));
   const StudentT student = earlier.students[index(structure)];
   const double squared = normalised_square(error_of(measured, expected.pose), expected.covariance);
   const double nominal_squared = normalised_square(error_of(measured, nominal.pose), nominal.covariance);
@@ -369,7 +373,7 @@ StudentT MotionLearner::student_for(double horizon, Structure structure) const {
   const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
   const auto nearest = std::ranges::min_element(horizons, {}, apart);
   const HorizonErrors& errors = errors_[static_cast<std::size_t>(nearest - horizons.begin())];
-  return errors.before(stream_.newest() - *nearest).students[index(structure)];
+  return errors.before(stream_.newest() - std::max(*nearest, kReady)).students[index(structure)];
 }
 
 /// The last segments that are complete with all that was pushed.

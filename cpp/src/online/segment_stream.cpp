@@ -20,6 +20,7 @@ constexpr double kWheelLength = 1.0;  // [s] wheel speeds tell a step's response
 constexpr double kLookBack = 20.0;    // [s] of inputs before a segment; an actuator remembers no more
 constexpr double kActuatorBack = 5.0;    // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kWheelsBack = 3.0;   // [s] of wheel speeds before a segment; no clock offset is larger
+constexpr double kLongestGap = 120.0;  // [s] between poses, after which the segment before it may still end
 constexpr double kSpare = 10.0;       // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
@@ -273,7 +274,7 @@ SegmentStream::Tilt SegmentStream::tilt_at(double t) const {
 }
 
 void SegmentStream::trim() {
-  const double oldest = std::max(now_, newest_ - settings_.latency) - keep_;
+  const double oldest = std::max(now_, newest_ - settings_.latency - kLongestGap) - keep_;
   commands_.drop_before(oldest);
   wheels_.drop_before(oldest);
   while (tilts_.size() > 1 && tilts_[1].t < oldest) {

@@ -61,6 +61,8 @@ class Poses:
     pitch: Floats | None = None  # [M] rad
     std_xy: Floats | None = None  # [M] m, NaN where it is not known
     std_yaw: Floats | None = None  # [M] rad, NaN where it is not known
+    # As measured, where outliers were rejected and frames split at jumps; poses made from these have none.
+    measured: Poses | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "x", "y", "yaw"))
@@ -169,7 +171,7 @@ def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
     """Refuse a series whose columns do not fit together; the only place where this is checked."""
     name = type(series).__name__
     length = len(series.t)
-    for column in fields(series):
+    for column in (column for column in fields(series) if column.init):
         values = getattr(series, column.name)
         if values is None:
             continue

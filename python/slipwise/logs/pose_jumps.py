@@ -44,10 +44,13 @@ def _places(poses: Poses, stamps: Floats) -> Ints:
 
 
 def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
-    """Drop the lone outliers, and give the poses after each lasting jump a frame of their own."""
+    """Drop the lone outliers, and give the poses after each lasting jump a frame of their own.
+
+    The poses as measured go along: a learner finds the jumps when it would have on a robot.
+    """
     keep = ~jumps.dropped
     others = {name: None if values is None else values[keep] for name, values in poses.optional().items()}
-    return Poses(
+    clean = Poses(
         t=poses.t[keep],
         x=poses.x[keep],
         y=poses.y[keep],
@@ -55,3 +58,5 @@ def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
         frame=jumps.frame[keep],
         **others,
     )
+    object.__setattr__(clean, "measured", poses)
+    return clean

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from slipwise.calibration import make_settings
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.evaluation import EvaluationOptions, evaluate
@@ -22,8 +21,6 @@ from slipwise.reproduction.panel import FITTED, RIVAL, Bars, Floats, Panel
 METHODS = ("none", "gradient-descent", "ekf-thesis", "iekf", "delayed-state", "auto")
 EXACT_NAME = "ekf-thesis, exact J"
 DEFAULT = "auto"
-MEASURED_NAME = "auto, measured start"  # where all the others start; in words only, it is no other estimator
-MEASURED = make_settings({"start": {"learn": False}})
 SHORT = {
     "none": "none",
     "gradient-descent": "GD",
@@ -75,14 +72,12 @@ def contest(log: Log, input_name: str) -> Contest:
     options = EvaluationOptions(horizons=(HORIZON,), methods=METHODS)
     found = evaluate(log, input=input_name, options=options).predictions
     errors = {predictions.method: Errors.of(predictions) for predictions in found}
-    options = EvaluationOptions(horizons=(HORIZON,), methods=(DEFAULT,))
-    (measured,) = evaluate(log, input=input_name, settings=MEASURED, options=options).predictions
     course = Course("ekf-thesis", BASIS, input_name, EXACT)
     targets = drive_windows(log, course, HORIZON)
     exact = Errors.of(record(log, course).predictions(targets, EXACT_NAME))
     ordered = {name: errors[name] for name in METHODS[:3]} | {EXACT_NAME: exact}
     ordered |= {name: errors[name] for name in METHODS[3:-1]}
-    return ordered | {MEASURED_NAME: Errors.of(measured), DEFAULT: errors[DEFAULT]}
+    return ordered | {DEFAULT: errors[DEFAULT]}
 
 
 def table_exhibit(bench: Bench, ground: str) -> Exhibit:
@@ -101,8 +96,7 @@ def table_exhibit(bench: Bench, ground: str) -> Exhibit:
         agrees=_agrees(contests),
         differs=_differs(contests),
         source=f"simulated Land Tamer on {ground} ground, drive of {bench.size.long_time:g} s from zero; "
-        f"single estimators learn {BASIS} and start at the measured pose, {DEFAULT} averages several bases, "
-        "and the noise of the last poses",
+        f"single estimators learn {BASIS}, {DEFAULT} averages several bases",
         parts=(
             *(_grid(name, found) for name, found in contests.items()),
             _printed(),
@@ -113,13 +107,9 @@ def table_exhibit(bench: Bench, ground: str) -> Exhibit:
 
 def _grid(input_name: str, found: Contest) -> Grid:
     plain = found["none"]
-    rows = tuple((name, *_cells(errors, plain)) for name, errors in _shown(found).items())
+    rows = tuple((name, *_cells(errors, plain)) for name, errors in found.items())
     note = f"{len(plain.in_sample)} segments in-sample, {len(plain.honest)} honest."
     return Grid(f"From {INPUTS[input_name]}", COLUMNS, rows, note)
-
-
-def _shown(found: Contest) -> Contest:
-    return {name: errors for name, errors in found.items() if name != MEASURED_NAME}
 
 
 def _cells(errors: Errors, plain: Errors) -> list[str]:
@@ -247,23 +237,21 @@ def _best(found: Contest, column: int) -> str:
     """Which estimator predicts best, and how the default stands to the best of the others."""
     what = ("position", "heading")[column]
     means = {name: float(errors.honest[:, column].mean()) for name, errors in found.items() if name != "none"}
-    others = {name: mean for name, mean in means.items() if name not in (DEFAULT, MEASURED_NAME)}
+    others = {name: mean for name, mean in means.items() if name != DEFAULT}
     rival = min(others, key=lambda name: others[name])
     ratio, low, high = ratio_of_means(found[DEFAULT].honest[:, column], found[rival].honest[:, column])
     rank = "the default is best" if ratio <= 1.0 else f"{rival} is best"
-    measured = number_text(means[MEASURED_NAME] / others[rival])
     return (
         f"in {what} {rank} (default to {rival}: {number_text(ratio)}, interval {number_text(low)} to "
-        f"{number_text(high)}; {measured} from the measured start, where {rival} starts)"
+        f"{number_text(high)})"
     )
 
 
 def _panel(input_name: str, found: Contest, column: int) -> Panel:
-    shown = _shown(found)
-    names = tuple(SHORT[name] for name in shown)
+    names = tuple(SHORT[name] for name in found)
     unit = ("position [m]", "heading [rad]")[column]
-    in_sample = np.array([errors.in_sample[:, column].mean() for errors in shown.values()])
-    honest = np.array([errors.honest[:, column].mean() for errors in shown.values()])
+    in_sample = np.array([errors.in_sample[:, column].mean() for errors in found.values()])
+    honest = np.array([errors.honest[:, column].mean() for errors in found.values()])
     series = (
         Bars(names, in_sample, label="in-sample", colour=RIVAL),
         Bars(names, honest, label="honest", colour=FITTED),

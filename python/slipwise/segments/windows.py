@@ -17,6 +17,7 @@ from slipwise.logs.log import Inputs, LeftOut, Run
 Floats = NDArray[np.float64]
 
 _RULES = _core.SegmentRules()
+_COUNTED_BY_LOG = ("pose-outlier", "pose-jump")  # where poses have both as measured and without jumps
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
 
     Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame).
     """
-    poses = run.poses
+    poses = run.poses if run.poses.measured is None else run.poses.measured
     attitudes = np.empty((0, 3))
     if poses.roll is not None and poses.pitch is not None:
         attitudes = np.column_stack((poses.t, poses.roll, poses.pitch))
@@ -112,10 +113,15 @@ def cut_windows(runs: Sequence[Run], settings: _core.StreamSettings) -> Windows:
 def rejections(
     runs: Sequence[Run], rejected: Sequence[_core.Rejected], run: Sequence[int]
 ) -> tuple[LeftOut, ...]:
-    """Count what was rejected by reason, with the first place of each."""
-    counts = Counter(each.reason for each in rejected)
+    """Count what was rejected by reason, with the first place of each; but for what the log has counted."""
+    new = [
+        (each, index)
+        for each, index in zip(rejected, run, strict=True)
+        if each.reason not in _COUNTED_BY_LOG or runs[index].poses.measured is None
+    ]
+    counts = Counter(each.reason for each, _ in new)
     first: dict[str, LeftOut] = {}
-    for each, index in zip(rejected, run, strict=True):
+    for each, index in new:
         if each.reason not in first:
             where = runs[index].place(each.t)
             first[each.reason] = LeftOut(each.reason_text, counts[each.reason], where, each.reason)

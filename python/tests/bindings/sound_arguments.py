@@ -125,6 +125,27 @@ def _average() -> _core.ModelAverage:
     return _core.ModelAverage("auto", [_core.named_basis("edd-2")], True, False, False, *settings)
 
 
+def _learner_settings() -> _core.LearnerSettings:
+    settings, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
+    hypotheses.bases = [_core.named_basis("edd-2")]
+    settings.hypotheses = hypotheses
+    return settings
+
+
+def _learner() -> _core.MotionLearner:
+    learner = _core.MotionLearner(_learner_settings())
+    learner.push(_recording())
+    return learner
+
+
+def _recording() -> _core.Recording:
+    return _core.Recording(_rows(), _rows(), np.zeros((2, 3)) + [[0.0], [0.1]], np.column_stack((_rows(), T * 0)))
+
+
+def _rows() -> np.ndarray:
+    return np.column_stack((T, np.sin(T), np.zeros(ROWS), np.cos(T)))
+
+
 def _chain_learner() -> _core.ChainLearner:
     return _core.ChainLearner(_core.CausalFilterSettings())
 
@@ -166,25 +187,27 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "InputTrack": _inputs,
     "Integrator": lambda: _core.Integrator.Exact,
     "LeastSquaresFit": _fit,
+    "LearnerEvent": lambda: _learner().events()[0],
+    "LearnerSettings": _learner_settings,
     "LimitSearch": lambda: None,
     "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
     "MotionPosterior": _belief,
+    "MotionLearner": _learner,
     "MotionModel": _model,
     "MotionNoise": _noise,
     "Mppi": _mppi,
     "MppiSettings": _small_mppi,
     "NoiseGroup": _noise_group,
+    "Recording": _recording,
     "RegressionExample": _example,
     "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, 0.0, 0.0, None),
     "ScatterCentre": lambda: _core.ScatterCentre.Mean,
-    "SeenPoses": lambda: _core.SeenPoses([0.8, 0.9, 1.0], np.zeros((3, 3))),
     "Segment": _segment,
     "SegmentJacobian": lambda: _core.SegmentJacobian.Thesis,
     "SegmentLinearization": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()),
     "SegmentPath": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()).path,
     "SlipNow": _now,
     "SlipRatioFilterSettings": _slip_ratios,
-    "StartLaw": lambda: _core.StartLaw([0.0, 1.0], np.array([0.5, 0.5])),
     "StartList": lambda: _core.StartList(np.zeros((1, 5)), np.zeros((1, 1, 2))),
     "Status": lambda: _core.Status.Converged,
     "SteadyNoise": lambda: _core.SteadyNoise(np.full(3, 0.01), np.full(3, 0.01), np.full(3, 0.01)),
@@ -201,17 +224,19 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "ChainLearner.__init__ waiting": lambda: 0,
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "DriveRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
+    "MotionLearner.forget fraction": lambda: 0.5,
+    "MotionLearner.predict future": lambda: _rows()[-1:] + [[0.1, 0.0, 0.0, 0.0]],
     "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None)],
     "Mppi.step past": lambda: np.zeros((2, 2)),
     "Mppi.step reference": lambda: np.zeros((8, 3)),
     "NoiseGroup.__init__ residuals": lambda: list(np.ones((9, 3, 2))),
     "NoiseGroup.__init__ times": lambda: [1.0, 2.0],
-    "SeenPoses.__init__ poses": lambda: np.zeros((3, 3)),
-    "SeenPoses.__init__ stamps": lambda: [0.8, 0.9, 1.0],
-    "StartLaw.__init__ memories": lambda: [0.0, 1.0],
-    "StartLaw.__init__ weights": lambda: np.array([0.5, 0.5]),
     "StartList.__init__ past": lambda: np.zeros((1, 1, 2)),
     "StartList.__init__ starts": lambda: np.zeros((1, 5)),
+    "Recording.__init__ attitudes": lambda: np.zeros((1, 3)),
+    "Recording.__init__ commands": _rows,
+    "Recording.__init__ poses": lambda: np.column_stack((_rows(), T * 0)),
+    "Recording.__init__ wheels": _rows,
     "SteadySegment.__init__ poses": lambda: np.zeros((3, 3)),
     "SteadySegment.__init__ times": lambda: np.array([0.0, 1.0, 2.0]),
     "InputTrack.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),

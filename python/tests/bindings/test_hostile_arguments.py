@@ -49,11 +49,11 @@ def test_a_list_of_inputs_in_which_one_is_missing_is_refused() -> None:
         _core.rts_smooth(MODEL, of_type("Estimate"), [None], segment, noise, *settings)  # type: ignore[list-item]
 
 
-def test_stamps_that_are_not_numbers_are_refused() -> None:
-    start = _core.StartPose(_core.StartPoseSettings())
-    seen = _core.SeenPoses([float("nan"), 1.0], np.zeros((2, 3)))
-    with pytest.raises(ValueError, match="stamps of poses before a start must increase"):
-        start.offset(of_type("MotionPosterior"), of_type("InputTrack"), seen, of_type("Segment"))
+@pytest.mark.parametrize("stamps", [(5.95, 5.95), (float("nan"), 6.0), (6.1, 6.0)])
+def test_stamps_of_future_inputs_that_do_not_increase_are_refused(stamps: tuple[float, float]) -> None:
+    future = np.column_stack((stamps, np.zeros((2, 3))))
+    with pytest.raises(ValueError, match="their stamps must increase"):
+        of_type("MotionLearner").predict(future, 1.0, 0.0)
 
 
 @pytest.mark.parametrize("number", range(len(bound_functions())))

@@ -5,11 +5,10 @@ import re
 import tomllib
 from typing import Any
 
-import numpy as np
 from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
-from slipwise.calibration import consistency, identifiability, judgement, statistics, tails
+from slipwise.calibration import consistency, identifiability, judgement, statistics
 from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
@@ -40,6 +39,13 @@ def without_default(block: str) -> set[str]:
         if commented is not None:
             found.add(f"{section}.{commented[1]}")
     return found
+
+
+def constants(file: str, *names: str) -> list[float]:
+    """Return constants of a source of the core."""
+    text = (ROOT / f"cpp/src/{file}.cpp").read_text(encoding="utf-8")
+    found = [re.search(rf"\bk{name} = ([\d.]+)", text) for name in names]
+    return [float(match[1]) for match in found if match is not None]
 
 
 def test_the_settings_page_lists_every_key_with_its_default() -> None:
@@ -150,13 +156,13 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
 def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     derivations = read("derivations.md")
     flowing = " ".join(derivations.split())
-    scale, dof = tails.PRIOR_SCALE, tails.PRIOR_DOF
-    assert f"ln c normal about ln {scale:g} with standard deviation {tails.PRIOR_SCALE_STD:g}" in flowing
-    assert f"ln ν about ln {dof:g} with {tails.PRIOR_DOF_STD:g}" in flowing
+    scale_std, dof, dof_std = constants("identify/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd")
+    assert f"ln c normal about ln 1 with standard deviation {scale_std:g}" in flowing
+    assert f"ln ν about ln {dof:g} with {dof_std:g}" in flowing
     assert f"ν lies between {student.LEAST_DOF:g} and {student.MOST_DOF:g}" in flowing
-    prior = tails.learn_tails(np.array([0]), np.empty(0))
-    assert f"with no window at all, ν is about {prior.dof[0]:.1f}" in flowing
-    limits = f"prior: growth {prior.growth[0]:.1f}, dof {prior.dof[0]:.1f}"
+    prior = _core.StudentCalibration().fitted()
+    assert f"with no window at all, ν is about {prior.dof:.1f}" in flowing
+    limits = f"prior: growth {prior.inflation:.1f}, dof {prior.dof:.1f}"
     assert limits in " ".join(read("statistics.md").split())
     assert f"{student.ellipse_squared(0.95, 10.0):.1f} for 95 % and dof = 10" in " ".join(
         read("statistics.md").split()

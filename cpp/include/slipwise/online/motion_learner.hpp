@@ -117,7 +117,7 @@ class MotionLearner {
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
   void say(LearnerEvent event);
-  void see_input(double t, const BodyTwist& twist);
+  void see_input(Stream stream, double t, const BodyTwist& twist);
   void see_stamp(double t);
 
   LearnerSettings settings_;

@@ -41,17 +41,17 @@ def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> Non
     count = len(history.t)
     cascade = np.linspace(0.1, 0.8, count)
     two = replace(
-        history, structures=("together", "cascade"), structure_weight=np.column_stack((1 - cascade, cascade))
+        history, structures=("joint", "cascaded"), structure_weight=np.column_stack((1 - cascade, cascade))
     )
     one = replace(two, bases=("edd-2",), basis_weight=np.ones((count, 1)))
     for shown in (two, one):
         learned = replace(results, calibration=replace(results.calibration, history=shown))
         html = ConvergenceSection().html(contents_of(learned))
-        together, other = figures_of(html)["figure-structures"]["data"]
-        assert (together["name"], other["name"]) == ("together", "cascade")
+        joint, other = figures_of(html)["figure-structures"]["data"]
+        assert (joint["name"], other["name"]) == ("joint", "cascaded")
         assert np.allclose(other["y"], cascade, atol=1e-5)
-        assert "those of the heavier way, at the end cascade" in text_of(html)
-        assert "cascade 0.80" in text_of(html)
+        assert "those of the heavier way, at the end cascaded" in text_of(html)
+        assert "cascaded 0.80" in text_of(html)
 
 
 def test_lag_is_shown_in_seconds() -> None:

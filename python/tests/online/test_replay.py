@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Replay is the same thing: a program that pushes a file's rows gets what `evaluate` and `calibrate` write."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+from online.csv_program import inputs_ahead, push, read_runs, seconds_between
+
+from slipwise import _core
+from slipwise.calibration import calibrate
+from slipwise.calibration.calibrate import JUDGING_HORIZONS
+from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.settings import Settings
+from slipwise.evaluation import EvaluationOptions, evaluate
+from slipwise.logs import Log, open_log
+from slipwise.models import schema
+
+STREAMS = {"command": "command", "wheel": "wheels"}
+BOTH = ("wheel", "command")
+SHORT = (("warthog/grass_7_29_14h8s51", BOTH), ("tricycle/agv", ("wheel",)))
+LONG = (
+    ("warthog/grass_8_8_15h56s39", BOTH),  # poses at 5 Hz, attitudes
+    ("husky/tile_deflated_tyres", BOTH),  # duplicate stamps, many runs
+    ("husky/wetgrass_bad_poses", BOTH),  # poses jump
+    ("warthog_windows/gravel_8_6_11h37s32", BOTH),  # each 2 s have a frame of their own
+    ("drive_test/husky", BOTH),
+    ("race_car/LVMS_23_01_04_B", BOTH),  # no column says which poses are new
+    ("create/MRCLAM6_R1", ("command",)),
+    ("f1tenth/DS3", BOTH),
+    ("robotino/table_gray", ("command",)),
+)
+
+
+def cases(logs: Sequence[tuple[str, tuple[str, ...]]]) -> list[tuple[str, str]]:
+    return [(name, input_name) for name, inputs in logs for input_name in inputs]
+
+
+def new_learner(input_name: str, horizons: Sequence[float]) -> _core.MotionLearner:
+    return _core.MotionLearner(core_settings(Settings(), input_name, horizons))
+
+
+def differences(
+    path: Path, input_name: str, log: Log, horizons: tuple[float, ...]
+) -> tuple[int, list[str]]:
+    """Push a file's rows; return how many predictions were compared, and those that differ from `evaluate`'s."""
+    options = EvaluationOptions(horizons=horizons, methods=("auto",))
+    result = evaluate(log, input=input_name, options=options)
+    learner, compared, differing = new_learner(input_name, result.horizons), 0, list[str]()
+    names = {run.name: k for k, run in enumerate(log.runs)}
+    for run in read_runs(path):
+        learner.start_run()
+        at = {
+            (p.t_start[i], k): i
+            for k, p in enumerate(result.predictions)
+            for i in np.flatnonzero(p.run == names[run.name]).tolist()
+        }
+        for place, item in enumerate(run.items):
+            push(learner, item)
+            for k, p in enumerate(result.predictions):
+                i = at.get((item[1][0], k)) if item[0] == "pose" else None
+                if i is not None:
+                    end = float(p.t_end[i])
+                    ahead = inputs_ahead(run, place, STREAMS[input_name], end)
+                    seconds = seconds_between(float(p.t_start[i]), end)
+                    path_ahead = learner.predict(ahead, seconds, p.horizon)
+                    compared += 1
+                    differing += difference(p, i, path_ahead)
+    assert compared == sum(len(p) for p in result.predictions)
+    return compared, differing
+
+
+def difference(p: Predictions, i: int, other: _core.PredictedPath) -> list[str]:
+    pairs = {
+        "pose": (p.pose[i], other.pose),
+        "covariance": (p.covariance[i], other.covariance),
+        "inflation": (p.growth[i], other.student.inflation),
+        "dof": (p.dof[i], other.student.dof),
+        "structure": (p.structure[i], other.structure),
+    }
+    unequal = [name for name, (a, b) in pairs.items() if not np.array_equal(a, b)]
+    largest = np.abs(p.pose[i] - other.pose).max()
+    where = f"run {p.run[i]}, t = {p.t_start[i]}, horizon {p.horizon}"
+    return [f"{where}: {', '.join(unequal)} (pose by {largest:g})"] if unequal else []
+
+
+def same_model(
+    content: schema.ModelFile, learned: _core.LearnedModel, limits: _core.ActuatorLimits | None
+) -> None:
+    """Both hold the same, to the last bit; `limits` are what was found of the actuator's."""
+    kept = None if limits is None else limits.posterior
+    assert (content.limits is not None) == (kept is not None)
+    posterior, noise = kept or learned.motion, content.noise
+    assert [p.name for p in content.parameters] == [info.name for info in posterior.model.parameters]
+    assert [p.value for p in content.parameters] == posterior.estimate.mean.tolist()
+    assert [p.prior_std for p in content.parameters] == list(posterior.prior_std)
+    assert content.covariance == posterior.estimate.covariance.tolist()
+    assert noise.scale == list(posterior.noise_scale)
+    assert list(content.weights.values()) == list(posterior.basis_weights)
+    tails = {h: s for h, s in zip(JUDGING_HORIZONS, learned.students, strict=True) if h in noise.tails}
+    assert [(t.growth, t.dof) for t in noise.tails.values()] == [(s.inflation, s.dof) for s in tails.values()]
+    assert content.coloured is not None
+    law = learned.disturbance.law
+    assert [wander.weight for wander in content.coloured.candidates] == list(law.weights)
+    assert content.provenance.learned_windows == learned.segments
+    assert content.range.speed + content.range.yaw_rate == list(learned.range)
+
+
+def check_predictions(
+    folder: Path, name: str, input_name: str, horizons: tuple[float, ...] = JUDGING_HORIZONS
+) -> None:
+    path = folder / f"{name}.csv.gz"
+    compared, differing = differences(path, input_name, open_log(path), horizons)
+    assert compared > 0
+    assert not differing, f"{len(differing)} of {compared} predictions differ: {differing[0]}"
+
+
+def check_model(folder: Path, name: str, input_name: str) -> None:
+    path = folder / f"{name}.csv.gz"
+    learner = new_learner(input_name, JUDGING_HORIZONS)
+    for run in read_runs(path):
+        learner.start_run()
+        for item in run.items:
+            push(learner, item)
+    learner.end_run()
+    limits = learner.find_limits(Settings().vehicle.track)
+    same_model(calibrate(open_log(path), input=input_name).model.content, learner.model(), limits)
+
+
+@pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
+def test_rows_pushed_one_by_one_give_the_predictions_of_evaluate(
+    real_log_dir: Path, name: str, input_name: str
+) -> None:
+    check_predictions(real_log_dir, name, input_name)
+
+
+def test_predictions_of_less_than_a_second_are_the_same_too(real_log_dir: Path) -> None:
+    check_predictions(real_log_dir, "warthog/grass_7_29_14h8s51", "command", horizons=(0.5, 10.0))
+
+
+@pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
+def test_rows_pushed_one_by_one_give_the_model_of_calibrate(
+    real_log_dir: Path, name: str, input_name: str
+) -> None:
+    check_model(real_log_dir, name, input_name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "input_name"), cases(LONG))
+def test_rows_of_long_logs_give_the_predictions_of_evaluate(
+    real_log_dir: Path, name: str, input_name: str
+) -> None:
+    check_predictions(real_log_dir, name, input_name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "input_name"), cases(LONG))
+def test_rows_of_long_logs_give_the_model_of_calibrate(
+    real_log_dir: Path, name: str, input_name: str
+) -> None:
+    check_model(real_log_dir, name, input_name)
