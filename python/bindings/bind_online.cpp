@@ -262,8 +262,7 @@ void bind_online(nb::module_& m) {
           "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a)
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
-          "push",
-          [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,
+          "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,
           nb::call_guard<nb::gil_scoped_release>(), "Pushes recorded streams in the order of their stamps.")
       .def("events", &MotionLearner::events, "What happened since the last call.")
       .def_prop_ro("dropped_events", &MotionLearner::dropped_events)

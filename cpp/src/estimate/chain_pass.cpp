@@ -90,7 +90,8 @@ void ChannelWalk::begin(const ChannelWindow& window) {
   }
 }
 
-ChannelWalk::Observed ChannelWalk::observe(const FollowedLane& followed, const ChannelWindow& window, const DriveNoiseMeans& noise) const {
+ChannelWalk::Observed ChannelWalk::observe(const FollowedLane& followed, const ChannelWindow& window,
+                                           const DriveNoiseMeans& noise) const {
   const ActuatorAxis lane = lane_of(model_->parts[followed.place], point_);
   Observed seen{lane_passage(window, lane, followed.mean, noise), lane_means(window.seen, lane), {}, {}};
   seen.innovation -= seen.at.value.head(seen.innovation.size());
@@ -115,8 +116,7 @@ void ChannelWalk::update(FollowedLane& lane, const Observed& seen, double size, 
   gradient_ += by_chain.transpose() * innovation;
   lane.mean = seen.at.value.tail<kLaneStates>() + cross.transpose() * innovation;
   lane.by_chain =
-      (seen.at.by_chain.bottomRows<kLaneStates>() + end_by_state * lane.by_chain - cross.transpose() * by_chain)
-          .eval();
+      (seen.at.by_chain.bottomRows<kLaneStates>() + end_by_state * lane.by_chain - cross.transpose() * by_chain).eval();
   lane.covariance = (end_by_state * lane.covariance * end_by_state.transpose() - cross.transpose() * cross).eval();
   lane.covariance(2, 2) += size * noise.covariance(k, k);
 }
@@ -146,7 +146,6 @@ ChainPass ChannelWalk::result() const {
   return pass;
 }
 
-
 double student_cost(double nis, double log_determinant, Eigen::Index count) {
   return log_determinant + (kTailDegrees + static_cast<double>(count)) * std::log1p(nis / kTailDegrees);
 }
@@ -158,6 +157,5 @@ double noise_inflation(double nis, Eigen::Index count, const IekfSettings& setti
   }
   return std::max(std::sqrt(per_degrees) / settings.huber, 1.0);
 }
-
 
 }  // namespace slipwise

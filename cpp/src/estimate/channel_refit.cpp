@@ -93,7 +93,9 @@ bool ChannelFit::advance(std::span<const ChannelWindow> past) {
 ChannelRefit::ChannelRefit(const ChainChannel& channel, std::size_t count)
     : channel_(channel),
       model_(std::make_shared<const ChannelModel>(channel.model())),
-      size_(channel.noise_variance()), count_(count), done_(count) {
+      size_(channel.noise_variance()),
+      count_(count),
+      done_(count) {
   fit_.emplace(*model_, size_, channel.estimate().mean, kMostPasses);
 }
 

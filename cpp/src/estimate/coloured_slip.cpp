@@ -120,9 +120,8 @@ ExpectedPoses ColouredSlip::predict_both(const MotionPosterior& posterior, const
                                          const DrivenSegment& driven) const {
   const auto at = linearize_segment(posterior.model, posterior.estimate.mean, driven.inputs, driven.segment);
   const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
-  const ExpectedPose without{
-      at.predicted.vector(),
-      prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale)};
+  const ExpectedPose without{at.predicted.vector(), prediction_covariance(at, posterior.estimate.covariance,
+                                                                          posterior.noise, posterior.noise_scale)};
   check_fits(now, law_, terms);
   return {.now = with_deviation(at, without, now, terms, driven.segment),
           .nominal = with_deviation(at, without, this->now(posterior, {}), terms, driven.segment)};

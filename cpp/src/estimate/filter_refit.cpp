@@ -37,8 +37,7 @@ void FilterRefit::weight(const DrivenSegment& driven) {
   auto at = linearize_segment(model_, state_.estimate.mean, driven.inputs, segment);
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_.shape, scale);
   const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d covariance =
-      at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
+  const Eigen::Matrix3d covariance = at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
   const double nis = normalised_square(innovation, covariance);
   if (!(nis <= iekf_.gate)) {
     last_.reset();
@@ -87,8 +86,7 @@ void FilterRefit::end_search() {
 void FilterRefit::learn_noise(const DrivenSegment& driven) {
   const bool fitted = fitted_ < places_.size() && places_[fitted_] == done_;
   const SegmentLinearization at =
-      fitted ? std::move(at_[fitted_])
-             : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
+      fitted ? std::move(at_[fitted_]) : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
   const Eigen::Matrix3d expected = expected_noise(at, driven.segment, noise_.shape);
   state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
   if (fitted) {

@@ -185,10 +185,9 @@ ModelAverage* MotionHypotheses::average_of(Structure structure) {
 /// Predicts the segment by what is learned elsewhere, or not at all.
 ScoredSegment MotionHypotheses::predict(Structure structure) {
   const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-  const ScoredSegment scored =
-      structure == Structure::Cascaded && cascaded_
-          ? cascaded_->predict(*segment_)
-          : baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
+  const ScoredSegment scored = structure == Structure::Cascaded && cascaded_
+                                   ? cascaded_->predict(*segment_)
+                                   : baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
   updates_[index(structure)].nis = scored.nis;
   return scored;
 }

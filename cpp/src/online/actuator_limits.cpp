@@ -138,9 +138,9 @@ std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels) {
 
 std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
   const std::vector<DriveRecord> records = drive_records(data.wheels);
-  const std::size_t twists = std::accumulate(
-      records.begin(), records.end(), std::size_t{0},
-      [](std::size_t sum, const DriveRecord& record) { return sum + record.t.size(); });
+  const std::size_t twists =
+      std::accumulate(records.begin(), records.end(), std::size_t{0},
+                      [](std::size_t sum, const DriveRecord& record) { return sum + record.t.size(); });
   if (twists < kFewTwists) {
     return std::nullopt;
   }

@@ -20,13 +20,13 @@
 namespace slipwise {
 namespace {
 
-constexpr double kReady = 1.0;           // [s] after which a segment has been learned, whatever the latency
-constexpr double kRounding = 1e-9;       // [s] of stamps
-constexpr double kRecentSeconds = 30.0;   // that tell of the slip now, at most
-constexpr std::size_t kRecent = 12;       // segments that tell of it, at most
+constexpr double kReady = 1.0;                     // [s] after which a segment has been learned, whatever the latency
+constexpr double kRounding = 1e-9;                 // [s] of stamps
+constexpr double kRecentSeconds = 30.0;            // that tell of the slip now, at most
+constexpr std::size_t kRecent = 12;                // segments that tell of it, at most
 constexpr std::size_t kMostWheelSegments = 200;    // in which limits are looked for
 constexpr std::size_t kMostCommandSegments = 100;  // by which they are judged
-constexpr int kSlices = 6;  // of refits that a push may do where no segment waits: some 100 us
+constexpr int kSlices = 6;                         // of refits that a push may do where no segment waits: some 100 us
 constexpr std::size_t kMostEvents = 10000;
 constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
 constexpr double kLongest = 3600.0;         // [s] horizon

@@ -14,14 +14,14 @@
 namespace slipwise {
 namespace {
 
-constexpr double kGravity = 9.80665;  // [m/s^2]
-constexpr double kSlipLength = 1.0;   // [s] of segments behind wheel speeds
-constexpr double kWheelLength = 1.0;  // [s] wheel speeds tell a step's response from its start on
-constexpr double kLookBack = 20.0;    // [s] of inputs before a segment; an actuator remembers no more
-constexpr double kActuatorBack = 5.0;    // [s] of commands before wheel speeds; their filter goes on from the last
-constexpr double kWheelsBack = 3.0;   // [s] of wheel speeds before a segment; no clock offset is larger
+constexpr double kGravity = 9.80665;   // [m/s^2]
+constexpr double kSlipLength = 1.0;    // [s] of segments behind wheel speeds
+constexpr double kWheelLength = 1.0;   // [s] wheel speeds tell a step's response from its start on
+constexpr double kLookBack = 20.0;     // [s] of inputs before a segment; an actuator remembers no more
+constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
+constexpr double kWheelsBack = 3.0;    // [s] of wheel speeds before a segment; no clock offset is larger
 constexpr double kLongestGap = 120.0;  // [s] between poses, after which the segment before it may still end
-constexpr double kSpare = 10.0;       // [s] that inputs are kept for longer than a segment may need
+constexpr double kSpare = 10.0;        // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }

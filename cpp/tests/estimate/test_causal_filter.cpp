@@ -92,10 +92,10 @@ CausalFilter learned_under(double factor, std::size_t windows) {
 }
 
 TEST_CASE("a first guess of the noise is forgotten once the first segments are learned anew") {
-  const Eigen::VectorXd told = learned_under(1.0, 64).estimate().covariance.diagonal();
-  const Eigen::VectorXd guessed = learned_under(30.0, 64).estimate().covariance.diagonal();
-  const Eigen::VectorXd just_before = learned_under(30.0, 15).estimate().covariance.diagonal();
-  const Eigen::VectorXd anew = learned_under(30.0, 16).estimate().covariance.diagonal();
+  const Eigen::VectorXd told = learned_under(1.0, 68).estimate().covariance.diagonal();
+  const Eigen::VectorXd guessed = learned_under(30.0, 68).estimate().covariance.diagonal();
+  const Eigen::VectorXd just_before = learned_under(30.0, 16).estimate().covariance.diagonal();
+  const Eigen::VectorXd anew = learned_under(30.0, 17).estimate().covariance.diagonal();
   for (Eigen::Index i = 0; i < 2; ++i) {
     CAPTURE(i);
     CHECK(guessed[i] / told[i] == doctest::Approx(1.0).epsilon(0.5));
@@ -106,7 +106,7 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
 TEST_CASE("few segments are learned anew by a filter that nobody hears, many are not") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
-                                           {.seed = 81, .windows = 64, .window = 2.0, .noise = kTrueNoise});
+                                           {.seed = 81, .windows = 68, .window = 2.0, .noise = kTrueNoise});
   CausalFilter heard(model, {});
   CausalFilter unheard(model, {});
   for (std::size_t i = 0; i < drive.segments.size(); ++i) {
@@ -118,6 +118,26 @@ TEST_CASE("few segments are learned anew by a filter that nobody hears, many are
   // The mean may stay, where it is as good as the fit's; its covariance is that of the fit.
   CHECK(heard.estimate().covariance != unheard.estimate().covariance);
   CHECK((heard.estimate().mean - unheard.estimate().mean).cwiseAbs().maxCoeff() < 0.02);
+}
+
+TEST_CASE("slices of a refit change nothing but when the work is done") {
+  const MotionModel model(named_basis("edd-2"), {});
+  const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
+                                           {.seed = 82, .windows = 140, .window = 1.0, .noise = kTrueNoise});
+  CausalFilter at_once(model, {});
+  CausalFilter sliced(model, {});
+  int slices = 0;
+  for (std::size_t i = 0; i < drive.segments.size(); ++i) {
+    at_once.learn(drive.inputs, drive.segments[i], kSpeeds);
+    sliced.learn(drive.inputs, drive.segments[i], kSpeeds);
+    for (std::size_t k = 0; k < 5 * (i % 7); ++k) {
+      slices += sliced.refit_slice() ? 1 : 0;
+    }
+    CHECK(at_once.estimate().mean == sliced.estimate().mean);
+    CHECK(at_once.stated().covariance == sliced.stated().covariance);
+    CHECK(at_once.noise_scale() == sliced.noise_scale());
+  }
+  CHECK(slices > 200);
 }
 
 /// Mean square of errors over stated standard deviations, of V's and w's share, over drives whose noise is white and of

@@ -107,12 +107,31 @@ TEST_CASE("windows that waited are learned as those that came one by one") {
   learn(waited, driven, 0.0, 128.0);
   const Estimate before = waited.estimate();
   learn(waited, driven, 128.0, 129.0);
+  waited.end_refit();
+  one_by_one.end_refit();
   const Estimate expected = one_by_one.estimate();
   const auto away = [&](const Estimate& found) {
     return (found.mean - expected.mean).cwiseQuotient(expected.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff();
   };
   CHECK(away(waited.estimate()) < 1.0);
   CHECK(away(waited.estimate()) < away(before));
+}
+
+TEST_CASE("slices of a refit of the actuator model change nothing but when the work is done") {
+  const Drive driven = drive(10, 60.0);
+  ChainLearner at_once({});
+  ChainLearner sliced({});
+  int slices = 0;
+  for (int i = 0; i < 59; ++i) {
+    learn(at_once, driven, i, i + 1.0);
+    learn(sliced, driven, i, i + 1.0);
+    for (int k = 0; k < 20 * (i % 7); ++k) {
+      slices += sliced.refit_slice() ? 1 : 0;
+    }
+    CHECK(at_once.estimate().mean == sliced.estimate().mean);
+    CHECK(at_once.estimate().covariance == sliced.estimate().covariance);
+  }
+  CHECK(slices > 500);
 }
 
 TEST_CASE("after a gap the drive's state is sought anew") {

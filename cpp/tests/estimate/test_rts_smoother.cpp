@@ -38,7 +38,7 @@ std::vector<BatchDatum> drifting_data(const InputTrack& inputs, std::size_t coun
     const double start = 1.0 + 2.0 * static_cast<double>(i);
     truth.push_back(0.1 + 0.2 * std::sin(0.1 * static_cast<double>(i)));
     const double seen = 2.0 * (1.0 + truth.back()) + 0.1 * normal(random);
-    data.push_back({inputs, 
+    data.push_back({inputs,
                     {.start = start, .end = start + 2.0, .measured = {seen, 0.0, 0.0}},
                     0.01 * Eigen::Matrix3d::Identity()});
   }

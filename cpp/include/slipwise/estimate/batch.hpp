@@ -80,8 +80,8 @@ class BatchSearch {
   BatchSettings settings_;
   std::vector<NewError> errors_;
   Eigen::MatrixXd prior_information_;
-  Eigen::VectorXd mean_;       ///< the best so far
-  Eigen::VectorXd candidate_;  ///< that is being linearised
+  Eigen::VectorXd mean_;                  ///< the best so far
+  Eigen::VectorXd candidate_;             ///< that is being linearised
   std::vector<SegmentLinearization> at_;  ///< the first data, at the candidate
   std::optional<NormalEquations> now_;    ///< at the mean; nothing before the start is linearised
   double damping_;

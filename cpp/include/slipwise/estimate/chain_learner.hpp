@@ -24,13 +24,14 @@ struct ChainUpdate {
 /// how well they foretell the wheels; the belief is their mixture.
 class ChainLearner {
  public:
-  /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, no refit begins
-  /// before they are all learned.
+  /// Priors, gate and Huber's bound are those of `settings`. Where `waiting` windows are at hand already, no refit
+  /// begins before they are all learned.
   explicit ChainLearner(const CausalFilterSettings& settings, std::size_t waiting = 0);
 
   /// Learns the wheel speeds from `start` to `end` [s], in input stamps. Nothing later is used.
   /// \throws std::invalid_argument when the end is not after the start.
-  /// After 4, 5, ... 256 windows a refit of all of them begins, which takes effect a thirty-second as many windows later.
+  /// After 4, 5, ... 256 windows a refit of all of them begins, which takes effect a thirty-second as many windows
+  /// later.
   ChainUpdate learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end);
   /// Does a bounded slice of the refit's work; whether there was any to do. Results do not depend on it.
   bool refit_slice();
@@ -59,7 +60,7 @@ class ChainLearner {
   Eigen::VectorXd prior_std_;
   std::vector<Bank> banks_;
   std::size_t learned_ = 0;
-  std::size_t next_;                          ///< windows after which a refit begins
+  std::size_t next_;                           ///< windows after which a refit begins
   std::optional<std::size_t> refitted_after_;  ///< windows after which the one under way takes effect
   std::vector<ChannelWindow> past_;
 };

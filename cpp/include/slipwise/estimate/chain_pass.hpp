@@ -65,7 +65,7 @@ class ChannelWalk {
   ChannelParameters point_;
   double cost_;
   Eigen::Matrix<double, kChannelParameters, kChannelParameters> information_;  ///< of the parameters
-  ChannelParameters gradient_;  ///< of half the cost by them, downhill
+  ChannelParameters gradient_;                                                 ///< of half the cost by them, downhill
   std::vector<FollowedLane> lanes_;
   double until_ = -std::numeric_limits<double>::infinity();
 };

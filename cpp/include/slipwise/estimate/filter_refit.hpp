@@ -21,10 +21,11 @@ namespace slipwise {
 class FilterRefit {
  public:
   /// `before` was known before the first of the segments; `now` after the last of `count`.
-  FilterRefit(MotionModel model, Estimate before, FilterState now, const NoiseSettings& noise,
-              const IekfSettings& iekf, std::size_t count);
+  FilterRefit(MotionModel model, Estimate before, FilterState now, const NoiseSettings& noise, const IekfSettings& iekf,
+              std::size_t count);
 
-  /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there is more to do now.
+  /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there is more to do
+  /// now.
   bool advance(std::span<const DrivenSegment> segments);
   /// What is known now; nothing where the fit failed.
   std::optional<FilterState> result() &&;

@@ -13,8 +13,7 @@ struct FilterState {
   NoiseScale noise_scale;
   ScoreCovariance scores;
 
-  FilterState(const MotionModel& model, const NoiseSettings& noise)
-      : estimate{}, noise_scale(noise), scores(model) {}
+  FilterState(const MotionModel& model, const NoiseSettings& noise) : estimate{}, noise_scale(noise), scores(model) {}
 
   /// Learns one segment.
   IekfUpdate learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,

@@ -41,9 +41,9 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model that
-  /// weighed most before. Where the average is not `active`, since others predict better, refits are as rare as those of
-  /// a filter without weight.
+  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model
+  /// that weighed most before. Where the average is not `active`, since others predict better, refits are as rare as
+  /// those of a filter without weight.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
   /// The same piece by piece: `advance` does one, and says whether there is more to do; then `update` is that of the
   /// segment. What was learned before stands until then, but for the models that have learned the segment.
@@ -83,9 +83,9 @@ class ModelAverage {
   ChangeDetector detector_;
   ChangeTest change_;
   std::optional<DrivenSegment> learning_;  ///< the segment that is being learned
-  bool active_ = true;               ///< as it was started
-  std::vector<IekfUpdate> updates_;  ///< of the models that have learned it
-  std::size_t heaviest_ = 0;         ///< model before it
+  bool active_ = true;                     ///< as it was started
+  std::vector<IekfUpdate> updates_;        ///< of the models that have learned it
+  std::size_t heaviest_ = 0;               ///< model before it
   int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
 };
 

@@ -124,10 +124,10 @@ class MotionLearner {
   SegmentStream stream_;
   MotionHypotheses hypotheses_;
   ColouredSlip disturbance_;
-  std::deque<StreamItem> waiting_;    ///< segments in the order in which they are learned
-  bool started_ = false;              ///< whether the first of them is being learned
-  std::deque<Knowledge> known_;       ///< of late; the last is the newest
-  std::deque<DrivenSegment> recent_;  ///< segments of the run
+  std::deque<StreamItem> waiting_;              ///< segments in the order in which they are learned
+  bool started_ = false;                        ///< whether the first of them is being learned
+  std::deque<Knowledge> known_;                 ///< of late; the last is the newest
+  std::deque<DrivenSegment> recent_;            ///< segments of the run
   std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
   std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
   std::vector<HorizonErrors> errors_;

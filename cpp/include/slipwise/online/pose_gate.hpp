@@ -54,7 +54,7 @@ class PoseGate {
   std::vector<MeasuredPose> waiting_;   ///< out of reach of the last
   std::array<SpeedRange, 2> bends_;     ///< second differences of x and y [m]
   std::size_t bend_count_ = 0;
-  std::optional<long> given_;           ///< frame of the last pose as it was given
+  std::optional<long> given_;  ///< frame of the last pose as it was given
   long frame_ = -1;
 };
 

@@ -31,7 +31,7 @@ void push(MotionLearner& learner, const Recording& run);
 /// Recorded runs as segments.
 struct CutRuns {
   std::vector<DrivenSegment> segments;
-  std::vector<std::size_t> run;           ///< of each segment
+  std::vector<std::size_t> run;  ///< of each segment
   std::vector<Rejected> rejected;
   std::vector<std::size_t> rejected_run;  ///< of each of these
 };

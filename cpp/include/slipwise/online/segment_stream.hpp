@@ -21,9 +21,9 @@ namespace slipwise {
 
 /// How measurements become segments.
 struct StreamSettings {
-  bool from_commands = true;    ///< motion is predicted from commands; otherwise from wheel speeds
-  double segment_length = 2.5;  ///< of what is learned [s]
-  bool whole_frames = true;     ///< a frame that is shorter is learned as one segment
+  bool from_commands = true;          ///< motion is predicted from commands; otherwise from wheel speeds
+  double segment_length = 2.5;        ///< of what is learned [s]
+  bool whole_frames = true;           ///< a frame that is shorter is learned as one segment
   std::optional<double> stride = {};  ///< time between the starts of segments [s]; without one they are disjoint
   SegmentRules rules = {};
   double unknown_after = 0.5;                      ///< an input is unknown once it is older than this [s]
