@@ -35,8 +35,8 @@ FACTORS = (0.5, 0.75, 1.5)
 INPUTS = ("wheel", "command")
 MEAN, WORST = 1.15, 1.5  # times the heading error of a learner of the new terrain alone
 ALARMS, LOSS = 1.0, 1.01  # alarms per 1000 segments; times the heading error without the detector
-NOISES = {"0.05": 0.6, "0.026": 0.3}  # mean heading error at 5 s [rad]: factor of white slip
-SLOW, DEGREES, CLOCK_OFFSET = 0.1, 4.0, 0.02
+NOISES = {"0.05": 0.7, "0.026": 0.32}  # mean heading error at 5 s [rad]: factor of white slip
+SLOW, DEGREES, CLOCK_OFFSET = 0.08, 4.0, 0.02
 
 
 @dataclass(frozen=True)

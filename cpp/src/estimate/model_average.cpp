@@ -111,24 +111,65 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
 }
 
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment, bool active) {
-  speeds_.see(inputs, segment);
-  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(inputs, segment);
+  start(inputs, segment, active);
+  while (advance()) {
+  }
+  return update_;
+}
+
+void ModelAverage::start(const InputTrack& inputs, const Segment& segment, bool active) {
+  while (advance()) {
+  }
+  learning_ = Learning{.inputs = inputs, .segment = segment, .active = active};
+}
+
+bool ModelAverage::advance() {
+  if (!learning_) {
+    return false;
+  }
+  if (!learning_->tested) {
+    look_for_change();
+    return true;
+  }
+  update_next_filter();
+  if (learning_->updates.size() < filters_.size()) {
+    return true;
+  }
+  reweigh();
+  learning_.reset();
+  return false;
+}
+
+void ModelAverage::look_for_change() {
+  Learning& now = learning_.value();
+  speeds_.see(now.inputs, now.segment);
+  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
   if (change_.alarm) {
     doubt();
   }
-  std::vector<IekfUpdate> updates;
+  now.tested = true;
+}
+
+void ModelAverage::update_next_filter() {
+  Learning& now = learning_.value();
+  const std::size_t i = now.updates.size();
+  const bool counts = now.active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
+  now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference(), counts));
+}
+
+void ModelAverage::reweigh() {
+  const std::vector<IekfUpdate>& updates = learning_.value().updates;
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const bool heard = active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
-    updates.push_back(filters_[i].learn(inputs, segment, speeds_.reference(), heard));
-    innovations.push_back(updates.back().innovation);
-    covariances.push_back(updates.back().innovation_covariance);
+  for (const IekfUpdate& update : updates) {
+    innovations.push_back(update.innovation);
+    covariances.push_back(update.innovation_covariance);
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
-  const Eigen::Index rivals = weights_.size() / prior_.size();
-  const Eigen::VectorXd prior = prior_.replicate(rivals, 1) / static_cast<double>(rivals);
+  update_ = updates[static_cast<std::size_t>(heaviest)];
+  const Eigen::Index sides = weights_.size() / prior_.size();
+  const Eigen::VectorXd prior = prior_.replicate(sides, 1) / static_cast<double>(sides);
   weights_ =
       reweighed(weights_, common_log_scores(weights_, innovations, covariances), prior, settings_.weighing, seen_);
   ++seen_;
@@ -138,7 +179,6 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment,
       settle();
     }
   }
-  return updates[static_cast<std::size_t>(heaviest)];
 }
 
 /// By what the average predicted as it was before the segments that are tested together: the noise factors and the

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,14 @@ class ModelAverage {
   /// learned again less often, as those of a filter without weight are.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
 
+  /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
+  void start(const InputTrack& inputs, const Segment& segment, bool active = true);
+
+  /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
+  bool advance();
+  /// Of the last segment that was learned: the update of the model that weighed most before.
+  const IekfUpdate& update() const { return update_; }
+
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
 
@@ -54,6 +63,18 @@ class ModelAverage {
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
+  /// A segment that is being learned, and the updates so far.
+  struct Learning {
+    InputTrack inputs;
+    Segment segment;
+    bool active = true;
+    bool tested = false;
+    std::vector<IekfUpdate> updates = {};
+  };
+
+  void look_for_change();
+  void update_next_filter();
+  void reweigh();
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
   void doubt();
   void settle();
@@ -72,6 +93,8 @@ class ModelAverage {
   std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;
+  std::optional<Learning> learning_;
+  IekfUpdate update_ = {};
   int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
 };
 
