@@ -119,12 +119,7 @@ def kept(found: list[Found]) -> bool:
     ratios = [each.ratio for each in found]
     per_thousand = 1000.0 * sum(each.alarms for each in found) / sum(each.segments for each in found)
     loss = geometric_mean([each.same / each.unwatched for each in found])
-    return (
-        geometric_mean(ratios) <= MEAN
-        and max(ratios) <= WORST
-        and per_thousand <= ALARMS
-        and loss <= LOSS
-    )
+    return geometric_mean(ratios) <= MEAN and max(ratios) <= WORST and per_thousand <= ALARMS and loss <= LOSS
 
 
 def line(name: str, found: list[Found]) -> str:

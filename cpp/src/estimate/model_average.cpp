@@ -144,8 +144,9 @@ void ModelAverage::look_for_change() {
   Learning& now = learning_.value();
   speeds_.see(now.inputs, now.segment);
   change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
-  if (change_.alarm) {
+  if (change_.suspicion) {
     doubt();
+    announced_ = change_.alarm;
   }
   now.tested = true;
 }
@@ -206,6 +207,7 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
 /// passing disturbance costs little, and the old ground is known at once where it comes back soon.
 void ModelAverage::doubt() {
   before_.clear();
+  detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
   for (CausalFilter& filter : filters_) {
     filter.forget(settings_.change.forget);
@@ -227,6 +229,7 @@ void ModelAverage::forget(double fraction) {
 void ModelAverage::settle() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  change_.alarm = changed && !announced_;
   seen_ = changed ? 0 : seen_;  // of a new ground, few data have spoken
   weights_ = basis_weights();
   filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),

@@ -95,7 +95,8 @@ class ModelAverage {
   ChangeTest change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
+  int on_trial_ = 0;        ///< segments until the models that forgot have to have proved better
+  bool announced_ = false;  ///< whether the test itself raised an alarm for them
 };
 
 }  // namespace slipwise
