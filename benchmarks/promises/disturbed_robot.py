@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot with known slip and actuators, whose slip is disturbed by white or by slowly varying noise.
+"""A robot with known slip and actuators, whose slip is disturbed by noise and may change with the terrain.
 
 It is commanded random speeds and yaw rates for 1 to 4 s each, 20 times a second; its actuators follow after
 a delay with a first-order lag. Slip rates are those of `BASIS`, and noise: white, of a density that grows
 with the motion, or first-order Gauss-Markov fractions of v and omega with a correlation time of 5 s, or both.
-Poses and wheel speeds come 20 times a second, with normal noise.
+White noise is normal or, where asked, Student distributed and constant for 0.1 s. Poses and wheel speeds come
+20 times a second, with normal noise; stamps of poses may be off by a constant. From a moment on, yaw slip
+may be another than before.
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ from slipwise.logs import Inputs, Log, Poses, Run
 Floats = NDArray[np.float64]
 
 STEP, RATE = 0.01, 20.0  # s of the simulation; Hz of all that is logged
+TAIL_SECONDS = 0.1  # s for which Student distributed slip stays as it was drawn
 BASIS = _core.Basis("true", ["V", "V*abs(w)"], ["V*w", "w"], ["w", "V"])
 SLIP = np.array([-0.05, -0.03, 0.06, 0.01, -0.3, 0.02])
 SLIP_STD = np.array([0.03, 0.02, 0.03, 0.01, 0.1, 0.02])  # from robot to robot
@@ -32,6 +35,7 @@ class Disturbance:
 
     white: float = 1.0  # factor of WHITE
     slow: float = 0.0  # factor of SLOW
+    degrees: float | None = None  # of freedom of a Student t that white slip has; None: normal
 
 
 @dataclass(frozen=True)
@@ -45,7 +49,16 @@ class Robot:
     white: tuple[float, float, float] = (1e-3, 5e-4, 2e-3)  # density of slip [m, m, rad^2/m] of motion
     slow: tuple[float, float, float, float] = (0.05, 0.05, 0.15, 0.02)  # lon/V, lat/V, ang/w, ang/V
     correlation_time: float = 5.0  # s
+    clock_offset: float = 0.0  # s by which poses are stamped too late
     disturbance: Disturbance = field(default_factory=Disturbance)
+
+
+@dataclass(frozen=True)
+class TerrainChange:
+    """From `at` on, yaw slip is `factor` times that of before."""
+
+    at: float  # s
+    factor: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,14 +73,19 @@ class DisturbedRun:
         return np.asarray(_core.slip_rate(BASIS, self.slip, _core.SlipState(v, omega, 0.0, 0.0)))
 
 
-def disturbed_run(robot: Robot, minutes: float, *, seed: int) -> DisturbedRun:
-    """Simulate one robot whose slip parameters are drawn by the seed."""
+def disturbed_run(
+    robot: Robot, minutes: float, *, seed: int, change: TerrainChange | None = None
+) -> DisturbedRun:
+    """Simulate one robot whose slip parameters are drawn by the seed; `slip` is that before any change."""
     random = np.random.default_rng([seed, 18])
     slip = SLIP + SLIP_STD * random.standard_normal(len(SLIP))
     commands = _commands(minutes * 60.0, random)
     t = np.arange(0.0, commands.t[-1] + STEP / 2, STEP)
     v, omega = (_followed(robot, commands, channel, t) for channel in (0, 1))
     twist = np.column_stack((v, np.zeros_like(v), omega)) + _slip_rates(robot, slip, (v, omega), random)
+    if change is not None:
+        more = np.where(t >= change.at, change.factor - 1.0, 0.0)
+        twist[:, 2] += more * (slip[4] * omega + slip[5] * v)
     every = round(1.0 / (STEP * RATE))
     whole = len(t) // every * every
     means = [channel[:whole].reshape(-1, every).mean(axis=1) for channel in (v, omega)]
@@ -107,13 +125,22 @@ def _slip_rates(
     ang = slip[4] * omega + slip[5] * v
     motion = np.abs(v) + 0.3 * np.abs(omega)
     density = np.array(robot.white) * motion[:, None] / STEP
-    white = robot.disturbance.white * np.sqrt(density) * random.standard_normal((len(v), 3))
+    white = robot.disturbance.white * np.sqrt(density) * _white(robot.disturbance.degrees, len(v), random)
     keep = np.exp(-STEP / robot.correlation_time)
     drawn = random.standard_normal((len(v), 4))
     drawn[1:] *= np.sqrt(1.0 - keep * keep)
     state = lfilter([1.0], [1.0, -keep], drawn, axis=0) * robot.slow * robot.disturbance.slow
     slow = (state[:, 0] * v, state[:, 1] * v, state[:, 2] * omega + state[:, 3] * v)
     return np.asarray(np.column_stack((lon, lat, ang)) + white + np.column_stack(slow))
+
+
+def _white(degrees: float | None, count: int, random: np.random.Generator) -> Floats:
+    """Noise of unit variance per step; where it is Student distributed, with the same spectral density."""
+    if degrees is None:
+        return random.standard_normal((count, 3))
+    every = round(TAIL_SECONDS / STEP)
+    drawn = random.standard_t(degrees, (count // every + 1, 3)) * np.sqrt((degrees - 2.0) / degrees / every)
+    return np.repeat(drawn, every, axis=0)[:count]
 
 
 def _poses(robot: Robot, twist: Floats, t: Floats, random: np.random.Generator) -> Poses:
@@ -128,7 +155,7 @@ def _poses(robot: Robot, twist: Floats, t: Floats, random: np.random.Generator) 
     noise = random.standard_normal((3, len(t[at])))
     measured = yaw[at] + robot.pose_std[1] * noise[2]
     return Poses(
-        t=t[at],
+        t=t[at] + robot.clock_offset,
         x=x[at] + robot.pose_std[0] * noise[0],
         y=y[at] + robot.pose_std[0] * noise[1],
         yaw=np.arctan2(np.sin(measured), np.cos(measured)),

@@ -64,6 +64,7 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("detect", &ChangeSettings::detect)
       .def_rw("threshold", &ChangeSettings::threshold)
+      .def_rw("suspicion", &ChangeSettings::suspicion)
       .def_rw("shortest", &ChangeSettings::shortest)
       .def_rw("longest", &ChangeSettings::longest)
       .def_rw("fraction", &ChangeSettings::fraction)

@@ -102,12 +102,14 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
   for (int n = settings_.shortest; n <= static_cast<int>(std::ssize(recent_)); ++n) {
     const double log_odds = test_last(n);
     if (log_odds > best.log_odds) {
-      best = {.log_odds = log_odds, .segments = n, .alarm = false};
+      best = {.log_odds = log_odds, .segments = n};
     }
   }
-  best.alarm = best.log_odds > settings_.threshold && seen_ > settings_.warm_up;
+  const bool warm = seen_ > settings_.warm_up;
+  best.alarm = warm && best.log_odds > settings_.threshold;
+  best.suspicion = warm && best.log_odds > std::min(settings_.suspicion, settings_.threshold);
   if (best.alarm) {
-    recent_.clear();
+    restart();
   }
   return best;
 }

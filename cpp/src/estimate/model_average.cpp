@@ -114,29 +114,29 @@ IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment,
   start(inputs, segment, active);
   while (advance()) {
   }
-  return update();
+  return update_;
 }
 
 void ModelAverage::start(const InputTrack& inputs, const Segment& segment, bool active) {
-  learning_.emplace(DrivenSegment{.inputs = inputs, .segment = segment});
-  active_ = active;
-  updates_.clear();
-  speeds_.see(inputs, segment);
-  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(inputs, segment);
-  if (change_.alarm) {
-    doubt();
+  while (advance()) {
   }
+  learning_ = Learning{.inputs = inputs, .segment = segment, .active = active};
 }
 
 bool ModelAverage::advance() {
-  const std::size_t i = updates_.size();
-  if (i < filters_.size()) {
-    const bool active = active_ && weights_[static_cast<Eigen::Index>(i)] > kHeard;
-    const DrivenSegment& driven = learning_.value();
-    updates_.push_back(filters_[i].learn(driven.inputs, driven.segment, speeds_.reference(), active));
+  if (!learning_) {
+    return false;
+  }
+  if (!learning_->tested) {
+    look_for_change();
     return true;
   }
-  update_weights();
+  update_next_filter();
+  if (learning_->updates.size() < filters_.size()) {
+    return true;
+  }
+  reweigh();
+  learning_.reset();
   return false;
 }
 
@@ -144,18 +144,37 @@ bool ModelAverage::refit_slice() {
   return std::ranges::any_of(filters_, [](CausalFilter& filter) { return filter.refit_slice(); });
 }
 
-void ModelAverage::update_weights() {
+void ModelAverage::look_for_change() {
+  Learning& now = learning_.value();
+  speeds_.see(now.inputs, now.segment);
+  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
+  if (change_.suspicion) {
+    doubt();
+    announced_ = change_.alarm;
+  }
+  now.tested = true;
+}
+
+void ModelAverage::update_next_filter() {
+  Learning& now = learning_.value();
+  const std::size_t i = now.updates.size();
+  const bool counts = now.active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
+  now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference(), counts));
+}
+
+void ModelAverage::reweigh() {
+  const std::vector<IekfUpdate>& updates = learning_.value().updates;
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
-  for (const IekfUpdate& update : updates_) {
+  for (const IekfUpdate& update : updates) {
     innovations.push_back(update.innovation);
     covariances.push_back(update.innovation_covariance);
   }
   Eigen::Index heaviest = 0;
   weights_.maxCoeff(&heaviest);
-  heaviest_ = static_cast<std::size_t>(heaviest);
-  const Eigen::Index rivals = weights_.size() / prior_.size();
-  const Eigen::VectorXd prior = prior_.replicate(rivals, 1) / static_cast<double>(rivals);
+  update_ = updates[static_cast<std::size_t>(heaviest)];
+  const Eigen::Index sides = weights_.size() / prior_.size();
+  const Eigen::VectorXd prior = prior_.replicate(sides, 1) / static_cast<double>(sides);
   weights_ =
       reweighed(weights_, common_log_scores(weights_, innovations, covariances), prior, settings_.weighing, seen_);
   ++seen_;
@@ -192,6 +211,7 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
 /// passing disturbance costs little, and the old ground is known at once where it comes back soon.
 void ModelAverage::doubt() {
   before_.clear();
+  detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
   for (CausalFilter& filter : filters_) {
     filter.forget(settings_.change.forget);
@@ -213,6 +233,7 @@ void ModelAverage::forget(double fraction) {
 void ModelAverage::settle() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  change_.alarm = changed && !announced_;
   seen_ = changed ? 0 : seen_;  // of a new ground, few data have spoken
   weights_ = basis_weights();
   filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),

@@ -129,6 +129,26 @@ TEST_CASE("heavy-tailed residuals raise at most one alarm in a thousand segments
   CHECK(longest == ChangeSettings{}.longest);  // and none is remembered for longer
 }
 
+TEST_CASE("a small change is suspected before it is an alarm, and a restart leaves out what was before") {
+  std::mt19937_64 random(157);
+  ChangeDetector detector{ChangeSettings{}, kKinds};
+  for (int i = 0; i < 60; ++i) {
+    detector.see(noise(random), kUnit, turns(i, 2.0));
+  }
+  int suspected = -1;
+  int found = -1;
+  for (int i = 0; i < 20; ++i) {
+    const ChangeTest test = detector.see(turns(i, 2.0).col(1) * 1.2 + noise(random), kUnit, turns(i, 2.0));
+    suspected = test.suspicion && suspected < 0 ? i : suspected;
+    found = test.alarm && found < 0 ? i : found;
+    CHECK((!test.alarm || test.suspicion));
+  }
+  CHECK(suspected >= 0);
+  CHECK((found < 0 || suspected <= found));
+  detector.restart();
+  CHECK(detector.see(noise(random), kUnit, turns(0, 2.0)).segments == 0);
+}
+
 TEST_CASE("a parked robot shows no change") {
   std::mt19937_64 random(155);
   ChangeDetector detector{ChangeSettings{}, kKinds};

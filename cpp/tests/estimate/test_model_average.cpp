@@ -50,6 +50,49 @@ TEST_CASE("a model that was wrong comes back when the ground changes and nobody 
   CHECK(average.state().weights[0] > 0.5);
 }
 
+TEST_CASE("a segment is learned in pieces as it is at once, alarms included") {
+  const MotionModel real(named_basis("edd-2"), {});
+  const std::vector<Basis> bases{plain(), named_basis("edd-2")};
+  ModelAverage whole("auto", bases, {}, {}, {});
+  ModelAverage pieces = whole;
+  int alarms = 0;
+  for (const double yaw_slip : {-0.4, 0.0}) {
+    const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.1, yaw_slip),
+                                             {.seed = 83, .windows = 40, .window = 2.0, .noise = kNoise});
+    for (const Segment& segment : drive.segments) {
+      whole.learn(drive.inputs, segment);
+      pieces.start(drive.inputs, segment);
+      std::size_t count = 1;
+      while (pieces.advance()) {
+        ++count;
+      }
+      CHECK(count >= 1 + bases.size());
+      alarms += pieces.change().alarm ? 1 : 0;
+      CHECK(pieces.update().nis == whole.update().nis);
+      CHECK(pieces.state().estimate.mean == whole.state().estimate.mean);
+      CHECK(pieces.state().weights == whole.state().weights);
+    }
+    CHECK_FALSE(pieces.advance());
+  }
+  CHECK(alarms > 0);
+}
+
+TEST_CASE("a segment that is not finished is learned before the next one") {
+  const MotionModel real(named_basis("edd-2"), {});
+  const auto drive = tests::simulate_drive(real, Eigen::Vector2d(-0.1, -0.4),
+                                           {.seed = 84, .windows = 10, .window = 2.0, .noise = kNoise});
+  ModelAverage whole("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
+  ModelAverage pieces = whole;
+  for (const Segment& segment : drive.segments) {
+    whole.learn(drive.inputs, segment);
+    pieces.start(drive.inputs, segment);
+    pieces.advance();
+  }
+  while (pieces.advance()) {
+  }
+  CHECK(pieces.state().estimate.mean == whole.state().estimate.mean);
+}
+
 TEST_CASE("one basis is its own average") {
   const Basis basis = named_basis("edd-2");
   const MotionModel real(basis, {});

@@ -11,20 +11,22 @@ namespace slipwise {
 struct ChangeSettings {
   bool detect = true;
   double threshold = 9.5;  ///< log odds of a change against none beyond which there is an alarm [-]
+  double suspicion = 3.0;  ///< log odds beyond which models that forgot are tried, without an alarm [-]
   int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a ground
-  int longest = 4;         ///< segments that are tested together, at most
+  int longest = 8;         ///< segments that are tested together, at most
   double fraction = 0.1;   ///< usual size of a change of a term's slip, as a fraction of the driven twist [-]
-  double forget = 0.03;    ///< on an alarm, part of the prior variance that the slip parameters get back [-]
-  int trial = 20;          ///< segments after an alarm in which the models as they were compete with those that forgot
-  int warm_up = 20;        ///< segments before the first test, in which the size of the noise is learned
-  double memory = 100.0;   ///< segments over which the usual size and likeness of residuals are averaged [-]
+  double forget = 0.1;     ///< on a suspicion, part of the prior variance that the slip parameters get back [-]
+  int trial = 20;    ///< segments after a suspicion in which the models as they were compete with those that forgot
+  int warm_up = 20;  ///< segments before the first test, in which the size of the noise is learned
+  double memory = 100.0;  ///< segments over which the usual size and likeness of residuals are averaged [-]
 };
 
 /// The test of one segment together with those just before it.
 struct ChangeTest {
-  double log_odds = 0.0;  ///< of the likeliest change; 0 where nothing speaks for one
-  int segments = 0;       ///< since that change
-  bool alarm = false;
+  double log_odds = 0.0;   ///< of the likeliest change; 0 where nothing speaks for one
+  int segments = 0;        ///< since that change
+  bool suspicion = false;  ///< enough to try models that forgot
+  bool alarm = false;      ///< a change was found: by the test, or since models that forgot predicted better
 };
 
 /// Log odds that a change explains residuals, and what the fit of the change expects of unchanged ground.
@@ -55,6 +57,9 @@ class ChangeDetector {
   /// alarm the test starts anew.
   ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
+
+  /// Leaves out of the next tests what was measured before.
+  void restart() { recent_.clear(); }
 
  private:
   struct Whitened {

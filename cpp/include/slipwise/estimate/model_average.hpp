@@ -13,7 +13,6 @@
 #include "slipwise/estimate/change_detector.hpp"
 #include "slipwise/estimate/driven_speeds.hpp"
 #include "slipwise/estimate/weighing.hpp"
-#include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
 
@@ -41,15 +40,19 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model
-  /// that weighed most before. Where the average is not `active`, since others predict better, refits are as rare as
-  /// those of a filter without weight.
+  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
+  /// weighed most before. Where the average is not `active`, since others predict better, the first segments are
+  /// learned again less often, as those of a filter without weight are.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
-  /// The same piece by piece: `advance` does one, and says whether there is more to do; then `update` is that of the
-  /// segment. What was learned before stands until then, but for the models that have learned the segment.
+
+  /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
   void start(const InputTrack& inputs, const Segment& segment, bool active = true);
+
+  /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
   bool advance();
-  const IekfUpdate& update() const { return updates_[heaviest_]; }
+  /// Of the last segment that was learned: the update of the model that weighed most before.
+  const IekfUpdate& update() const { return update_; }
+
   /// Does a bounded slice of the models' refits; whether there was any to do. Results do not depend on it.
   bool refit_slice();
 
@@ -63,8 +66,19 @@ class ModelAverage {
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
  private:
+  /// A segment that is being learned, and the updates so far.
+  struct Learning {
+    InputTrack inputs;
+    Segment segment;
+    bool active = true;
+    bool tested = false;
+    std::vector<IekfUpdate> updates = {};
+  };
+
+  void look_for_change();
+  void update_next_filter();
+  void reweigh();
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
-  void update_weights();
   void doubt();
   void settle();
   Eigen::VectorXd basis_weights() const;
@@ -82,11 +96,10 @@ class ModelAverage {
   std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;
-  std::optional<DrivenSegment> learning_;  ///< the segment that is being learned
-  bool active_ = true;                     ///< as it was started
-  std::vector<IekfUpdate> updates_;        ///< of the models that have learned it
-  std::size_t heaviest_ = 0;               ///< model before it
-  int on_trial_ = 0;  ///< segments until the models after the last alarm have to have proved better
+  std::optional<Learning> learning_;
+  IekfUpdate update_ = {};
+  int on_trial_ = 0;        ///< segments until the models that forgot have to have proved better
+  bool announced_ = false;  ///< whether the test itself raised an alarm for them
 };
 
 }  // namespace slipwise
