@@ -139,7 +139,9 @@ def _learner() -> _core.MotionLearner:
 
 
 def _recording() -> _core.Recording:
-    return _core.Recording(_rows(), _rows(), np.zeros((2, 3)) + [[0.0], [0.1]], np.column_stack((_rows(), T * 0)))
+    return _core.Recording(
+        _rows(), _rows(), np.zeros((2, 3)) + [[0.0], [0.1]], np.column_stack((_rows(), T * 0))
+    )
 
 
 def _rows() -> np.ndarray:
