@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Settings reach the streaming learner: the input decides what is learned of time, the basis which ways are tried."""
+"""Settings reach the streaming learner, by the input and by the basis."""
 
 from __future__ import annotations
 

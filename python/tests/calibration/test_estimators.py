@@ -111,8 +111,8 @@ def test_iekf_is_the_filter_that_calibrates_until_that_refits(settings: Settings
         average.learn(windows.track(i), windows.segments[i], True)
         known, posterior = average.state(), estimating.belief(i + 1)
         assert posterior.mean == pytest.approx(np.array(known.estimate.mean), rel=1e-9)
-    # Means that agree after each segment have had the same gains; the covariance that the average reports also
-    # holds what residuals say of the noise model.
+    # Means that agree after each segment have had the same gains; the covariance that the average
+    # reports also holds what residuals say of the noise model.
 
 
 def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log pushed through the learner once: its history, its predictions, and that nothing of the future is in them."""
+"""A log pushed through the learner once: its history, its predictions, and nothing of the future in them."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Replay is the same thing: a program that pushes a file's rows gets what `evaluate` and `calibrate` write."""
+"""A program that pushes the rows of a file gets what `evaluate` and `calibrate` write."""
 
 from __future__ import annotations
 
