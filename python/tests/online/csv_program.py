@@ -82,7 +82,7 @@ def push(learner: _core.MotionLearner, item: Item) -> None:
 
 
 def inputs_ahead(run: CsvRun, place: int, stream: str, end: float) -> np.ndarray:
-    """Return the inputs of a run behind item `place` and until `end` [s]; rows of (t, v, vy, omega), [N, 4]."""
+    """Return the inputs behind item `place` and until `end` [s]; rows of (t, v, vy, omega), [N, 4]."""
     rows = list[Numbers]()
     for name, numbers in run.items[place + 1 :]:
         if numbers[0] > end:
