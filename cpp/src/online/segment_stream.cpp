@@ -273,8 +273,16 @@ SegmentStream::Tilt SegmentStream::tilt_at(double t) const {
   return known ? *std::prev(after) : Tilt{t, 0.0, 0.0};
 }
 
+/// Inputs are kept for segments that have begun, unless poses do not come for long.
 void SegmentStream::trim() {
-  const double oldest = std::max(now_, newest_ - settings_.latency - kLongestGap) - keep_;
+  double begun = std::max(now_, newest_ - settings_.latency);
+  for (const SegmentCutter* cutter : {&learned_, &slip_, &wheel_cutter_}) {
+    begun = std::min(begun, cutter->begins());
+  }
+  for (const SegmentCutter& cutter : targets_) {
+    begun = std::min(begun, cutter.begins());
+  }
+  const double oldest = std::max(begun, newest_ - settings_.latency - kLongestGap) - keep_;
   commands_.drop_before(oldest);
   wheels_.drop_before(oldest);
   while (tilts_.size() > 1 && tilts_[1].t < oldest) {

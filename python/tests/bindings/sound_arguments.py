@@ -139,7 +139,9 @@ def _learner() -> _core.MotionLearner:
 
 
 def _recording() -> _core.Recording:
-    return _core.Recording(_rows(), _rows(), np.zeros((2, 3)) + [[0.0], [0.1]], np.column_stack((_rows(), T * 0)))
+    return _core.Recording(
+        _rows(), _rows(), np.array([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0]]), np.column_stack((_rows(), T * 0))
+    )
 
 
 def _rows() -> np.ndarray:
@@ -225,7 +227,7 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "DriveRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
     "MotionLearner.forget fraction": lambda: 0.5,
-    "MotionLearner.predict future": lambda: _rows()[-1:] + [[0.1, 0.0, 0.0, 0.0]],
+    "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
     "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None)],
     "Mppi.step past": lambda: np.zeros((2, 2)),
     "Mppi.step reference": lambda: np.zeros((8, 3)),

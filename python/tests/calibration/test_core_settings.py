@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Settings reach the streaming learner: the input decides what is learned of time, the basis which ways are tried."""
+"""Settings reach the streaming learner, by the input and by the basis."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def test_from_commands_lag_and_delay_are_learned_in_longer_segments() -> None:
 
 
 def test_segments_are_cut_as_those_of_other_methods_are() -> None:
-    settings = make_settings({"window": {"length": 3.0, "unknown_after": 0.3}, "mount": {"x": 0.4, "yaw": 0.2}})
+    settings = make_settings(
+        {"window": {"length": 3.0, "unknown_after": 0.3}, "mount": {"x": 0.4, "yaw": 0.2}}
+    )
     stream = core_settings(settings, "wheel", HORIZONS).stream
     assert (stream.segment_length, stream.unknown_after) == (3.0, 0.3)
     assert stream.sensor.vector().tolist() == [0.4, 0.0, 0.2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A log pushed through the learner once: its history, its predictions, and that nothing of the future is in them."""
+"""A log pushed through the learner once: its history, its predictions, and nothing of the future in them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,17 @@ HORIZONS = (1.0, 2.0, 5.0)
 KEEP = Keep(0.6)
 SLIP = _core.named_basis("edd-2")
 INPUTS = ("wheel", "command")
-COMPARED = ("t_end", "pose", "covariance", "growth", "dof", "usual_nis", "structure", "measured", "learned_until")
+COMPARED = (
+    "t_end",
+    "pose",
+    "covariance",
+    "growth",
+    "dof",
+    "usual_nis",
+    "structure",
+    "measured",
+    "learned_until",
+)
 
 
 def moved(run: Run, seconds: float) -> Run:
@@ -50,7 +60,9 @@ def until(log: Log, t: float) -> Log:
     return Log(runs=tuple(runs))
 
 
-def learned(log: Log, input_name: str, settings: Settings | None = None, keep: Keep | None = None) -> LearnedLog:
+def learned(
+    log: Log, input_name: str, settings: Settings | None = None, keep: Keep | None = None
+) -> LearnedLog:
     return learn_log(prepare_drive(log, input_name), settings or Settings(), HORIZONS, keep=keep)
 
 
@@ -136,7 +148,9 @@ def test_nothing_measured_after_a_start_is_used_and_parameters_keep_the_embargo(
 @pytest.mark.parametrize("t", [11.3, 26.02, 49.99, 66.6, 80.0])
 def test_a_log_cut_off_at_any_time_gives_the_same_predictions_until_then(input_name: str, t: float) -> None:
     compared = 0
-    for part, p in zip(learned(until(log(), t), input_name).predictions, whole(input_name).predictions, strict=True):
+    for part, p in zip(
+        learned(until(log(), t), input_name).predictions, whole(input_name).predictions, strict=True
+    ):
         places = {start: i for i, start in enumerate(p.t_start.tolist())}
         for i, start in enumerate(part.t_start.tolist()):
             j = places[start]

@@ -156,7 +156,9 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
 def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     derivations = read("derivations.md")
     flowing = " ".join(derivations.split())
-    scale_std, dof, dof_std = constants("identify/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd")
+    scale_std, dof, dof_std = constants(
+        "identify/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd"
+    )
     assert f"ln c normal about ln 1 with standard deviation {scale_std:g}" in flowing
     assert f"ln ν about ln {dof:g} with {dof_std:g}" in flowing
     assert f"ν lies between {student.LEAST_DOF:g} and {student.MOST_DOF:g}" in flowing

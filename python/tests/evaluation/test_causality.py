@@ -69,7 +69,7 @@ def cut_off(log: Log, t: float) -> Log:
 
 
 def spoilt_poses(poses: Poses, after: float) -> Poses:
-    """Move the poses after `after` [s], and turn them, as far as passes for a measurement; the stamps stay."""
+    """Move and turn the poses after `after` [s] as far as passes for a measurement; stamps stay."""
     late = poses.t > after
     return replace(
         poses,

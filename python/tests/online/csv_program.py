@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program of its own beside `evaluate`: it reads a tidy CSV row by row and pushes what it finds into a learner."""
+"""A program beside `evaluate`: it reads a tidy CSV row by row and pushes what it finds into a learner."""
 
 from __future__ import annotations
 
@@ -82,12 +82,12 @@ def push(learner: _core.MotionLearner, item: Item) -> None:
 
 
 def inputs_ahead(run: CsvRun, place: int, stream: str, end: float) -> np.ndarray:
-    """Return the inputs of a run behind item `place` and until `end` [s]; rows of (t, v, vy, omega), [N, 4]."""
+    """Return the inputs behind item `place` and until `end` [s]; rows of (t, v, vy, omega), [N, 4]."""
     rows = list[Numbers]()
     for name, numbers in run.items[place + 1 :]:
         if numbers[0] > end:
             break
-        if name == stream and (not rows or numbers[0] > rows[-1][0]):  # a stamp that comes again is rejected
+        if name == stream and (not rows or numbers[0] > rows[-1][0]):
             t, v, omega, vy = numbers
             rows.append((t, v, vy, omega))
     return np.array(rows).reshape(-1, 4)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Replay is the same thing: a program that pushes a file's rows gets what `evaluate` and `calibrate` write."""
+"""A program that pushes the rows of a file gets what `evaluate` and `calibrate` write."""
 
 from __future__ import annotations
 
@@ -44,10 +44,8 @@ def new_learner(input_name: str, horizons: Sequence[float]) -> _core.MotionLearn
     return _core.MotionLearner(core_settings(Settings(), input_name, horizons))
 
 
-def differences(
-    path: Path, input_name: str, log: Log, horizons: tuple[float, ...]
-) -> tuple[int, list[str]]:
-    """Push a file's rows; return how many predictions were compared, and those that differ from `evaluate`'s."""
+def differences(path: Path, input_name: str, log: Log, horizons: tuple[float, ...]) -> tuple[int, list[str]]:
+    """Push a file's rows; return how many predictions were compared, and those that differ."""
     options = EvaluationOptions(horizons=horizons, methods=("auto",))
     result = evaluate(log, input=input_name, options=options)
     learner, compared, differing = new_learner(input_name, result.horizons), 0, list[str]()

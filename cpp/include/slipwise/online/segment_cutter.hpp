@@ -3,6 +3,7 @@
 #pragma once
 
 #include <deque>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -78,6 +79,8 @@ class SegmentCutter {
   /// No pose of the run follows.
   std::vector<SegmentCut> finish(const InputHistory& inputs);
   double length() const { return length_; }
+  /// Stamp of the pose from which on the next segment may begin [s]; infinity where none came.
+  double begins() const { return poses_.empty() ? std::numeric_limits<double>::infinity() : poses_.front().pose.t; }
 
  private:
   void cut(double length, bool last, const InputHistory& inputs, std::vector<SegmentCut>& out);
