@@ -99,7 +99,8 @@ def main() -> int:
         print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
         return 2
     print(
-        f"{'log':44} {'pushes':>7} {'us/pose':>8} {'99.9 %':>8} {'longest':>8} {'>1ms %':>7} predict: median, longest us"
+        f"{'log':44} {'pushes':>7} {'us/pose':>8} {'99.9 %':>8} {'longest':>8} {'>1ms %':>7} "
+        "predict: median, longest us"
     )
     found = []
     for data in (data for data in data_sets(folder) if arguments.only in data.name):
@@ -112,8 +113,8 @@ def main() -> int:
             pushes = np.concatenate([latency.pushes for latency in group])
             worst = max(latency.per_pose for latency in group)
             print(
-                f"{input_name}: worst mean {worst:.0f} us per pose (wanted {wanted:.0f}), 99.9 % of pushes within "
-                f"{np.quantile(pushes, 0.999):.0f} us (1000), longest {pushes.max():.0f} us (5000)"
+                f"{input_name}: worst mean {worst:.0f} us per pose (wanted {wanted:.0f}), 99.9 % of pushes "
+                f"within {np.quantile(pushes, 0.999):.0f} us (1000), longest {pushes.max():.0f} us (5000)"
             )
     return 0
 

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Is a change of terrain found, or at least forgotten? Exits 1 where it is not.
 
-After 300 s, the yaw slip of simulated robots (`disturbed_robot`) is multiplied by 0.5, 0.75 or 1.5. Slip noise is
-Student distributed, with a slowly varying part, and of two magnitudes. From wheel speeds and from commands
-alone, predictions over 5 s that start 30 to 150 s after the step are held against those of a learner that has
-had the new terrain for the whole time, over the same commands and the same noise. Their mean heading errors may
-be 1.15 times as large in the geometric mean, and 1.5 times at most. On terrain that stays, at most one alarm
-per 1000 segments is raised, and what watches for changes costs at most 1 % of heading error.
+After 300 s, the yaw slip of simulated robots (`disturbed_robot`) is multiplied by 0.5, 0.75 or 1.5.
+Slip noise is Student distributed, with a slowly varying part, and of two magnitudes. From wheel
+speeds and from commands alone, predictions over 5 s that start 30 to 150 s after the step are held
+against those of a learner that has had the new terrain for the whole time, over the same commands
+and the same noise. Their mean heading errors may be 1.15 times as large in the geometric mean, and
+1.5 times at most. On terrain that stays, at most one alarm per 1000 segments is raised, and what
+watches for changes costs at most 1 % of heading error.
 """
 
 from __future__ import annotations

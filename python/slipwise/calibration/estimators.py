@@ -32,7 +32,7 @@ def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.Mo
 
 
 def learned_parts(settings: Settings, input_name: str) -> tuple[bool, bool]:
-    """Say whether lag and delay are learned, which commands bring, and the clock offset, which wheels bring."""
+    """Say whether lag and delay are learned, as from commands, and the clock offset, as from wheels."""
     dynamics = input_name == "command"
     return dynamics, settings.learn_clock_offset and not dynamics
 

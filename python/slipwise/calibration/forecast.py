@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Prequential prediction by methods other than the learner: from what was known an embargo before each start."""
+"""Prequential prediction by other methods than the learner: from what was known an embargo before a start."""
 
 from __future__ import annotations
 

@@ -51,7 +51,6 @@ def learn_log(
     settings: Settings,
     horizons: Sequence[float],
     *,
-    method: str = "learned",
     keep: Keep | None = None,
     progress: Progress | None = None,
 ) -> LearnedLog:
@@ -61,7 +60,6 @@ def learn_log(
         drive: the runs, in the order of time.
         settings: what to learn and how.
         horizons: of the predictions [s].
-        method: what the predictions are said to be by.
         keep: what a model file and its report need beside predictions: the history, and limits.
         progress: called with the fraction done, 0 to 1.
 
@@ -168,7 +166,7 @@ def _history(
     *,
     several: bool,
 ) -> History:
-    """The course of the structure that is kept in the end; of segments before it was tried, the joint one's weights."""
+    """The course of the structure that is kept in the end; NaN for segments before it was tried."""
     kept = last.structure
     names = tuple(info.name for info in last.model.parameters)
     mean, std = np.full((len(events), len(names)), np.nan), np.full((len(events), len(names)), np.nan)

@@ -125,7 +125,8 @@ def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     """Push the log through the learner: predictions are made on the way."""
     settings = contest.settings.model_copy(update={"basis": name, "estimator": AVERAGE})
     horizons = [targets.length for targets in contest.targets]
-    return learn_log(contest.windows.drive, settings, horizons, method=name).predictions
+    learned = learn_log(contest.windows.drive, settings, horizons)
+    return tuple(replace(predictions, method=name) for predictions in learned.predictions)
 
 
 def _estimator(name: str, contest: Contest) -> Forecaster:

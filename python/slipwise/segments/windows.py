@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cutting runs into segments between two measured poses, as the learner cuts them, with what is rejected counted."""
+"""Cutting runs into segments between two measured poses as the learner does, what is rejected counted."""
 
 from __future__ import annotations
 

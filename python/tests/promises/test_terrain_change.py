@@ -14,7 +14,8 @@ def test_runs_are_the_same_until_the_terrain_changes() -> None:
         disturbed_run(Robot(), 1.0, seed=3, change=change).log.runs
         for change in (None, TerrainChange(30.0, 0.5))
     )
-    assert same.poses is not None and other.poses is not None
+    assert same.poses is not None
+    assert other.poses is not None
     early = same.poses.t < 30.0
     assert (same.poses.yaw[early] == other.poses.yaw[early]).all()
     assert np.abs(np.sin(same.poses.yaw - other.poses.yaw)).max() > 0.1

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a learner is asked: a path from now on, the model so far, the limits of the actuator.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/identify/student_t.hpp"
+#include "slipwise/online/learner_times.hpp"
+#include "slipwise/online/motion_learner.hpp"
+#include "slipwise/online/stamp_spacing.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+#include "slipwise/segment/sensor_motion.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kLongest = 3600.0;    // [s] horizon
+constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
+
+void check(const std::vector<InputSample>& future, double horizon) {
+  if (!(horizon > 0.0) || horizon > kLongest) {
+    throw std::invalid_argument("the horizon must be positive and at most " + std::to_string(kLongest) + " s, got " +
+                                std::to_string(horizon));
+  }
+  double before = -kNever;
+  for (const auto& [t, twist] : future) {
+    const double fastest = std::max({std::abs(twist.v), std::abs(twist.vy), std::abs(twist.omega)});
+    if (!(t > before) || !std::isfinite(t) || !(fastest <= kFastestInput)) {
+      throw std::invalid_argument("future inputs must be finite, in m/s and rad/s, and their stamps must increase");
+    }
+    before = t;
+  }
+}
+
+}  // namespace
+
+/// Of the nearest horizon whose errors are known.
+StudentT MotionLearner::student_for(double horizon, Structure structure) const {
+  const auto& horizons = settings_.stream.horizons;
+  if (horizons.empty()) {
+    return {.inflation = 1.0, .dof = kMostDof};
+  }
+  const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
+  const auto nearest = std::ranges::min_element(horizons, {}, apart);
+  const HorizonErrors& errors = errors_[static_cast<std::size_t>(nearest - horizons.begin())];
+  return errors.before(stream_.newest() - std::max(*nearest, kReady)).students[index(structure)];
+}
+
+/// The last segments that are complete with all that was pushed.
+std::vector<DrivenSegment> MotionLearner::recent_now() const {
+  std::vector<DrivenSegment> recent = recent_before(stream_.newest());
+  for (const StreamItem& item : waiting_) {
+    if (const auto* segment = std::get_if<DrivenSegment>(&item)) {
+      recent.push_back(*segment);
+    }
+  }
+  for (DrivenSegment& segment : stream_.pending_segments()) {
+    recent.push_back(std::move(segment));
+  }
+  recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(std::min(recent.size(), kRecent)));
+  std::erase_if(recent,
+                [&](const DrivenSegment& each) { return each.segment.start <= stream_.newest() - kRecentSeconds; });
+  return recent;
+}
+
+PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo) {
+  check(future, horizon);
+  if (stream_.newest() == -kNever) {
+    throw std::invalid_argument("nothing was measured in this run yet: push measurements before a prediction");
+  }
+  work_until(stream_.newest() - kReady);
+  const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
+  const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
+  const SlipNow slip = known.disturbance->now(*known.motion, recent_now());
+  const ExpectedPose expected = known.disturbance->predict(*known.motion, slip, ahead);
+  const SegmentPath path =
+      integrate_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
+  const StudentT student = student_for(horizon, known.motion->structure);
+  PredictedPath result{.start = stream_.newest(),
+                       .t = path.times,
+                       .poses = {},
+                       .pose = expected.pose,
+                       .covariance = student.inflation * expected.covariance,
+                       .student = student,
+                       .structure = known.motion->structure};
+  for (const Pose2& pose : path.poses) {
+    result.poses.push_back(sensor_motion(pose, path.sensor));
+  }
+  return result;
+}
+
+LearnedModel MotionLearner::model() const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  LearnedModel learned{.known = complete.known_.back(),
+                       .students = {},
+                       .held_out = {},
+                       .weights = complete.hypotheses_.weights(),
+                       .range = complete.range_,
+                       .steepest = complete.steepest_,
+                       .seconds = complete.seconds_,
+                       .segments = complete.hypotheses_.count(),
+                       .rejected = complete.rejected_};
+  const double spacing = complete.stream_.wheel_interval();
+  learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
+  learned.known.slip = supported(learned.known.slip, spacing, learned.segments);
+  for (std::size_t i = 0; i < complete.errors_.size(); ++i) {
+    learned.students.push_back(complete.errors_[i].nominal(learned.known.motion->structure));
+    learned.held_out.emplace_back(complete.held_out_[i].begin(), complete.held_out_[i].end());
+  }
+  return learned;
+}
+
+std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation) const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
+  if (cascaded == nullptr) {
+    return std::nullopt;
+  }
+  const std::vector<WheelSegment> wheels(complete.wheel_segments_.begin(), complete.wheel_segments_.end());
+  const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
+  return find_actuator_limits({.wheels = wheels,
+                               .segments = segments,
+                               .cascaded = *cascaded,
+                               .kept = *complete.known_.back().motion,
+                               .filter = settings_.hypotheses.filter,
+                               .wheel_separation = wheel_separation});
+}
+
+}  // namespace slipwise
