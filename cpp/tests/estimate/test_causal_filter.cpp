@@ -137,7 +137,7 @@ TEST_CASE("slices of a refit change nothing but when the work is done") {
     CHECK(at_once.stated().covariance == sliced.stated().covariance);
     CHECK(at_once.noise_scale() == sliced.noise_scale());
   }
-  CHECK(slices > 200);
+  CHECK(slices > 100);
 }
 
 /// Mean square of errors over stated standard deviations, of V's and w's share, over drives whose noise is white and of

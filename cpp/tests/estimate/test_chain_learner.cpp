@@ -131,7 +131,7 @@ TEST_CASE("slices of a refit of the actuator model change nothing but when the w
     CHECK(at_once.estimate().mean == sliced.estimate().mean);
     CHECK(at_once.estimate().covariance == sliced.estimate().covariance);
   }
-  CHECK(slices > 500);
+  CHECK(slices > 150);
 }
 
 TEST_CASE("after a gap the drive's state is sought anew") {

@@ -85,7 +85,9 @@ def learn_log(
         kept=kept,
         slip=belief_of(model.slip, model.disturbance),
         students=tuple(model.students),
-        predictions=tuple(_predictions(method, h, rows) for h, rows in zip(horizons, records, strict=True)),
+        predictions=tuple(
+            _predictions("learned", h, rows) for h, rows in zip(horizons, records, strict=True)
+        ),
         baseline=tuple(_baseline(h, rows) for h, rows in zip(horizons, records, strict=True)),
         history=None if keep is None else _history(events, model.motion, bases, drive, several=several),
         bases=bases,
