@@ -47,7 +47,7 @@ BENCHMARKS = (
     Benchmark("file_coverage", "Ellipsoids from a model file", has_figures=False, needs_data=True),
     Benchmark("ground_change", "Finding a change of ground", quick=("--quick",)),
     Benchmark("convergence", "Seconds of driving until the model has converged", needs_data=True),
-    Benchmark("time_per_pose", "Time per pose, live", needs_data=True),
+    Benchmark("push_latency", "Time per push and per prediction, live", has_figures=False, needs_data=True),
     Benchmark("surfaces", "Slip surfaces: time and held-out scores", quick=("--quick",)),
     Benchmark("slalom", "A slalom by MPPI: plain, vendor and learned model", quick=("--quick",)),
     Benchmark("scaling", "Cost against log length", quick=("--quick",)),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from slipwise.api import Calibration, calibrate, evaluate, predict
     from slipwise.calibration import Settings, load_settings, make_settings
+    from slipwise.calibration.motion_learner import MotionLearner
     from slipwise.errors import SlipwiseError
     from slipwise.evaluation import Evaluation, EvaluationOptions
     from slipwise.export import ExportOptions, export_model
@@ -28,6 +29,7 @@ __all__ = [
     "Log",
     "LogOptions",
     "Model",
+    "MotionLearner",
     "Path",
     "Settings",
     "SlipwiseError",
@@ -48,6 +50,7 @@ __all__ = [
 _HOMES = {
     "slipwise.api": ("Calibration", "calibrate", "evaluate", "predict"),
     "slipwise.calibration": ("Settings", "load_settings", "make_settings"),
+    "slipwise.calibration.motion_learner": ("MotionLearner",),
     "slipwise.errors": ("SlipwiseError",),
     "slipwise.evaluation": ("Evaluation", "EvaluationOptions"),
     "slipwise.export": ("ExportOptions", "export_model"),

@@ -102,7 +102,7 @@ LearnedModel MotionLearner::model() const {
                        .students = {},
                        .held_out = {},
                        .weights = complete.hypotheses_.weights(),
-                       .range = complete.range_,
+                       .range = complete.stream_.range(),
                        .steepest = complete.steepest_,
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),

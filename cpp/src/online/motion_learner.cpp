@@ -59,8 +59,7 @@ MotionLearner::MotionLearner(const LearnerSettings& settings)
       disturbance_(disturbance_of(settings)),
       errors_(settings.stream.horizons.size()),
       held_out_(settings.stream.horizons.size()),
-      before_run_(-kNever),
-      range_{kNever, -kNever, kNever, -kNever} {
+      before_run_(-kNever) {
   known_.push_back(now_known(-kNever));
 }
 
@@ -95,24 +94,15 @@ void MotionLearner::see_stamp(double t) {
   }
 }
 
-void MotionLearner::see_input(Stream stream, double t, const BodyTwist& twist) {
-  see_stamp(t);
-  const bool learned_from = stream == (settings_.stream.from_commands ? Stream::Command : Stream::Wheels);
-  if (learned_from && std::isfinite(twist.v) && std::isfinite(twist.omega)) {
-    range_ = {std::min(range_[0], twist.v), std::max(range_[1], twist.v), std::min(range_[2], twist.omega),
-              std::max(range_[3], twist.omega)};
-  }
-}
-
 void MotionLearner::push_command(double t, const BodyTwist& twist) {
-  see_input(Stream::Command, t, twist);
+  see_stamp(t);
   stream_.push_command({t, twist});
   take_in();
   work();
 }
 
 void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
-  see_input(Stream::Wheels, t, twist);
+  see_stamp(t);
   stream_.push_wheels({t, twist});
   take_in();
   work();
@@ -349,7 +339,9 @@ void MotionLearner::forget(double fraction) {
   if (!(fraction >= 0.0) || !(fraction <= 1.0)) {
     throw std::invalid_argument("what is forgotten is a fraction between 0 and 1, got " + std::to_string(fraction));
   }
+  work_through();  // what waits was driven on the terrain that is forgotten
   hypotheses_.forget(fraction);
+  known_.back() = now_known(known_.back().until);
 }
 
 }  // namespace slipwise

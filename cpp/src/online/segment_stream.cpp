@@ -34,6 +34,7 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       newest_(-kNever),
       commands_(settings.unknown_after),
       wheels_(settings.unknown_after),
+      range_{kNever, -kNever, kNever, -kNever},
       now_(-kNever),
       learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
       slip_(kSlipLength, settings.rules, true),
@@ -91,7 +92,11 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
     reject(stream, Reason::AbsurdSpeed, sample.t);
     return;
   }
-  (stream == Stream::Command ? commands_ : wheels_).push(sample);
+  InputHistory& history = stream == Stream::Command ? commands_ : wheels_;
+  history.push(sample);
+  if (&history == &inputs()) {
+    range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
+  }
 }
 
 void SegmentStream::push_command(const InputSample& sample) {

@@ -75,7 +75,7 @@ def learn_log(
     model = learner.model()
     bases = tuple(basis.name for basis in core.hypotheses.bases)
     several = core.hypotheses.several
-    records = [[_Record(each, drive) for each in rows] for rows in model.held_out]
+    predictions, baseline = held_out_predictions(model, horizons, drive)
     found = None if keep is None else learner.find_limits(keep.wheel_separation)
     motion = (found.posterior if found is not None else None) or model.motion
     kept = belief_of(motion, model.disturbance)
@@ -85,10 +85,8 @@ def learn_log(
         kept=kept,
         slip=belief_of(model.slip, model.disturbance),
         students=tuple(model.students),
-        predictions=tuple(
-            _predictions("learned", h, rows) for h, rows in zip(horizons, records, strict=True)
-        ),
-        baseline=tuple(_baseline(h, rows) for h, rows in zip(horizons, records, strict=True)),
+        predictions=predictions,
+        baseline=baseline,
         history=None if keep is None else _history(events, model.motion, bases, drive, several=several),
         bases=bases,
         segments=model.segments,
@@ -113,10 +111,29 @@ def _pushed(learner: _core.MotionLearner, drive: tuple[DriveRun, ...]) -> Iterat
     yield 1.0
 
 
+def held_out_predictions(
+    model: _core.LearnedModel, horizons: Sequence[float], drive: tuple[DriveRun, ...] = ()
+) -> tuple[tuple[Predictions, ...], tuple[Predictions, ...]]:
+    """Return the predictions that were held against what was measured, and those of the kinematic baseline.
+
+    Args:
+        model: what a learner has learned.
+        horizons: of its predictions [s].
+        drive: the runs that were pushed, where they come from a log.
+    """
+    records = [[_Record(each, drive) for each in rows] for rows in model.held_out]
+    each = list(zip(horizons, records, strict=True))
+    learned = tuple(_predictions("learned", horizon, rows) for horizon, rows in each)
+    return learned, tuple(_baseline(horizon, rows) for horizon, rows in each)
+
+
 class _Record:
     """A prediction that was held against what was measured."""
 
     def __init__(self, held_out: _core.HeldOutPrediction, drive: tuple[DriveRun, ...]) -> None:
+        if not drive:
+            self.held_out, self.run, self.learned_until = held_out, held_out.run, held_out.learned_until
+            return
         run = drive[held_out.run]
         begin = min(float(run.inputs.t[0]), float(run.run.poses.t[0]), held_out.start)
         self.held_out, self.run = held_out, run.index

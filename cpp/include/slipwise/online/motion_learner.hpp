@@ -117,7 +117,6 @@ class MotionLearner {
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
   void say(LearnerEvent event);
-  void see_input(Stream stream, double t, const BodyTwist& twist);
   void see_stamp(double t);
 
   LearnerSettings settings_;
@@ -138,7 +137,6 @@ class MotionLearner {
   std::size_t runs_ = 0;
   bool run_begins_ = true;  ///< no measurement of the run has come yet
   double before_run_;       ///< newest stamp of the runs before [s]
-  std::array<double, 4> range_;
   double steepest_ = 0.0;
   double seconds_ = 0.0;
 };

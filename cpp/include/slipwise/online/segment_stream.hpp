@@ -79,6 +79,8 @@ class SegmentStream {
   const InputHistory& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
   bool wheels_known() const { return wheels_ever_; }
+  /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
+  const std::array<double, 4>& range() const { return range_; }
   /// Median time between wheel speeds of late [s]; 0 where there were none.
   double wheel_interval() const { return wheel_timer_.interval(); }
 
@@ -121,6 +123,7 @@ class SegmentStream {
   InputHistory commands_;
   InputHistory wheels_;
   bool wheels_ever_ = false;
+  std::array<double, 4> range_;
   std::deque<Tilt> tilts_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet

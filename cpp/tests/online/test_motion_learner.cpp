@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// One measurement at a time: what is learned does not depend on how streams interleave, nor on being asked.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "slipwise/online/motion_learner.hpp"
+#include "streamed_robot.hpp"
+
+namespace slipwise {
+namespace {
+
+using tests::learner_settings;
+using tests::push_late;
+using tests::streamed_robot;
+
+constexpr double kSeconds = 45.0;
+
+LearnedModel learned(const Recording& run, bool from_commands) {
+  MotionLearner learner(learner_settings(from_commands));
+  learner.start_run();
+  push(learner, run);
+  return learner.model();
+}
+
+void check_same(const LearnedModel& one, const LearnedModel& other) {
+  CHECK(one.segments == other.segments);
+  CHECK(one.weights == other.weights);
+  CHECK(one.range == other.range);
+  CHECK(one.known.motion->estimate.mean == other.known.motion->estimate.mean);
+  CHECK(one.known.motion->estimate.covariance == other.known.motion->estimate.covariance);
+  REQUIRE(one.held_out.size() == other.held_out.size());
+  for (std::size_t h = 0; h < one.held_out.size(); ++h) {
+    REQUIRE(one.held_out[h].size() == other.held_out[h].size());
+    for (std::size_t i = 0; i < one.held_out[h].size(); ++i) {
+      CHECK(one.held_out[h][i].pose == other.held_out[h][i].pose);
+      CHECK(one.held_out[h][i].covariance == other.held_out[h][i].covariance);
+    }
+  }
+}
+
+TEST_CASE("what is learned does not depend on how streams interleave within the latency") {
+  for (const bool from_commands : {false, true}) {
+    CAPTURE(from_commands);
+    const Recording run = streamed_robot(1, kSeconds);
+    const LearnedModel expected = learned(run, from_commands);
+    CHECK(expected.segments > 10);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      CAPTURE(seed);
+      MotionLearner learner(learner_settings(from_commands));
+      learner.start_run();
+      push_late(learner, run, 0.45, seed);
+      check_same(expected, learner.model());
+    }
+  }
+}
+
+TEST_CASE("what is later than the latency is rejected and counted") {
+  MotionLearner learner(learner_settings(false));
+  learner.start_run();
+  learner.push_pose({.t = 10.0, .x = 0.0, .y = 0.0, .yaw = 0.0});
+  learner.push_wheels(9.4, {1.0, 0.0, 0.0});
+  learner.push_wheels(9.6, {1.0, 0.0, 0.0});
+  const auto events = learner.events();
+  REQUIRE(events.size() == 1);
+  CHECK(events[0].kind == LearnerEvent::Kind::Rejected);
+  CHECK(events[0].stream == Stream::Wheels);
+  CHECK(events[0].reason == Reason::TooLate);
+  CHECK(events[0].t == 9.4);
+}
+
+TEST_CASE("numbers that cannot be are rejected, and learning goes on as if they had not come") {
+  const Recording run = streamed_robot(2, kSeconds);
+  const LearnedModel expected = learned(run, false);
+  MotionLearner learner(learner_settings(false));
+  learner.start_run();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::size_t wheel = 0;
+  for (const MeasuredPose& pose : run.poses) {
+    for (; wheel < run.wheels.size() && run.wheels[wheel].t <= pose.t; ++wheel) {
+      learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
+      learner.push_wheels(run.wheels[wheel].t, {1.0, 0.0, 1.0});
+      learner.push_wheels(kInfinity, {1.0, 0.0, 1.0});
+      learner.push_wheels(kNaN, {1.0, 0.0, 1.0});
+    }
+    learner.push_pose(pose);
+    learner.push_pose({.t = pose.t + 0.001, .x = kNaN, .y = 0.0, .yaw = 0.0});
+    learner.push_pose({.t = pose.t + 0.001, .x = 1e300, .y = 0.0, .yaw = 0.0});
+    learner.push_attitude(pose.t, kNaN, 0.0);
+  }
+  for (; wheel < run.wheels.size(); ++wheel) {
+    learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
+  }
+  const LearnedModel model = learner.model();
+  CHECK(model.known.motion->estimate.mean == expected.known.motion->estimate.mean);
+  CHECK(model.known.motion->estimate.covariance == expected.known.motion->estimate.covariance);
+  const auto count = [&](Stream stream, Reason reason) {
+    return model.rejected[static_cast<std::size_t>(stream)][static_cast<std::size_t>(reason)];
+  };
+  CHECK(count(Stream::Pose, Reason::NotFinite) == 2 * run.poses.size());
+  CHECK(count(Stream::Wheels, Reason::DuplicateStamp) > run.wheels.size() / 2);
+  CHECK(count(Stream::Attitude, Reason::NotFinite) == run.poses.size());
+}
+
+TEST_CASE("being asked changes nothing") {
+  const Recording run = streamed_robot(3, kSeconds);
+  const LearnedModel expected = learned(run, true);
+  MotionLearner learner(learner_settings(true));
+  learner.start_run();
+  std::size_t wheel = 0;
+  std::size_t pose = 0;
+  for (std::size_t i = 0; i < run.commands.size(); ++i) {
+    learner.push_command(run.commands[i].t, run.commands[i].twist);
+    for (; wheel < run.wheels.size() && run.wheels[wheel].t < run.commands[i].t; ++wheel) {
+      learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
+    }
+    for (; pose < run.poses.size() && run.poses[pose].t < run.commands[i].t; ++pose) {
+      learner.push_pose(run.poses[pose]);
+    }
+    if (i % 37 == 0) {
+      const PredictedPath path = learner.predict({{run.commands[i].t + 0.1, {0.5, 0.0, 0.1}}}, 2.0);
+      CHECK(path.pose.allFinite());
+    }
+    if (i % 311 == 310) {
+      CHECK(learner.model().segments <= expected.segments);
+    }
+  }
+  for (; wheel < run.wheels.size(); ++wheel) {
+    learner.push_wheels(run.wheels[wheel].t, run.wheels[wheel].twist);
+  }
+  for (; pose < run.poses.size(); ++pose) {
+    learner.push_pose(run.poses[pose]);
+  }
+  check_same(expected, learner.model());
+}
+
+TEST_CASE("a prediction asked for at its start is the one that is held against what was measured") {
+  const Recording run = streamed_robot(4, kSeconds);
+  const LearnedModel whole = learned(run, true);
+  REQUIRE(whole.held_out[1].size() > 8);
+  for (std::size_t k = 4; k < whole.held_out[1].size(); k += 3) {
+    const HeldOutPrediction& expected = whole.held_out[1][k];
+    CAPTURE(expected.start);
+    Recording until;
+    std::vector<InputSample> future;
+    for (const InputSample& command : run.commands) {
+      (command.t <= expected.start ? until.commands : future).push_back(command);
+    }
+    std::ranges::copy_if(run.wheels, std::back_inserter(until.wheels),
+                         [&](const InputSample& sample) { return sample.t <= expected.start; });
+    std::ranges::copy_if(run.poses, std::back_inserter(until.poses),
+                         [&](const MeasuredPose& pose) { return pose.t <= expected.start; });
+    MotionLearner learner(learner_settings(true));
+    learner.start_run();
+    push(learner, until);
+    const PredictedPath path = learner.predict(future, expected.end - expected.start, 2.0);
+    CHECK(path.start == expected.start);
+    CHECK((path.pose - expected.pose).norm() < 1e-12);  // the horizon is a difference of stamps
+    CHECK((path.covariance - expected.covariance).norm() < 1e-9);
+    CHECK(expected.learned_until <= expected.start);
+  }
+}
+
+TEST_CASE("runs are not joined, and what was learned stays") {
+  const Recording first = streamed_robot(5, kSeconds);
+  const Recording second = streamed_robot(6, 20.0, 10.0);  // by a clock that was set anew
+  MotionLearner learner(learner_settings(false));
+  learner.start_run();
+  push(learner, first);
+  const LearnedModel before = learner.model();
+  learner.start_run();
+  push(learner, second);
+  const LearnedModel after = learner.model();
+  CHECK(after.segments > before.segments);
+  CHECK(after.held_out[0].back().run == 1);
+  for (const auto& predictions : after.held_out) {
+    for (const HeldOutPrediction& each : predictions) {
+      CHECK(each.end - each.start < 6.0);
+    }
+  }
+}
+
+TEST_CASE("a robot whose turns slip is learned") {
+  const LearnedModel model = learned(streamed_robot(7, 120.0), false);
+  const MotionPosterior& slip = *model.known.slip;
+  for (Eigen::Index i = 0; i < slip.model.slip_size(); ++i) {
+    if (slip.model.basis().parameter_name(static_cast<std::size_t>(i)) == "ang.w") {
+      CHECK(slip.estimate.mean[i] == doctest::Approx(-1.0 / 3.0).epsilon(0.05));
+    }
+  }
+}
+
+TEST_CASE("forgetting makes slip less sure at once, and a fraction beyond 0 to 1 is refused") {
+  MotionLearner learner(learner_settings(false));
+  learner.start_run();
+  push(learner, streamed_robot(8, kSeconds));
+  const auto spread = [&] { return learner.model().known.slip->estimate.covariance.trace(); };
+  const double before = spread();
+  learner.forget(0.5);
+  CHECK(spread() > 2.0 * before);
+  CHECK_THROWS_AS(learner.forget(1.5), std::invalid_argument);
+}
+
+TEST_CASE("what is asked wrongly is refused") {
+  MotionLearner learner(learner_settings(true));
+  CHECK_THROWS_AS(learner.predict({}, 1.0), std::invalid_argument);  // nothing was measured
+  learner.start_run();
+  push(learner, streamed_robot(9, 10.0));
+  CHECK_THROWS_AS(learner.predict({}, 0.0), std::invalid_argument);
+  CHECK_THROWS_AS(learner.predict({}, 1e9), std::invalid_argument);
+  CHECK_THROWS_AS(learner.predict({{5.0, {}}, {4.0, {}}}, 1.0), std::invalid_argument);
+  CHECK_NOTHROW(learner.predict({}, 1.0));
+}
+
+}  // namespace
+}  // namespace slipwise

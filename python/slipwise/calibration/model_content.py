@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was learned and judged, as the model file has it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import version
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
+from slipwise.calibration.learner import Belief
+from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.result import History, Verdict
+from slipwise.calibration.settings import Settings
+from slipwise.models import schema
+from slipwise.models.limits import limits_section
+
+
+@dataclass(frozen=True, eq=False)
+class Learned:
+    """What learning gave."""
+
+    kept: Belief
+    identifiable: Belief  # the same; of the next best where the baseline is kept, which has no parameters
+    predictions: tuple[Predictions, ...]  # causal, of the horizons that are judged
+    baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
+    tails: dict[float, schema.Tail]
+    history: History | None
+    bases: tuple[str, ...]
+    limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """What goes into a model file beside what was learned."""
+
+    judgement: Judgement
+    verdict: Verdict
+
+
+@dataclass(frozen=True)
+class ModelFacts:
+    """Where a model comes from."""
+
+    input_name: str  # "command" or "wheel"
+    settings: Settings
+    logs: list[schema.LogReference]
+    range: schema.Range
+    seconds: float  # of all segments learned
+    segments: int
+
+
+def judgement_of(learned: Learned) -> Judgement:
+    """Judge the predictions at the longest horizon with enough of them."""
+    counts = [len(p) for p in learned.predictions]
+    enough = [k for k, count in enumerate(counts) if count >= 2 * FEWEST_WINDOWS]
+    some = [k for k, count in enumerate(counts) if count]
+    chosen = enough[-1] if enough else (some or [0])[0]
+    return judge(learned.predictions[chosen], learned.baseline[chosen])
+
+
+def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:
+    """Return what a model file holds of what was learned and judged."""
+    motion, verdict = learned.kept.motion, judged.verdict
+    basis = motion.basis
+    return schema.ModelFile(
+        slipwise_model=schema.SCHEMA_VERSION,
+        input="command" if facts.input_name == "command" else "wheel",
+        slip=schema.Slip(basis=basis.name, lon=basis.lon, lat=basis.lat, ang=basis.ang),
+        dynamics=motion.dynamics,
+        delays=motion.delays,
+        clock_offset=motion.clock_offset,
+        response=motion.response,
+        mount=motion.mount,
+        limits=_limits(learned),
+        parameters=_parameters(learned.kept),
+        covariance=learned.kept.covariance.tolist(),
+        noise=_noise(learned, facts.settings),
+        coloured=_coloured(learned.kept, facts.settings.window_length(facts.input_name)),
+        range=facts.range,
+        weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
+        provenance=schema.Provenance(
+            slipwise_version=version("slipwise"),
+            logs=facts.logs,
+            settings=facts.settings.model_dump(exclude_defaults=True),
+            learned_seconds=facts.seconds,
+            learned_windows=facts.segments,
+        ),
+        verdict=schema.VerdictSection(
+            good=verdict.good,
+            sentence=verdict.sentence,
+            undetermined=list(verdict.undetermined),
+            advice=list(verdict.advice),
+            look_alikes=[
+                schema.LookAlike(first=pair.first, second=pair.second, correlation=pair.correlation)
+                for pair in verdict.look_alikes
+            ],
+            timing=verdict.timing,
+            reservations=list(verdict.reservations),
+            contradictions=list(verdict.contradictions),
+            held_out=judged.judgement.held_out,
+        ),
+    )
+
+
+def _limits(learned: Learned) -> schema.LimitsSection | None:
+    """Limits that a search found, where they are kept."""
+    return None if learned.kept.limits is None or learned.limits is None else limits_section(learned.limits)
+
+
+def _parameters(belief: Belief) -> list[schema.Parameter]:
+    stds = np.sqrt(np.diag(belief.covariance))
+    return [
+        schema.Parameter(
+            name=info.name,
+            unit=info.unit,
+            value=float(belief.mean[i]),
+            std=float(stds[i]),
+            prior_std=float(belief.prior_std[i]),
+            determined=bool(belief.variance_ratio[i] <= schema.UNDETERMINED_RATIO),
+        )
+        for i, info in enumerate(belief.motion.parameters)
+    ]
+
+
+def _noise(learned: Learned, settings: Settings) -> schema.Noise:
+    shape = settings.noise
+    return schema.Noise(
+        psd_time=shape.psd_time,
+        psd_motion=shape.psd_motion,
+        fraction=shape.fraction,
+        pose_std_xy=shape.pose_std_xy,
+        pose_std_yaw=shape.pose_std_yaw,
+        scale=learned.kept.noise_scale.tolist(),
+        tails=learned.tails,
+    )
+
+
+def _coloured(belief: Belief, window: float) -> schema.Coloured | None:
+    if belief.coloured is None:
+        return None
+    law = belief.coloured.law
+    candidates = [
+        schema.Wander(
+            drift=wander.drift, turn=wander.turn, time_constant=wander.time_constant, weight=float(weight)
+        )
+        for wander, weight in zip(law.candidates, law.weights, strict=True)
+    ]
+    return schema.Coloured(window=window, candidates=candidates)

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Learning from one measurement at a time, as on a robot; `calibrate` pushes logs through the same."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.calibration.calibrate import JUDGING_HORIZONS
+from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.forecast import tail_of
+from slipwise.calibration.learned_log import held_out_predictions
+from slipwise.calibration.learner import STRUCTURES, belief_of
+from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
+from slipwise.calibration.settings import Settings
+from slipwise.calibration.verdict import LogFacts, give_verdict, identified
+from slipwise.errors import SettingsError
+from slipwise.models import Model
+from slipwise.models.schema import Range
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+Floats = NDArray[np.float64]
+
+_KINDS = {
+    _core.EventKind.SegmentLearned: "segment-learned",
+    _core.EventKind.Rejected: "rejected",
+    _core.EventKind.TerrainChange: "terrain-change",
+    _core.EventKind.HeldOut: "held-out",
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that a learner has to say."""
+
+    kind: str  # "segment-learned", "rejected", "terrain-change" or "held-out"
+    run: str
+    t: float  # s
+    reason: str = ""  # why something was rejected
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedPath:
+    """Where the robot will be, in the frame of the pose sensor at the start."""
+
+    start: float  # s, stamp of the newest measurement
+    t: Floats  # [N] s, stamps of the poses
+    poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
+    end: Floats  # [3] the last of them, with the slip disturbance of the moment
+    covariance: Floats  # [3, 3] there, of a Student t
+    dof: float  # its degrees of freedom
+    structure: str  # of the model that predicts: "joint", "cascaded", "direct" or "baseline"
+
+
+class MotionLearner:
+    """Takes measurements as they come; each stream in the order of its stamps.
+
+    Streams may be late relative to each other by up to half a second. What is wrong is rejected, counted
+    and said by `events`; no push raises for what was measured.
+    """
+
+    def __init__(self, input: str = "command", settings: Settings | None = None) -> None:
+        """Start with nothing learned.
+
+        Args:
+            input: "command" or "wheel": what motion is predicted from.
+            settings: what to learn and how.
+
+        Raises:
+            SettingsError: there is no such input, or a basis or a term is unknown.
+        """
+        if input not in ("command", "wheel"):
+            raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
+        self._input, self._settings = input, settings or Settings()
+        self._core = _core.MotionLearner(core_settings(self._settings, input, JUDGING_HORIZONS))
+        self._runs: list[str] = []
+        self._wheels = False
+
+    def start_run(self, name: str) -> None:
+        """Begin a run: nothing is joined across runs; what was learned stays."""
+        if self._runs and not np.isfinite(self._core.newest):
+            self._runs.pop()  # the run before had no measurement
+        self._core.start_run()
+        self._runs.append(name)
+
+    def push_command(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
+        """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
+        self._core.push_command(t, v, omega, vy)
+
+    def push_wheels(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
+        """Take the twist that the wheels measure: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
+        self._wheels = True
+        self._core.push_wheels(t, v, omega, vy)
+
+    def push_pose(self, t: float, x: float, y: float, yaw: float, frame: int = 0) -> None:
+        """Take a measured pose: its stamp [s], x, y [m], yaw [rad]; comparable in one frame alone."""
+        self._core.push_pose(t, x, y, yaw, frame)
+
+    def push_attitude(self, t: float, roll: float, pitch: float) -> None:
+        """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
+        self._core.push_attitude(t, roll, pitch)
+
+    def events(self) -> list[Event]:
+        """Return what happened since the last call."""
+        return [
+            Event(
+                _KINDS[event.kind],
+                self._run(event.run),
+                event.t,
+                event.reason_text if event.kind == _core.EventKind.Rejected else "",
+            )
+            for event in self._core.events()
+        ]
+
+    def predict(
+        self, inputs: Sequence[tuple[float, float, float]] | ArrayLike, *, horizon: float
+    ) -> PredictedPath:
+        """Predict from the newest measurement on; commands that are on their way are part of it.
+
+        Args:
+            inputs: what the robot will be given, rows of (t [s], v [m/s], omega [rad/s]), [N, 3].
+            horizon: how far to predict [s].
+
+        Raises:
+            SettingsError: the inputs are not such rows, the horizon is not positive or longer than an hour,
+                or nothing was measured yet.
+        """
+        rows = np.asarray(inputs, dtype=np.float64)
+        if rows.ndim != 2 or rows.shape[1] != 3:
+            raise SettingsError(f"inputs have shape {rows.shape}", advice="give rows of (t, v, omega)")
+        future = np.column_stack((rows[:, 0], rows[:, 1], np.zeros(len(rows)), rows[:, 2]))
+        try:
+            path = self._core.predict(future, horizon, 0.0)
+        except ValueError as problem:
+            raise SettingsError(str(problem)) from problem
+        return PredictedPath(
+            start=path.start,
+            t=np.array(path.t),
+            poses=np.array(path.poses),
+            end=np.array(path.pose),
+            covariance=np.array(path.covariance),
+            dof=path.student.dof,
+            structure=STRUCTURES[path.structure],
+        )
+
+    def forget(self, fraction: float) -> None:
+        """Give what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
+
+        Raises:
+            SettingsError: the fraction is not between 0 and 1.
+        """
+        try:
+            self._core.forget(fraction)
+        except ValueError as problem:
+            raise SettingsError(str(problem)) from problem
+
+    def model(self) -> Model:
+        """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
+
+        Raises:
+            SettingsError: nothing was learned yet.
+        """
+        model = self._core.model()
+        if model.segments == 0:
+            raise SettingsError(
+                "nothing was learned yet", advice="push inputs and poses of some seconds first"
+            )
+        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
+        students = zip(predictions, model.students, strict=True)
+        learned = Learned(
+            belief_of(model.motion, model.disturbance),
+            belief_of(model.slip, model.disturbance),
+            predictions,
+            baseline,
+            {p.horizon: tail_of(student) for p, student in students if len(p)},
+            None,
+            tuple(basis.name for basis in self._settings.bases()),
+        )
+        judgement = judgement_of(learned)
+        known = identified(learned.identifiable, wheels_logged=self._wheels)
+        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input))
+        slowest, fastest, right, left = model.range
+        facts = ModelFacts(
+            input_name=self._input,
+            settings=self._settings,
+            logs=[],
+            range=Range(speed=[slowest, fastest], yaw_rate=[right, left], slope=model.steepest),
+            seconds=model.seconds,
+            segments=model.segments,
+        )
+        return Model(model_content(learned, Judged(judgement, verdict), facts))
+
+    def _run(self, index: int) -> str:
+        return self._runs[index] if index < len(self._runs) else ""
