@@ -363,10 +363,6 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
         "MotionModel": [larger, _core.MotionModel(_core.Basis("none", [], [], []), False, False)],
         "Pose2": [_core.Pose2(nan, nan, nan), _core.Pose2(1e300, -1e300, 1e300)],
         "RegressionExample": [_core.RegressionExample(np.ones(5), nan, 1.0)],
-        "SeenPoses": [
-            _core.SeenPoses([], np.zeros((0, 3))),
-            _core.SeenPoses([nan, 1.0], np.full((2, 3), nan)),
-        ],
         "Segment": [wide, late, backward, long, _core.Segment(nan, nan, _core.Pose2(0, 0, 0), None, 0, 0)],
         "SegmentLinearization": [path],
         "SegmentPath": [path.path],
