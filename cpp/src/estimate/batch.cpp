@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 namespace {
@@ -129,7 +130,7 @@ NormalEquations BatchSearch::normal_equations(std::vector<SegmentLinearization> 
 
 /// The next point to look at, where one is worth a look.
 void BatchSearch::propose() {
-  const NormalEquations& now = now_.value();
+  const NormalEquations& now = present(now_);
   if (fit_.iterations >= settings_.iterations || fit_.status != Status::NotConverged) {
     over_ = true;
     return;
@@ -177,7 +178,7 @@ bool BatchSearch::advance(std::size_t segments) {
 }
 
 BatchFit BatchSearch::result() && {
-  NormalEquations& now = now_.value();
+  NormalEquations& now = present(now_);
   fit_.cost = now.cost;
   fit_.at = std::move(now.at);
   fit_.estimate = {mean_, Cholesky(now.information).inverse()};

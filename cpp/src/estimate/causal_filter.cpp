@@ -11,6 +11,7 @@
 #include "slipwise/estimate/heavy_tails.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 namespace {
@@ -88,9 +89,8 @@ void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, bool a
     end_refit();
   }
   if (count >= kFirst && count <= kLast && std::has_single_bit(count) && (active || count < kActive)) {
-    refit_.emplace(Refit{.work = {model_, before_, state_, settings_.noise, settings_.iekf, count},
-                         .slip_std = slip_std_,
-                         .until = refitted_after(count)});
+    refit_.emplace(Refit{
+        .work = {model_, before_, state_, settings_, count}, .slip_std = slip_std_, .until = refitted_after(count)});
   }
   if (count >= kLast && !refit_) {
     kept_ = {};
@@ -104,8 +104,9 @@ bool CausalFilter::refit_slice() { return refit_ && refit_->work.advance(kept_);
 void CausalFilter::end_refit() {
   while (refit_slice()) {
   }
-  std::optional<FilterState> found = std::move(refit_.value().work).result();
-  const Eigen::VectorXd slip_std = refit_->slip_std;
+  Refit& refit = present(refit_);
+  std::optional<FilterState> found = std::move(refit.work).result();
+  const Eigen::VectorXd slip_std = refit.slip_std;
   refit_.reset();
   if (!found) {
     return;

@@ -76,8 +76,8 @@ bool ChainLearner::Bank::refit_slice(std::span<const ChannelWindow> past) {
 
 void ChainLearner::Bank::end_refit() {
   for (std::size_t i = 0; i < refits.size(); ++i) {
-    if (refits[i]) {
-      rivals[i] = refits[i]->result();
+    if (const auto& refit = refits[i]; refit) {
+      rivals[i] = refit->result();
     }
   }
   refits.clear();

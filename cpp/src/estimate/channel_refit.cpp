@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "slipwise/linear/present.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -29,8 +31,8 @@ ChannelParameters without_slow_mode(ChannelParameters chain) {
 
 }  // namespace
 
-ChannelFit::ChannelFit(const ChannelModel& model, double size, const ChannelParameters& start, int most_passes)
-    : model_(&model), size_(size), left_(most_passes), point_(start), full_(ChannelParameters::Zero()) {
+ChannelFit::ChannelFit(const ChannelModel& model, double size, ChannelParameters start, int most_passes)
+    : model_(&model), size_(size), left_(most_passes), point_(std::move(start)), full_(ChannelParameters::Zero()) {
   try_step();
 }
 
@@ -43,8 +45,8 @@ void ChannelFit::try_step() {
 /// A step from the best point, unless there are no passes left or the step is not worth one.
 void ChannelFit::next_step() {
   walk_.reset();
-  full_ = best_->joint.mean.head<kChannelParameters>() - point_;
-  const ChannelParameters std = best_->joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
+  full_ = best().joint.mean.head<kChannelParameters>() - point_;
+  const ChannelParameters std = best().joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
   shortened_ = 0;
   if (left_ > 0 && (full_.cwiseAbs() - kConverged * std).maxCoeff() > 0.0) {
     try_step();
@@ -82,10 +84,10 @@ bool ChannelFit::advance(std::span<const ChannelWindow> past) {
   }
   if (done_ < past.size()) {
     const ChannelWindow& window = past[done_++];
-    walk_->learn(window, drive_noise_means(model_->noise, window.seen.edges, window.seen.samples));
+    present(walk_).learn(window, drive_noise_means(model_->noise, window.seen.edges, window.seen.samples));
   }
   if (done_ == past.size()) {
-    judge(walk_->result());
+    judge(present(walk_).result());
   }
   return walk_.has_value();
 }
@@ -101,7 +103,7 @@ ChannelRefit::ChannelRefit(const ChainChannel& channel, std::size_t count)
 
 /// Two lags that pass for each other may hide a better fit with one.
 void ChannelRefit::end_fit() {
-  ChainPass best = fit_->best();
+  ChainPass best = present(fit_).best();
   fit_.reset();
   if (!first_) {
     const ChannelParameters found = best.joint.mean.head<kChannelParameters>();

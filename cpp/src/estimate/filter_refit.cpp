@@ -9,6 +9,7 @@
 
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/present.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
@@ -20,13 +21,13 @@ constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at on
 
 }  // namespace
 
-FilterRefit::FilterRefit(MotionModel model, Estimate before, FilterState now, const NoiseSettings& noise,
-                         const IekfSettings& iekf, std::size_t count)
+FilterRefit::FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
+                         std::size_t count)
     : model_(std::move(model)),
       before_(std::move(before)),
       state_(std::move(now)),
-      noise_(noise),
-      iekf_(iekf),
+      noise_(settings.noise),
+      iekf_(settings.iekf),
       count_(count) {}
 
 /// By the rule of the IEKF. From wheels, neighbours share the noise of the pose where they meet; from commands, what is
@@ -69,7 +70,7 @@ void FilterRefit::begin_search() {
 }
 
 void FilterRefit::end_search() {
-  BatchFit fit = std::move(search_.value()).result();
+  BatchFit fit = std::move(present(search_)).result();
   search_.reset();
   if (fit.status != Status::Converged) {
     phase_ = Phase::Failed;
@@ -106,7 +107,7 @@ bool FilterRefit::advance(std::span<const DrivenSegment> segments) {
       }
       return true;
     case Phase::Search:
-      if (!search_.value().advance(kSlice)) {
+      if (!present(search_).advance(kSlice)) {
         end_search();
       }
       return true;

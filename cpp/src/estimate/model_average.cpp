@@ -11,6 +11,8 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/present.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -127,12 +129,12 @@ bool ModelAverage::advance() {
   if (!learning_) {
     return false;
   }
-  if (!learning_->tested) {
+  if (!present(learning_).tested) {
     look_for_change();
     return true;
   }
   update_next_filter();
-  if (learning_->updates.size() < filters_.size()) {
+  if (present(learning_).updates.size() < filters_.size()) {
     return true;
   }
   reweigh();
@@ -145,7 +147,7 @@ bool ModelAverage::refit_slice() {
 }
 
 void ModelAverage::look_for_change() {
-  Learning& now = learning_.value();
+  Learning& now = present(learning_);
   speeds_.see(now.inputs, now.segment);
   change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
   if (change_.suspicion) {
@@ -156,14 +158,14 @@ void ModelAverage::look_for_change() {
 }
 
 void ModelAverage::update_next_filter() {
-  Learning& now = learning_.value();
+  Learning& now = present(learning_);
   const std::size_t i = now.updates.size();
   const bool counts = now.active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
   now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference(), counts));
 }
 
 void ModelAverage::reweigh() {
-  const std::vector<IekfUpdate>& updates = learning_.value().updates;
+  const std::vector<IekfUpdate>& updates = present(learning_).updates;
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
   for (const IekfUpdate& update : updates) {

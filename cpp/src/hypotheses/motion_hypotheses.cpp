@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
+
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 namespace {
@@ -120,7 +123,7 @@ void MotionHypotheses::start_slip(const DrivenSegment& segment) {
 bool MotionHypotheses::advance_slip() { return cascaded_ && cascaded_->advance_slip(); }
 
 bool MotionHypotheses::refit_slice() {
-  return joint_.refit_slice() || (tried(Structure::Direct) && direct_->refit_slice()) ||
+  return joint_.refit_slice() || (tried(Structure::Direct) && direct_ && direct_->refit_slice()) ||
          (cascaded_ && cascaded_->refit_slice());
 }
 
@@ -165,7 +168,7 @@ bool MotionHypotheses::advance() {
   if (average == nullptr) {
     predicted_.push_back(predict(structure));
   } else if (!averaging_) {
-    average->start(segment_->inputs, segment_->segment, may_predict(structure));
+    average->start(present(segment_).inputs, present(segment_).segment, may_predict(structure));
     averaging_ = true;
   } else if (!average->advance()) {
     predicted_.push_back(learned(*average, structure));
@@ -185,9 +188,10 @@ ModelAverage* MotionHypotheses::average_of(Structure structure) {
 /// Predicts the segment by what is learned elsewhere, or not at all.
 ScoredSegment MotionHypotheses::predict(Structure structure) {
   const Estimate nothing{Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)};
-  const ScoredSegment scored = structure == Structure::Cascaded && cascaded_
-                                   ? cascaded_->predict(*segment_)
-                                   : baseline_.score(baseline_model(), nothing, segment_->inputs, segment_->segment);
+  const ScoredSegment scored =
+      structure == Structure::Cascaded && cascaded_
+          ? cascaded_->predict(present(segment_))
+          : baseline_.score(baseline_model(), nothing, present(segment_).inputs, present(segment_).segment);
   updates_[index(structure)].nis = scored.nis;
   return scored;
 }
@@ -232,7 +236,7 @@ void MotionHypotheses::update_weights() {
 
 /// Simpler structures that predict far worse than another.
 void MotionHypotheses::drop_refuted() {
-  double most = -INFINITY;
+  double most = -std::numeric_limits<double>::infinity();
   for (const Structure structure : structures()) {
     most = std::max(most, evidence_[index(structure)]);
   }
@@ -274,9 +278,9 @@ std::shared_ptr<const MotionPosterior> MotionHypotheses::of(Structure structure)
     case Structure::Joint:
       return posterior_of(joint_, structure);
     case Structure::Direct:
-      return posterior_of(direct_.value(), structure);
+      return posterior_of(present(direct_), structure);
     case Structure::Cascaded:
-      return cascaded_.value().posterior();
+      return present(cascaded_).posterior();
     default:
       break;
   }

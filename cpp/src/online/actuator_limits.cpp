@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -15,11 +16,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kSpacing = 0.05;        // [s] between the twists that are looked at
-constexpr double kRounding = 1e-6;       // [s] of stamps
-constexpr std::size_t kFewTwists = 400;  // 20 s of driving; with fewer, chance passes for limits
-constexpr std::size_t kFewSegments = 8;  // that are predicted to compare
-const double kBetter = std::log(10.0);   // log score from which limits are believed to predict better
+constexpr double kSpacing = 0.05;               // [s] between the twists that are looked at
+constexpr double kRounding = 1e-6;              // [s] of stamps
+constexpr std::size_t kFewTwists = 400;         // 20 s of driving; with fewer, chance passes for limits
+constexpr std::size_t kFewSegments = 8;         // that are predicted to compare
+constexpr double kBetter = std::numbers::ln10;  // log score from which limits are believed to predict better
 
 /// Commands and twists of a stretch while it grows.
 class Stretch {

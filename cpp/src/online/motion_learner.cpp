@@ -155,12 +155,12 @@ bool MotionLearner::work() {
     if (wheel_segments_.size() > kMostWheelSegments) {
       wheel_segments_.pop_front();
     }
-  } else if (auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
+  } else if (const auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
     if (!started_) {
       hypotheses_.start_slip(slip->driven);
     }
     more = !started_ || hypotheses_.advance_slip();
-  } else if (auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
+  } else if (const auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
     judge(*target);
   } else {
     const auto& segment = std::get<DrivenSegment>(waiting_.front());

@@ -174,8 +174,10 @@ std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> pro
     return static_cast<std::size_t>(std::ranges::lower_bound(poses_, t, {}, stamp) - poses_.begin());
   };
   if (problem == Reason::UnknownInput) {
-    const double since = inputs.empty() ? poses_.front().pose.t
-                                        : inputs.unknown_since(poses_.front().pose.t, poses_[end].pose.t).value();
+    const double since =
+        inputs.empty()
+            ? poses_.front().pose.t
+            : inputs.unknown_since(poses_.front().pose.t, poses_[end].pose.t).value_or(poses_.front().pose.t);
     const auto again = inputs.first_after(since);
     if (!again || *again > poses_.back().pose.t) {
       unknown_since_ = since;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "slipwise/estimate/causal_filter_settings.hpp"
 #include "slipwise/estimate/filter_refit.hpp"
 #include "slipwise/estimate/filter_state.hpp"
 #include "slipwise/estimate/iekf.hpp"
@@ -17,12 +18,6 @@
 #include "slipwise/estimate/speed_range.hpp"
 
 namespace slipwise {
-
-struct CausalFilterSettings {
-  PriorSettings prior = {};
-  IekfSettings iekf = {};
-  NoiseSettings noise = {};
-};
 
 class CausalFilter {
  public:

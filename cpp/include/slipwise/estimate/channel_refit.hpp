@@ -9,6 +9,7 @@
 
 #include "slipwise/estimate/chain_channel.hpp"
 #include "slipwise/estimate/chain_pass.hpp"
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 
@@ -17,11 +18,11 @@ namespace slipwise {
 class ChannelFit {
  public:
   /// `model` must outlive the fit.
-  ChannelFit(const ChannelModel& model, double size, const ChannelParameters& start, int most_passes);
+  ChannelFit(const ChannelModel& model, double size, ChannelParameters start, int most_passes);
 
   /// Learns one window of a pass; whether there is more to do.
   bool advance(std::span<const ChannelWindow> past);
-  const ChainPass& best() const { return best_.value(); }
+  const ChainPass& best() const { return present(best_); }
 
  private:
   void judge(ChainPass pass);

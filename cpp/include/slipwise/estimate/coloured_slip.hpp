@@ -60,7 +60,7 @@ class ColouredSlip {
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
   ExpectedPose predict(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;
   /// The same, and what is predicted where nothing recent is known.
-  ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;
+  ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& driven) const;
 
   const WanderLaw& law() const { return law_; }
 

@@ -10,6 +10,7 @@
 
 #include "slipwise/actuator/input_track.hpp"
 #include "slipwise/estimate/batch.hpp"
+#include "slipwise/estimate/causal_filter_settings.hpp"
 #include "slipwise/estimate/filter_state.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
@@ -21,7 +22,7 @@ namespace slipwise {
 class FilterRefit {
  public:
   /// `before` was known before the first of the segments; `now` after the last of `count`.
-  FilterRefit(MotionModel model, Estimate before, FilterState now, const NoiseSettings& noise, const IekfSettings& iekf,
+  FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
               std::size_t count);
 
   /// Does a slice of the work on `segments`: the first that were kept, and those since. Whether there is more to do
