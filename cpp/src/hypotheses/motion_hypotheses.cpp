@@ -50,6 +50,14 @@ std::vector<Basis> chosen(const std::vector<Basis>& bases, const std::vector<Eig
 
 }  // namespace
 
+std::vector<Basis> averaged_bases() {
+  std::vector<Basis> bases{{"none", {}, {}, {}}};
+  for (const auto* name : {"edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10"}) {
+    bases.push_back(named_basis(name));
+  }
+  return bases;
+}
+
 MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     : settings_(settings),
       joint_("auto", settings.bases,

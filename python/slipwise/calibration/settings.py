@@ -27,7 +27,7 @@ NotNegative = Annotated[float, Field(ge=0.0, le=LARGEST)]
 Ratio = Annotated[float, Field(ge=LEAST, le=100.0)]  # of one thing to another, or of a logarithm
 Seconds = Annotated[float, Field(ge=1e-6, le=100.0)]  # of a time constant or delay of a drive
 Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
-AUTO_BASES = ("none", "edd-2", "drive-5", "full-linear-6", "ipem-9", "odd-even-10")
+AUTO_BASES = tuple(basis.name for basis in _core.HypothesisSettings().bases)
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
 ESTIMATORS = (AVERAGE, *_core.estimator_names())
 WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip

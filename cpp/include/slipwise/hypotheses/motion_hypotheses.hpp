@@ -17,9 +17,12 @@
 
 namespace slipwise {
 
+/// Those that ship and are averaged: the kinematic baseline first, then more and more terms.
+std::vector<Basis> averaged_bases();
+
 /// What is learned.
 struct HypothesisSettings {
-  std::vector<Basis> bases;  ///< averaged, or one
+  std::vector<Basis> bases = averaged_bases();  ///< averaged, or one
   bool dynamics = true;      ///< inputs are commands: lag and delay are learned
   bool clock_offset = true;  ///< learned, where inputs are wheel speeds
   bool mount = false;        ///< where the pose sensor sits is learned
