@@ -333,7 +333,7 @@ void bind_estimate(nb::module_& m) {
             return ModelAverage(std::move(name), bases, {.mount = mount, .delays = true}, filter, settings);
           },
           "name"_a, "bases"_a, "mount"_a, "filter"_a, "settings"_a, "Of delays alone, without an actuator model.")
-      .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a, "active"_a)
+      .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })
       .def_prop_ro("model", &ModelAverage::model)

@@ -100,7 +100,7 @@ void bind_estimators(nb::module_& m) {
   nb::class_<ChainUpdate>(m, "ChainUpdate", "How a window of wheel speeds was foretold.")
       .def_ro("nis", &ChainUpdate::nis);
   nb::class_<ChainLearner>(m, "ChainLearner", "The chain, learned from commands and wheel speeds.")
-      .def(nb::init<const CausalFilterSettings&, std::size_t>(), "settings"_a, "waiting"_a = 0)
+      .def(nb::init<const CausalFilterSettings&>(), "settings"_a)
       .def("learn", &ChainLearner::learn, "inputs"_a, "wheels"_a, "start"_a, "end"_a,
            "Learns the wheel speeds from start to end [s], in input stamps.")
       .def("estimate", &ChainLearner::estimate)

@@ -3,9 +3,9 @@
 #include "slipwise/estimate/causal_filter.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
+#include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
@@ -18,9 +18,9 @@ namespace {
 
 constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
 
-constexpr std::size_t kFirst = 8, kLast = 256;  // segments after which, and each doubling, a refit begins
-constexpr std::size_t kActive = 64;             // segments from which only filters with weight are refitted
-constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
+constexpr std::size_t kFirst = 8, kLast = 64;    // segments after which the first refit begins, and the last
+constexpr double kFactor = std::numbers::sqrt2;  // of the segments, until another begins
+constexpr std::size_t kShortest = 1;             // segments that a refit takes at least
 
 /// Segments after which a refit takes effect that began after so many.
 std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }
@@ -34,6 +34,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
+  next_refit_ = kFirst;
 }
 
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
@@ -74,6 +75,7 @@ void CausalFilter::forget(double share) {
   before_ = state_.estimate;
   refit_.reset();
   kept_.clear();
+  next_refit_ = kFirst;
   full_ = false;
 }
 
@@ -82,13 +84,14 @@ Estimate CausalFilter::stated() const {
 }
 
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
-void CausalFilter::keep(const InputTrack& inputs, const Segment& segment, bool active) {
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
   kept_.push_back({.inputs = inputs, .segment = segment});
   const std::size_t count = kept_.size();
   if (refit_ && count == refit_->until) {
     end_refit();
   }
-  if (count >= kFirst && count <= kLast && std::has_single_bit(count) && (active || count < kActive)) {
+  if (count <= kLast && std::ssize(kept_) == std::lround(next_refit_)) {
+    next_refit_ *= kFactor;
     refit_.emplace(Refit{
         .work = {model_, before_, state_, settings_, count}, .slip_std = slip_std_, .until = refitted_after(count)});
   }
@@ -121,12 +124,11 @@ void CausalFilter::end_refit() {
   state_ = std::move(*found);
 }
 
-IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds,
-                               bool active) {
+IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
   IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
   if (!full_ && !update.at.by_parameter.isZero(0.0)) {
-    keep(inputs, segment, active);
+    keep(inputs, segment);
   }
   if (settings_.noise.adapt) {
     stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);

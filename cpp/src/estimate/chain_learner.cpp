@@ -19,8 +19,7 @@ constexpr std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time
                                              {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 5.0},
                                              {.white = 1.0, .wander = 100.0, .time_constant = 25.0}}};
-constexpr std::size_t kFirst = 4, kLast = 256;  // windows from which and up to which all are refitted
-constexpr std::size_t kAtOnce = 16;             // windows that are refitted at once: few enough for that
+constexpr std::size_t kFirst = 3, kLast = 256;  // windows from which and up to which all are refitted
 constexpr double kGrowth = 1.25;                // of their number, until that is done again
 constexpr double kHeard = 0.01;                 // weight from which a rival is refitted and has a say
 
@@ -32,7 +31,7 @@ ChainLearner::ChainLearner(const CausalFilterSettings& settings, std::size_t wai
   prior_std_ = prior.covariance.diagonal().cwiseSqrt();
   const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {
     const Estimate own{prior.mean(places), prior.covariance(places, places)};
-    Bank bank{.places = std::move(places), .rivals = {}, .weights = {}};
+    Bank bank{.places = std::move(places), .rivals = {}, .weights = {}, .refits = {}};
     for (const DriveNoise& shape : kShapes) {
       bank.rivals.emplace_back(ChannelModel{parts, own, shape, settings.iekf});
     }
@@ -119,9 +118,6 @@ ChainUpdate ChainLearner::learn(const InputTrack& inputs, const InputTrack& whee
     refitted_after_ = learned_ + std::max<std::size_t>(1, learned_ / 32);
     for (Bank& bank : banks_) {
       bank.begin_refit(learned_);
-    }
-    if (learned_ < kAtOnce) {
-      end_refit();
     }
   }
   if (learned_ >= kLast && !refitted_after_) {

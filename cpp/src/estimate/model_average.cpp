@@ -112,17 +112,17 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
   }
 }
 
-IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment, bool active) {
-  start(inputs, segment, active);
+IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
+  start(inputs, segment);
   while (advance()) {
   }
   return update_;
 }
 
-void ModelAverage::start(const InputTrack& inputs, const Segment& segment, bool active) {
+void ModelAverage::start(const InputTrack& inputs, const Segment& segment) {
   while (advance()) {
   }
-  learning_ = Learning{.inputs = inputs, .segment = segment, .active = active};
+  learning_ = Learning{.inputs = inputs, .segment = segment};
 }
 
 bool ModelAverage::advance() {
@@ -160,8 +160,7 @@ void ModelAverage::look_for_change() {
 void ModelAverage::update_next_filter() {
   Learning& now = present(learning_);
   const std::size_t i = now.updates.size();
-  const bool counts = now.active && weights_[static_cast<Eigen::Index>(i)] > kHeard;
-  now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference(), counts));
+  now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference()));
 }
 
 void ModelAverage::reweigh() {

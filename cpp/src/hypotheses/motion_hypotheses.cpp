@@ -16,7 +16,6 @@ namespace {
 constexpr double kPatience = 0.3;  // of the bases' learning rate: what tells structures apart repeats in each segment
 /// Prior weights: of what predicts alike, the simplest.
 constexpr std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, 1.4, 2.0};
-constexpr double kActive = 0.5;  // of the heavier average's weight, from which on the other's batch refits are run
 const double kRefuted = std::log(1e3);  // tempered log odds against a structure from which on it is dropped
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -100,11 +99,6 @@ std::vector<Structure> MotionHypotheses::structures() const {
   return all;
 }
 
-/// Of the two averages, both that have half the other's weight.
-bool MotionHypotheses::may_predict(Structure structure) const {
-  return weight(structure) >= kActive * std::max(weight(Structure::Joint), weight(Structure::Direct));
-}
-
 /// Where wheel speeds come beside the commands, with the weight that it would have had from the start.
 void MotionHypotheses::join_cascade() {
   double prior = 0.0;
@@ -176,7 +170,7 @@ bool MotionHypotheses::advance() {
   if (average == nullptr) {
     predicted_.push_back(predict(structure));
   } else if (!averaging_) {
-    average->start(present(segment_).inputs, present(segment_).segment, may_predict(structure));
+    average->start(present(segment_).inputs, present(segment_).segment);
     averaging_ = true;
   } else if (!average->advance()) {
     predicted_.push_back(learned(*average, structure));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 
 #include "slipwise/identify/student_t.hpp"
 
@@ -31,14 +32,21 @@ constexpr Eigen::Index kFineDistances = 281;
 double log_scale(Eigen::Index i) { return std::log(0.01) + kStep * static_cast<double>(i); }
 double log_distance(Eigen::Index i) { return std::log(0.01) - 2.0 + kStep * static_cast<double>(i); }
 
-/// Where a rising row of fractions reaches one, on an axis of `step` from `first`.
-double crossing(const Eigen::VectorXd& inside, double fraction, double first, double step) {
-  Eigen::Index after = 1;
-  while (after + 1 < inside.size() && inside[after] < fraction) {
-    ++after;
-  }
-  const double low = inside[after - 1];
-  return first + step * (static_cast<double>(after - 1) + (fraction - low) / (inside[after] - low));
+/// Logarithms of squared distances, evenly spaced.
+struct Axis {
+  double first;
+  double step;
+  Eigen::Index count;
+};
+
+/// Where `inside`, the fraction within the distance of a place on the axis, rises to `fraction`.
+template <typename Inside>
+double crossing(const Inside& inside, double fraction, const Axis& axis) {
+  const auto places = std::views::iota(Eigen::Index{1}, axis.count - 1);
+  const Eigen::Index after =
+      *std::ranges::partition_point(places, [&](Eigen::Index i) { return inside(i) < fraction; });
+  const double low = inside(after - 1);
+  return axis.first + axis.step * (static_cast<double>(after - 1) + (fraction - low) / (inside(after) - low));
 }
 
 /// What depends on the grid alone.
@@ -73,8 +81,8 @@ struct Tables {
       for (Eigen::Index k = 0; k < kFineDistances; ++k) {
         row[k] = fraction_inside((dof[d] - 2.0) / dof[d] * std::exp(-2.0 + 0.025 * static_cast<double>(k)), dof[d]);
       }
-      inner[d] = crossing(row, kInner, -2.0, 0.025);
-      outer[d] = crossing(row, kOuter, -2.0, 0.025);
+      inner[d] = crossing(row, kInner, {.first = -2.0, .step = 0.025, .count = kFineDistances});
+      outer[d] = crossing(row, kOuter, {.first = -2.0, .step = 0.025, .count = kFineDistances});
     }
   }
 };
@@ -139,9 +147,10 @@ StudentT StudentCalibration::fitted() const {
   for (std::size_t k = 0; k < kForgettingTimes; ++k) {
     mixed += weights[static_cast<Eigen::Index>(k)] * normalised(known.prior + evidence_[k]);
   }
-  const Eigen::VectorXd inside = known.inside.transpose() * mixed;
-  const double inner = crossing(inside, kInner, log_distance(0), kStep);
-  const double outer = crossing(inside, kOuter, log_distance(0), kStep);
+  const auto inside = [&](Eigen::Index distance) { return known.inside.col(distance).dot(mixed); };
+  const Axis axis{.first = log_distance(0), .step = kStep, .count = kDistances};
+  const double inner = crossing(inside, kInner, axis);
+  const double outer = crossing(inside, kOuter, axis);
   const double dof = interpolated(inner - outer, known.inner - known.outer, known.dof);
   const double scale = std::exp(outer - interpolated(dof, known.dof, known.outer));
   return {.inflation = scale * dof / (dof - 2.0), .dof = dof};

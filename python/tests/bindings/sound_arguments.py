@@ -223,7 +223,6 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 
 _square, _list3 = 0.01 * np.eye(SIZE), [0.01, 0.01, 0.01]
 ARGUMENTS: dict[str, Callable[[], Any]] = {
-    "ChainLearner.__init__ waiting": lambda: 0,
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "DriveRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
     "MotionLearner.forget fraction": lambda: 0.5,

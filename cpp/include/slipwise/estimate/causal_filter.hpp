@@ -23,11 +23,10 @@ class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
-  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 16, ... 256 segments a refit of
-  /// all of them begins, but of not so many for a filter that has no weight (`active`); it takes effect a sixteenth as
-  /// many segments later, whether `refit_slice` was called meanwhile or not. The update returned is that of the segment
+  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 64 segments a refit of
+  /// all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called meanwhile or not. The update returned is that of the segment
   /// alone.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds, bool active = true);
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
   /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
   bool refit_slice();
 
@@ -48,7 +47,7 @@ class CausalFilter {
 
  private:
   void follow(const ReferenceSpeeds& speeds);
-  void keep(const InputTrack& inputs, const Segment& segment, bool active);
+  void keep(const InputTrack& inputs, const Segment& segment);
   void end_refit();
 
   /// A refit that is under way.
@@ -65,6 +64,7 @@ class CausalFilter {
   FilterState state_;
   Estimate before_;                  ///< what was known before the segments that are kept
   std::vector<DrivenSegment> kept_;  ///< the first since the start, or since the terrain changed
+  double next_refit_;                ///< segments after which a refit begins, rounded
   bool full_ = false;                ///< no more are kept
   Eigen::VectorXd slip_std_;
   Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them

@@ -41,12 +41,11 @@ class ModelAverage {
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
   /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
-  /// weighed most before. Where the average is not `active`, since others predict better, the first segments are
-  /// learned again less often, as those of a filter without weight are.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, bool active = true);
+  /// weighed most before.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
 
   /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
-  void start(const InputTrack& inputs, const Segment& segment, bool active = true);
+  void start(const InputTrack& inputs, const Segment& segment);
 
   /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
   bool advance();
@@ -70,7 +69,6 @@ class ModelAverage {
   struct Learning {
     InputTrack inputs;
     Segment segment;
-    bool active = true;
     bool tested = false;
     std::vector<IekfUpdate> updates = {};
   };

@@ -82,7 +82,6 @@ class MotionHypotheses {
   using Active = std::array<bool, kStructures>;
   bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }
   double weight(Structure structure) const { return weights_[static_cast<std::size_t>(structure)]; }
-  bool may_predict(Structure structure) const;
   void join_cascade();
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);

@@ -8,6 +8,6 @@ namespace slipwise {
 
 inline constexpr double kReady = 1.0;           ///< [s] after which a segment has been learned, whatever the latency
 inline constexpr double kRecentSeconds = 30.0;  ///< [s] of segments that tell of the slip now, at most
-inline constexpr std::size_t kRecent = 12;      ///< segments that tell of it, at most
+inline constexpr std::size_t kRecent = 6;       ///< segments that tell of it, at most
 
 }  // namespace slipwise
