@@ -2,6 +2,7 @@
 // Passes over all windows, a window at a time.
 #include "slipwise/estimate/channel_refit.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -11,11 +12,12 @@
 namespace slipwise {
 namespace {
 
+constexpr std::size_t kSlice = 2;                 // windows at a time
 constexpr double kConverged = 0.1;                // [standard deviations] a step that is not worth a pass
 constexpr std::array kShortened{1.0, 0.5, 0.25};  // fractions of a step, until one helps
 constexpr double kTolerance = 0.1;                // what a step has to gain of -2 log posterior
-constexpr int kMostPasses = 7;                    // with more windows it goes on from there
-constexpr int kMostElsewhere = 30;                // the same from a start elsewhere
+constexpr int kMostPasses = 12;                   // with more windows it goes on from there
+constexpr int kMostElsewhere = 10;                // the same from a start elsewhere
 constexpr Eigen::Index kLag = 0, kSlowShare = 3, kSlowLag = 4;
 constexpr double kApart = 1.4;  // in the logarithm: time constants closer than that may pass for each other
 
@@ -82,8 +84,8 @@ bool ChannelFit::advance(std::span<const ChannelWindow> past) {
   if (!walk_) {
     return false;
   }
-  if (done_ < past.size()) {
-    const ChannelWindow& window = past[done_++];
+  for (const std::size_t end = std::min(done_ + kSlice, past.size()); done_ < end; ++done_) {
+    const ChannelWindow& window = past[done_];
     present(walk_).learn(window, drive_noise_means(model_->noise, window.seen.edges, window.seen.samples));
   }
   if (done_ == past.size()) {
