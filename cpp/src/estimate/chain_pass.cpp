@@ -2,7 +2,6 @@
 // Filters of the lanes' states alone, which carry their derivatives by the chain along.
 #include "slipwise/estimate/chain_pass.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,24 +17,17 @@ constexpr double kDegrees = 3.0;  // of freedom that gate and Huber's bound are 
 using Information = Eigen::Matrix<double, kChannelParameters, kChannelParameters>;
 using StateByChain = Eigen::Matrix<double, kLaneStates, kChannelParameters>;
 using LaneCovariance = Eigen::Matrix<double, kLaneStates, kLaneStates>;
-using StateColumns = Eigen::Matrix<double, Eigen::Dynamic, kLaneStates>;
+constexpr Eigen::Index kDeviation = 2;  // among the lane's states
 
 }  // namespace
 
-/// A window of a lane before it is learned.
-struct ChannelWalk::Observed {
-  LanePassage at;
-  Eigen::VectorXd innovation;          ///< [K]
-  StateColumns spread;                 ///< [K, 3] H P
-  Eigen::LLT<Eigen::MatrixXd> factor;  ///< of S = H P H^T + R
-
-  auto by_state() const { return at.by_state.topRows(innovation.size()); }
-  double nis() const { return factor.matrixL().solve(innovation).squaredNorm(); }
-  double log_determinant() const { return 2.0 * factor.matrixLLT().diagonal().array().log().sum(); }
-  void expect(double size, const DriveNoiseMeans& noise) {
-    const Eigen::Index k = innovation.size();
-    factor.compute(spread.lazyProduct(by_state().transpose()) + size * noise.covariance.topLeftCorner(k, k));
-  }
+/// A lane that has learned the means of a window, and what these tell of the parameters.
+struct ChannelWalk::Learned {
+  FollowedLane lane;
+  double nis = 0.0;
+  double log_determinant = 0.0;
+  Information information = Information::Zero();
+  ChannelParameters gradient = ChannelParameters::Zero();
 };
 
 ChannelWalk::ChannelWalk(const ChannelModel& model, double size, const ChannelParameters& point)
@@ -46,21 +38,23 @@ ChannelWalk::ChannelWalk(const ChannelModel& model, double size, const ChannelPa
   gradient_ = -information_ * away;
 }
 
-void ChannelWalk::learn(const ChannelWindow& window, const DriveNoiseMeans& noise) {
+void ChannelWalk::learn(const ChannelWindow& window) {
   begin(window);
   if (lanes_.empty()) {
     return;
   }
-  std::vector<Observed> seen;
+  std::vector<LaneMotion> motions;
+  std::vector<Learned> learned;
   double nis = 0.0;
   double log_determinant = 0.0;
-  Eigen::Index count = 0;
   for (const FollowedLane& lane : lanes_) {
-    seen.push_back(observe(lane, window, noise));
-    nis += seen.back().nis();
-    log_determinant += seen.back().log_determinant();
-    count += seen.back().innovation.size();
+    const ActuatorAxis axis = lane_of(model_->parts[lane.place], point_);
+    motions.push_back(lane_through(window, axis, {.fast = lane.mean[0], .slow = lane.mean[1]}));
+    learned.push_back(filter(lane, motions.back(), window.seen, size_));
+    nis += learned.back().nis;
+    log_determinant += learned.back().log_determinant;
   }
+  const Eigen::Index count = std::ssize(lanes_) * std::ssize(window.seen.twist);
   cost_ += student_cost(nis, log_determinant, count);
   const double larger = noise_inflation(nis, count, model_->iekf);
   if (!(larger > 0.0)) {
@@ -68,10 +62,10 @@ void ChannelWalk::learn(const ChannelWindow& window, const DriveNoiseMeans& nois
     return;
   }
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
-    if (larger > 1.0) {
-      seen[i].expect(larger * size_, noise);
-    }
-    update(lanes_[i], seen[i], larger * size_, noise);
+    const Learned taken = larger > 1.0 ? filter(lanes_[i], motions[i], window.seen, larger * size_) : learned[i];
+    information_ += taken.information;
+    gradient_ += taken.gradient;
+    lanes_[i] = taken.lane;
   }
 }
 
@@ -90,35 +84,44 @@ void ChannelWalk::begin(const ChannelWindow& window) {
   }
 }
 
-ChannelWalk::Observed ChannelWalk::observe(const FollowedLane& followed, const ChannelWindow& window,
-                                           const DriveNoiseMeans& noise) const {
-  const ActuatorAxis lane = lane_of(model_->parts[followed.place], point_);
-  Observed seen{lane_passage(window, lane, followed.mean, noise), lane_means(window.seen, lane), {}, {}};
-  seen.innovation -= seen.at.value.head(seen.innovation.size());
-  seen.spread = seen.by_state() * followed.covariance;
-  seen.expect(size_, noise);
-  return seen;
-}
-
-/// The Kalman filter of the state, and its derivative; all that S^-1 weighs is whitened by the factor of S.
-void ChannelWalk::update(FollowedLane& lane, const Observed& seen, double size, const DriveNoiseMeans& noise) {
-  const Eigen::Index k = seen.innovation.size();
-  const auto end_by_state = seen.at.by_state.bottomRows<kLaneStates>();
-  const auto whiten = seen.factor.matrixL();
-  StateColumns cross = seen.spread * end_by_state.transpose();
-  cross.col(2) += size * noise.covariance.col(k).head(k);
-  whiten.solveInPlace(cross);
-  const Eigen::VectorXd innovation = whiten.solve(seen.innovation);
-  Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters> by_chain =
-      seen.at.by_chain.topRows(k) + seen.by_state() * lane.by_chain;
-  whiten.solveInPlace(by_chain);
-  information_ += by_chain.transpose() * by_chain;
-  gradient_ += by_chain.transpose() * innovation;
-  lane.mean = seen.at.value.tail<kLaneStates>() + cross.transpose() * innovation;
-  lane.by_chain =
-      (seen.at.by_chain.bottomRows<kLaneStates>() + end_by_state * lane.by_chain - cross.transpose() * by_chain).eval();
-  lane.covariance = (end_by_state * lane.covariance * end_by_state.transpose() - cross.transpose() * cross).eval();
-  lane.covariance(2, 2) += size * noise.covariance(k, k);
+/// The Kalman filter and its derivative, one mean after the other. Its state are the fast and the slow part at the
+/// window's start, from where they were thought to be, and the deviation now.
+ChannelWalk::Learned ChannelWalk::filter(const FollowedLane& lane, const LaneMotion& motion, const WheelMeans& seen,
+                                         double size) const {
+  Learned learned{.lane = lane};
+  auto& [place, mean, covariance, by_chain] = learned.lane;
+  mean.head<kDeviation>().setZero();
+  const auto k = std::ssize(seen.twist);
+  for (Eigen::Index i = 0; i < k; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const DriveNoiseInterval noise =
+        drive_noise_interval(model_->noise, seen.edges[at + 1] - seen.edges[at], seen.samples[at]);
+    const LaneVector h(motion.slope(i, 5), motion.slope(i, 6), noise.mean);
+    const double innovation = seen.twist[at].*model_->parts[place] - motion.value[i] - h.dot(mean);
+    const ChannelParameters moved =
+        motion.slope.row(i).head<kChannelParameters>().transpose() + by_chain.transpose() * h;
+    LaneVector cross = covariance * h;
+    const double variance = h.dot(cross) + size * noise.of_mean;
+    learned.nis += innovation * innovation / variance;
+    learned.log_determinant += std::log(variance);
+    learned.information += moved * moved.transpose() / variance;
+    learned.gradient += moved * (innovation / variance);
+    const LaneVector kept(1.0, 1.0, noise.kept);  // until the interval's end
+    cross = kept.cwiseProduct(cross);
+    cross[kDeviation] += size * noise.crossed;
+    mean = kept.cwiseProduct(mean) + cross * (innovation / variance);
+    by_chain = kept.asDiagonal() * by_chain - cross / variance * moved.transpose();
+    covariance = (kept.asDiagonal() * covariance * kept.asDiagonal() - cross * cross.transpose() / variance).eval();
+    covariance(kDeviation, kDeviation) += size * noise.at_end;
+  }
+  LaneCovariance to_end = LaneCovariance::Identity();
+  to_end.topLeftCorner<2, 2>() = motion.slope.block<2, 2>(k, kChannelParameters);
+  mean = (to_end * mean).eval();
+  mean.head<kDeviation>() += motion.value.tail<2>();
+  by_chain = (to_end * by_chain).eval();
+  by_chain.topRows<kDeviation>() += motion.slope.block<2, kChannelParameters>(k, 0);
+  covariance = (to_end * covariance * to_end.transpose()).eval();
+  return learned;
 }
 
 ChainPass ChannelWalk::result() const {

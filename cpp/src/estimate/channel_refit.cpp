@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 2;                 // windows at a time
+constexpr std::size_t kSlice = 4;                 // windows that are walked over at a time
 constexpr double kConverged = 0.1;                // [standard deviations] a step that is not worth a pass
 constexpr std::array kShortened{1.0, 0.5, 0.25};  // fractions of a step, until one helps
 constexpr double kTolerance = 0.1;                // what a step has to gain of -2 log posterior
@@ -85,8 +85,7 @@ bool ChannelFit::advance(std::span<const ChannelWindow> past) {
     return false;
   }
   for (const std::size_t end = std::min(done_ + kSlice, past.size()); done_ < end; ++done_) {
-    const ChannelWindow& window = past[done_];
-    present(walk_).learn(window, drive_noise_means(model_->noise, window.seen.edges, window.seen.samples));
+    present(walk_).learn(past[done_]);
   }
   if (done_ == past.size()) {
     judge(present(walk_).result());

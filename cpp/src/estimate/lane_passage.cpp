@@ -45,9 +45,17 @@ std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Act
   return FirstLaneState{{settled.fast, settled.slow, 0.0}, {range * range, std::pow(kSlowRange * range, 2), wander}};
 }
 
+LaneMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const LaneState& start) {
+  LaneMotion motion = lane_motion(window.inputs, lane, start, window.seen.edges);
+  motion.slope.col(0) *= lane.response.lag;
+  motion.slope.col(1) *= lane.delay;
+  motion.slope.col(4) *= lane.response.slow_lag;
+  return motion;
+}
+
 LanePassage lane_passage(const ChannelWindow& window, const ActuatorAxis& lane, const LaneVector& start,
                          const DriveNoiseMeans& noise) {
-  const LaneMotion motion = lane_motion(window.inputs, lane, {.fast = start[0], .slow = start[1]}, window.seen.edges);
+  const LaneMotion motion = lane_through(window, lane, {.fast = start[0], .slow = start[1]});
   const Eigen::Index rows = motion.value.size() + 1;
   const Eigen::Index k = rows - kLaneStates;
   LanePassage passage{Eigen::VectorXd(rows), Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters>(rows, 5),
@@ -55,9 +63,6 @@ LanePassage lane_passage(const ChannelWindow& window, const ActuatorAxis& lane, 
   passage.value << motion.value, noise.by_start[k] * start[2];
   passage.value.head(k) += noise.by_start.head(k) * start[2];
   passage.by_chain << motion.slope.leftCols<kChannelParameters>(), Eigen::RowVectorXd::Zero(kChannelParameters);
-  passage.by_chain.col(0) *= lane.response.lag;  // by the logarithms
-  passage.by_chain.col(1) *= lane.delay;
-  passage.by_chain.col(4) *= lane.response.slow_lag;
   passage.by_state.topLeftCorner(rows - 1, 2) = motion.slope.rightCols<2>();
   passage.by_state.col(2).head(k) = noise.by_start.head(k);
   passage.by_state(rows - 1, 2) = noise.by_start[k];

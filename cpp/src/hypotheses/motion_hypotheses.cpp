@@ -124,9 +124,10 @@ void MotionHypotheses::start_slip(const DrivenSegment& segment) {
 
 bool MotionHypotheses::advance_slip() { return cascaded_ && cascaded_->advance_slip(); }
 
+/// What is due soonest comes first.
 bool MotionHypotheses::refit_slice() {
-  return joint_.refit_slice() || (tried(Structure::Direct) && direct_ && direct_->refit_slice()) ||
-         (cascaded_ && cascaded_->refit_slice());
+  return (cascaded_ && cascaded_->refit_slice()) || joint_.refit_slice() ||
+         (tried(Structure::Direct) && direct_ && direct_->refit_slice());
 }
 
 void MotionHypotheses::learn_actuator(const WheelSegment& segment) {

@@ -24,7 +24,7 @@ namespace {
 constexpr double kRounding = 1e-9;                 // [s] of stamps
 constexpr std::size_t kMostWheelSegments = 200;    // in which limits are looked for
 constexpr std::size_t kMostCommandSegments = 100;  // by which they are judged
-constexpr int kSlices = 6;                         // of refits that a push may do where no segment waits: some 100 us
+constexpr int kSlices = 8;                         // of refits that a push may do where no segment waits: some 100 us
 constexpr std::size_t kMostEvents = 10000;
 constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
 constexpr double kNever = std::numeric_limits<double>::infinity();

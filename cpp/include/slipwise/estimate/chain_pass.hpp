@@ -50,15 +50,14 @@ class ChannelWalk {
  public:
   /// `model` must outlive the walk.
   ChannelWalk(const ChannelModel& model, double size, const ChannelParameters& point);
-  /// Learns a window that follows all before it; `noise` is that of its means.
-  void learn(const ChannelWindow& window, const DriveNoiseMeans& noise);
+  /// Learns a window that follows all before it.
+  void learn(const ChannelWindow& window);
   ChainPass result() const;
 
  private:
-  struct Observed;
+  struct Learned;
   void begin(const ChannelWindow& window);
-  Observed observe(const FollowedLane& followed, const ChannelWindow& window, const DriveNoiseMeans& noise) const;
-  void update(FollowedLane& lane, const Observed& seen, double size, const DriveNoiseMeans& noise);
+  Learned filter(const FollowedLane& lane, const LaneMotion& motion, const WheelMeans& seen, double size) const;
 
   const ChannelModel* model_;
   double size_;

@@ -15,6 +15,16 @@ struct DriveNoise {
   double time_constant = 1.0;  ///< of the deviation [s]
 };
 
+/// One interval of it.
+struct DriveNoiseInterval {
+  double kept;     ///< of the deviation, from its start to its end
+  double mean;     ///< of the deviation at its start, in the mean over it
+  double of_mean;  ///< variance of what is new in that mean, white noise included
+  double at_end;   ///< variance of what is new in the deviation at its end
+  double crossed;  ///< covariance of both
+};
+DriveNoiseInterval drive_noise_interval(const DriveNoise& noise, double duration, double samples);
+
 /// The means over some intervals, and after them the deviation at the end: how they follow the deviation at the start,
 /// and their covariance, were that known.
 struct DriveNoiseMeans {

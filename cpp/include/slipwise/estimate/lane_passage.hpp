@@ -38,6 +38,10 @@ struct FirstLaneState {
 /// `wander` is the variance of its deviation.
 std::optional<FirstLaneState> first_state(const ChannelWindow& window, const ActuatorAxis& lane, double wander);
 
+/// The lane through the window from the fast and the slow part at its start; derivatives by lags and delay are by their
+/// logarithms, as the channel's parameters are.
+LaneMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const LaneState& start);
+
 /// The K means of the window, and after them the state at its end.
 struct LanePassage {
   Eigen::VectorXd value;                                               ///< [K + 3]

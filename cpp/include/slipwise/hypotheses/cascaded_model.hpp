@@ -34,7 +34,7 @@ class CascadedModel {
   void start_slip(const DrivenSegment& segment) { slip_.start(segment.inputs, segment.segment); }
   bool advance_slip();
   /// Does a bounded slice of the refits; whether there was any to do.
-  bool refit_slice() { return slip_.refit_slice() || actuator_.refit_slice(); }
+  bool refit_slice() { return actuator_.refit_slice() || slip_.refit_slice(); }
   /// Learns the actuator model from commands and wheel speeds.
   void learn_actuator(const WheelSegment& segment);
   /// Predicts a segment of the commands by what was known when `refresh` was called last.
