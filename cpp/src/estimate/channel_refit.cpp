@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 4;                 // windows that are walked over at a time
+constexpr std::size_t kSlice = 24;                // windows that are walked over at a time
 constexpr double kConverged = 0.1;                // [standard deviations] a step that is not worth a pass
 constexpr std::array kShortened{1.0, 0.5, 0.25};  // fractions of a step, until one helps
 constexpr double kTolerance = 0.1;                // what a step has to gain of -2 log posterior
