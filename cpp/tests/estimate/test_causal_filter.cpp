@@ -103,23 +103,6 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
   }
 }
 
-TEST_CASE("few segments are learned anew by a filter that nobody hears, many are not") {
-  const MotionModel model(named_basis("edd-2"), {});
-  const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
-                                           {.seed = 81, .windows = 68, .window = 2.0, .noise = kTrueNoise});
-  CausalFilter heard(model, {});
-  CausalFilter unheard(model, {});
-  for (std::size_t i = 0; i < drive.segments.size(); ++i) {
-    CHECK(heard.estimate().mean == unheard.estimate().mean);
-    CHECK(heard.estimate().covariance == unheard.estimate().covariance);
-    heard.learn(drive.inputs, drive.segments[i], kSpeeds);
-    unheard.learn(drive.inputs, drive.segments[i], kSpeeds, false);
-  }
-  // The mean may stay, where it is as good as the fit's; its covariance is that of the fit.
-  CHECK(heard.estimate().covariance != unheard.estimate().covariance);
-  CHECK((heard.estimate().mean - unheard.estimate().mean).cwiseAbs().maxCoeff() < 0.02);
-}
-
 TEST_CASE("slices of a refit change nothing but when the work is done") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
