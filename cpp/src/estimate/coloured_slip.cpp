@@ -103,28 +103,43 @@ SlipNow ColouredSlip::now(const MotionPosterior& posterior, std::span<const Driv
     now.of_candidates.emplace_back(wander, terms);
   }
   for (const DrivenSegment& segment : recent) {
-    const SeenSlip seen = see(posterior, terms, segment);
-    for (SlipDeviation& deviation : now.of_candidates) {
-      deviation.follow(seen);
-    }
+    follow(posterior, now, segment);
   }
   return now;
 }
 
+void ColouredSlip::follow(const MotionPosterior& posterior, SlipNow& now, const DrivenSegment& segment) const {
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  if (terms.places.empty()) {
+    return;
+  }
+  const SeenSlip seen = see(posterior, terms, segment);
+  for (SlipDeviation& deviation : now.of_candidates) {
+    deviation.follow(seen);
+  }
+}
+
 ExpectedPose ColouredSlip::predict(const MotionPosterior& posterior, const SlipNow& now,
                                    const DrivenSegment& segment) const {
-  return predict_both(posterior, now, segment).now;
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, segment.inputs, segment.segment);
+  return predict_at(posterior, now, at, segment.segment);
+}
+
+ExpectedPose ColouredSlip::predict_at(const MotionPosterior& posterior, const SlipNow& now,
+                                      const SegmentLinearization& at, const Segment& segment) const {
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  const ExpectedPose without{at.predicted.vector(), prediction_covariance(at, posterior.estimate.covariance,
+                                                                          posterior.noise, posterior.noise_scale)};
+  return with_deviation(at, without, now, terms, segment);
 }
 
 ExpectedPoses ColouredSlip::predict_both(const MotionPosterior& posterior, const SlipNow& now,
                                          const DrivenSegment& driven) const {
   const auto at = linearize_segment(posterior.model, posterior.estimate.mean, driven.inputs, driven.segment);
-  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
-  const ExpectedPose without{at.predicted.vector(), prediction_covariance(at, posterior.estimate.covariance,
-                                                                          posterior.noise, posterior.noise_scale)};
-  check_fits(now, law_, terms);
-  return {.now = with_deviation(at, without, now, terms, driven.segment),
-          .nominal = with_deviation(at, without, this->now(posterior, {}), terms, driven.segment)};
+  return {.now = predict_at(posterior, now, at, driven.segment),
+          .nominal = predict_at(posterior, this->now(posterior, {}), at, driven.segment)};
 }
 
 /// Adds the mean of the deviation over the segment, and its covariance, as mixed by the candidates' weights.

@@ -52,21 +52,20 @@ StudentT MotionLearner::student_for(double horizon, Structure structure) const {
   return errors.before(stream_.newest() - std::max(*nearest, kReady)).students[index(structure)];
 }
 
-/// The last segments that are complete with all that was pushed.
-std::vector<DrivenSegment> MotionLearner::recent_now() const {
-  std::vector<DrivenSegment> recent = recent_before(stream_.newest());
+/// Segments that are complete with all that was pushed, and not learned yet.
+std::vector<DrivenSegment> MotionLearner::complete_now() const {
+  std::vector<DrivenSegment> complete;
   for (const StreamItem& item : waiting_) {
     if (const auto* segment = std::get_if<DrivenSegment>(&item)) {
-      recent.push_back(*segment);
+      complete.push_back(*segment);
     }
   }
   for (DrivenSegment& segment : stream_.pending_segments()) {
-    recent.push_back(std::move(segment));
+    complete.push_back(std::move(segment));
   }
-  recent.erase(recent.begin(), recent.end() - static_cast<std::ptrdiff_t>(std::min(recent.size(), kRecent)));
-  std::erase_if(recent,
-                [&](const DrivenSegment& each) { return each.segment.start <= stream_.newest() - kRecentSeconds; });
-  return recent;
+  const double since = stream_.newest() - kRecent * settings_.stream.segment_length;
+  std::erase_if(complete, [&](const DrivenSegment& each) { return each.segment.start <= since; });
+  return complete;
 }
 
 PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, double horizon, double embargo) {
@@ -77,10 +76,15 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   work_until(stream_.newest() - kReady);
   const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
   const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
-  const SlipNow slip = known.disturbance->now(*known.motion, recent_now());
-  const ExpectedPose expected = known.disturbance->predict(*known.motion, slip, ahead);
-  const SegmentPath path =
-      integrate_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
+  SlipNow slip = recent_slip_.now(known, recent_before(stream_.newest()));
+  if (settings_.learn_disturbance) {
+    for (const DrivenSegment& segment : complete_now()) {
+      known.disturbance->follow(*known.motion, slip, segment);
+    }
+  }
+  const auto at = linearize_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
+  const ExpectedPose expected = known.disturbance->predict_at(*known.motion, slip, at, ahead.segment);
+  const SegmentPath& path = at.path;
   const StudentT student = student_for(horizon, known.motion->structure);
   PredictedPath result{.start = stream_.newest(),
                        .t = path.times,

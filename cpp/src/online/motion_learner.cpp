@@ -144,6 +144,7 @@ void MotionLearner::take_in() {
 /// One bounded piece; whether there is more.
 bool MotionLearner::work() {
   if (waiting_.empty()) {
+    prepare_prediction();
     for (int slice = 0; slice < kSlices && hypotheses_.refit_slice(); ++slice) {
     }
     return false;
@@ -182,6 +183,13 @@ bool MotionLearner::work() {
   return !waiting_.empty();
 }
 
+/// So that a prediction need not find out where slip is now.
+void MotionLearner::prepare_prediction() {
+  if (settings_.learn_disturbance) {
+    recent_slip_.now(known_at(stream_.newest() - kReady), recent_before(stream_.newest()));
+  }
+}
+
 void MotionLearner::work_until(double t) {
   const auto known_at = [](const StreamItem& item) {
     if (const auto* wheels = std::get_if<WheelSegment>(&item)) {
@@ -207,7 +215,7 @@ void MotionLearner::work_through() {
 void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
   if (settings_.learn_disturbance) {
     const MotionPosterior& before = *known_.back().slip;
-    disturbance_.learn(before, disturbance_.now(before, recent_before(segment.segment.start)), segment);
+    disturbance_.learn(before, slip_after(disturbance_, before, recent_before(segment.segment.start)), segment);
   }
 }
 
@@ -221,7 +229,7 @@ Knowledge MotionLearner::now_known(double until) const {
 
 void MotionLearner::publish(const DrivenSegment& segment) {
   known_.push_back(now_known(segment.known_at));
-  double longest = kRecentSeconds;
+  double longest = kRecent * settings_.stream.segment_length;
   for (const double horizon : settings_.stream.horizons) {
     longest = std::max(longest, 3.0 * horizon);
   }
@@ -264,14 +272,15 @@ const Knowledge& MotionLearner::known_at(double t) const {
 }
 
 /// The last segments that were complete at `t` [s].
-std::vector<DrivenSegment> MotionLearner::recent_before(double t) const {
-  std::vector<DrivenSegment> found;
+SegmentList MotionLearner::recent_before(double t) const {
+  SegmentList found;
   if (!settings_.learn_disturbance) {
     return found;
   }
-  for (auto segment = recent_.rbegin(); segment != recent_.rend() && found.size() < kRecent; ++segment) {
-    if (segment->known_at <= t + kRounding && segment->segment.start > t - kRecentSeconds) {
-      found.push_back(*segment);
+  const double since = t - kRecent * settings_.stream.segment_length;
+  for (auto segment = recent_.rbegin(); segment != recent_.rend(); ++segment) {
+    if (segment->known_at <= t + kRounding && segment->segment.start > since) {
+      found.push_back(&*segment);
     }
   }
   std::ranges::reverse(found);
@@ -284,8 +293,8 @@ void MotionLearner::judge(const TargetSegment& target) {
   const Segment& segment = driven.segment;
   const double horizon = settings_.stream.horizons[target.horizon];
   const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
-  const std::vector<DrivenSegment> recent = recent_before(segment.start);
-  const SlipNow slip = known.disturbance->now(*known.motion, recent);
+  const SegmentList recent = recent_before(segment.start);
+  const SlipNow slip = slip_after(*known.disturbance, *known.motion, recent);
   const auto [expected, nominal] = known.disturbance->predict_both(*known.motion, slip, driven);
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;
@@ -296,7 +305,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   const double nominal_squared = normalised_square(error_of(measured, nominal.pose), nominal.covariance);
   errors.learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_at(segment.end);
-  const double used = std::max({known.until, recent.empty() ? -kNever : recent.back().known_at, earlier.until});
+  const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
   const HeldOutPrediction prediction{.run = runs_,
                                      .horizon = target.horizon,
                                      .start = segment.start,

@@ -56,9 +56,15 @@ class ColouredSlip {
   void learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment);
   /// What `recent` segments, in the order of time, say of the slip after them; without any, its nominal spread.
   SlipNow now(const MotionPosterior& posterior, std::span<const DrivenSegment> recent) const;
+  /// Adds what one more segment says, which follows all that `now` comes from.
+  /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
+  void follow(const MotionPosterior& posterior, SlipNow& now, const DrivenSegment& segment) const;
   /// Predicts `segment`, which starts no earlier than the last segment that `now` comes from ended.
   /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
   ExpectedPose predict(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) const;
+  /// The same of a segment that is linearised `at` the posterior's mean.
+  ExpectedPose predict_at(const MotionPosterior& posterior, const SlipNow& now, const SegmentLinearization& at,
+                          const Segment& segment) const;
   /// The same, and what is predicted where nothing recent is known.
   ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& driven) const;
 

@@ -14,6 +14,7 @@
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/actuator_limits.hpp"
 #include "slipwise/online/held_out.hpp"
+#include "slipwise/online/recent_slip.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
 namespace slipwise {
@@ -106,14 +107,15 @@ class MotionLearner {
  private:
   void take_in();
   bool work();
+  void prepare_prediction();
   void work_until(double t);
   void work_through();
   void learn_disturbance(const DrivenSegment& segment);
   void publish(const DrivenSegment& segment);
   void judge(const TargetSegment& target);
   const Knowledge& known_at(double t) const;
-  std::vector<DrivenSegment> recent_before(double t) const;
-  std::vector<DrivenSegment> recent_now() const;
+  SegmentList recent_before(double t) const;
+  std::vector<DrivenSegment> complete_now() const;
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
   void say(LearnerEvent event);
@@ -129,6 +131,7 @@ class MotionLearner {
   std::deque<DrivenSegment> recent_;            ///< segments of the run
   std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
   std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
+  RecentSlip recent_slip_;                      ///< for the next prediction
   std::vector<HorizonErrors> errors_;
   std::vector<std::deque<HeldOutPrediction>> held_out_;
   std::deque<LearnerEvent> events_;
