@@ -14,6 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 #: Folders of the core, lowest first; folders of one row do not know each other.
 LAYERS: tuple[tuple[str, ...], ...] = (
+    ("archive",),
     ("lie", "linear"),
     ("vehicle", "slip", "actuator"),
     ("motion",),
