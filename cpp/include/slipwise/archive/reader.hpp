@@ -191,7 +191,7 @@ class Reader {
     return static_cast<Bits>(bits);
   }
 
-  static constexpr Eigen::Index kMostRows = Eigen::Index{1} << 30;
+  static constexpr Eigen::Index kMostRows = 1'073'741'824;
 
   std::string_view bytes_;
   std::vector<std::pair<std::type_index, std::shared_ptr<const void>>> shared_;

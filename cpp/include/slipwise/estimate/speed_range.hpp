@@ -15,6 +15,12 @@ class SpeedRange {
   /// The magnitude below which `share` of the moving time lies; `floor` where nothing moved yet.
   double quantile(double share, double floor) const;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.seconds_, self.total_);
+  }
+
  private:
   static constexpr std::size_t kBins = 284;  // ceil(ln(1e6) / ln(1.05))
   std::array<double, kBins> seconds_{};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
+#include "slipwise/archive/bytes.hpp"
 #include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
@@ -17,6 +18,12 @@ namespace slipwise {
 struct InputSample {
   double t;  ///< [s]
   BodyTwist twist;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.t, self.twist);
+  }
 };
 
 /// How a slice of the history begins, and what of it is kept.
@@ -67,6 +74,15 @@ class InputHistory {
 
   /// The samples that act in [start, end], then `future` ones up to `end`, as the core's inputs.
   InputTrack slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future = {}) const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.unknown_after_, self.samples_, self.fastest_, self.first_);
+    if (self.samples_.size() != self.fastest_.size()) {
+      slipwise::archive::refuse("malformed: inputs and their greatest speeds differ in number");
+    }
+  }
 
  private:
   /// The index after the last sample with a stamp of at most t.

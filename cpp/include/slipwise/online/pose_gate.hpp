@@ -21,6 +21,12 @@ struct MeasuredPose {
   long frame = 0;
   double gx = 0.0;  ///< gravity along the body's x axis [m/s^2]
   double gy = 0.0;  ///< along its y axis [m/s^2]
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.t, self.x, self.y, self.yaw, self.frame, self.gx, self.gy);
+  }
 };
 
 /// What the gate makes of the poses.
@@ -40,6 +46,12 @@ class PoseGate {
   GatedPoses finish(const InputHistory& inputs);
   /// Another run begins.
   void restart();
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.accepted_, self.waiting_, self.bends_, self.bend_count_, self.given_, self.frame_);
+  }
 
  private:
   bool jumps(const MeasuredPose& from, const MeasuredPose& to, const InputHistory& inputs) const;

@@ -21,6 +21,12 @@ class StampGate {
   std::optional<Reason> check(double t, std::span<const double> numbers);
   double latest() const { return latest_; }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.latest_);
+  }
+
  private:
   double latest_ = -std::numeric_limits<double>::infinity();
 };
@@ -31,6 +37,12 @@ class SpeedGate {
  public:
   /// Whether the speed [m/s or rad/s] is to be believed.
   bool plausible(double value);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.before_, self.fastest_);
+  }
 
  private:
   double before_ = 0.0;   ///< the last one, believed or not

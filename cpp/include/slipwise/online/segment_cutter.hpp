@@ -19,6 +19,12 @@ struct SegmentRules {
   double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
   double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
   double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.late_factor, self.length_tolerance, self.still_speed);
+  }
 };
 
 /// The median time between poses of late, taken again every 64 intervals.
@@ -27,6 +33,12 @@ class PoseInterval {
   void add(double seconds);
   /// [s]; 0 where there was none yet.
   double median() const { return median_; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.recent_, self.count_, self.median_);
+  }
 
  private:
   std::deque<double> recent_;
@@ -39,6 +51,12 @@ struct TimedPose {
   MeasuredPose pose;      ///< its yaw unwrapped along its frame
   double interval = 0.0;  ///< median time between poses, as known then [s]
   double gap = 0.0;       ///< the longest time between poses since the last one that was not late [s]
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.pose, self.interval, self.gap);
+  }
 };
 
 /// Unwraps headings, and finds poses that are late by an unknown time.
@@ -50,6 +68,12 @@ class PoseTimer {
   void restart() { last_.reset(); }
   /// Median time between poses of late [s]; 0 where there were none.
   double interval() const { return interval_.median(); }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.interval_, self.last_, self.gap_);
+  }
 
  private:
   PoseInterval interval_;
@@ -81,6 +105,12 @@ class SegmentCutter {
   double length() const { return length_; }
   /// Stamp of the pose from which on the next segment may begin [s]; infinity where none came.
   double begins() const { return poses_.empty() ? std::numeric_limits<double>::infinity() : poses_.front().pose.t; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.length_, self.rules_, self.whole_frames_, self.stride_, self.poses_, self.any_, self.unknown_since_);
+  }
 
  private:
   void cut(double length, bool last, const InputHistory& inputs, std::vector<SegmentCut>& out);
