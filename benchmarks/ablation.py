@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Every mechanism of the learner on and off over the real logs, from commands and from wheels.
+
+Held-out position and heading errors at the longest horizon are over those of the kinematic baseline,
+geometric means over logs; beside them stand the change against the default, the fractions inside the
+50/90/95 % ellipsoids, processor time over the default's, and the lines of source that the mechanism costs.
+
+    python benchmarks/ablation.py --only warthog/ --json ablation.json
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from data_sets import data_folder, data_sets
+from mechanisms import CALIBRATION, LIMITS, MECHANISMS, Mechanism
+from replay_score import MeanReplay, ReplayScore, mean_replay
+from tuning_constants import build_tuned_core
+from variants import of_input, score_variants
+
+from slipwise.cli.output import Column, Output
+
+COLUMNS = (
+    Column("without"),
+    Column("position", True),
+    Column("change %", True),
+    Column("heading", True),
+    Column("change %", True),
+    Column("50/90/95 %", True),
+    Column("CPU", True),
+    Column("lines", True),
+)
+GAIN, LINES = 2.0, 200  # what gains less, in %, and costs more has to show elsewhere what it is for
+FOOTNOTE = (
+    "Lines are those of a mechanism's own files and, in shared ones, those that name it; files of the rows "
+    f"overlap. *: gains under {GAIN:g} % of either error, from this input, at more than {LINES} lines. "
+    "What no setting switches off - refits, correlated scores - is switched off by its constants in a build "
+    "of its own. Gating of poses, cleaning and the baseline's own noise cannot be switched off."
+)
+
+
+def rows_of(
+    found: Sequence[tuple[Mechanism, list[ReplayScore] | None]], default: MeanReplay, name: str
+) -> list[tuple[str, ...]]:
+    """Return one row per mechanism, for one input."""
+    rows = [("(nothing)", *_figures(default, default), "")]
+    for mechanism, scores in found:
+        mean = mean_replay(of_input(scores or [], name))
+        if mean is not None:
+            lines = mechanism.lines
+            little = max(_gain(mean.position, default.position), _gain(mean.heading, default.heading)) < GAIN
+            mark = "*" if little and lines > LINES else ""
+            text = f"{lines}{mark}" if lines else "-"
+            rows.append((mechanism.variant.name, *_figures(mean, default), text))
+    rows.append(
+        (
+            "Student-t calibration",
+            *_figures(replace(default, inside=default.inside_normal), default),
+            str(CALIBRATION.lines),
+        )
+    )
+    return rows
+
+
+def _gain(without: float, default: float) -> float:
+    return 100.0 * (without / default - 1.0)
+
+
+def _figures(mean: MeanReplay, default: MeanReplay) -> tuple[str, ...]:
+    same = mean is default
+    return (
+        f"{mean.position:.4f}",
+        "" if same else f"{_gain(mean.position, default.position):+.1f}",
+        f"{mean.heading:.4f}",
+        "" if same else f"{_gain(mean.heading, default.heading):+.1f}",
+        "/".join(f"{100.0 * fraction:.1f}" for fraction in mean.inside),
+        f"{mean.seconds / default.seconds:.2f}",
+    )
+
+
+def limits_line(scores: Sequence[ReplayScore]) -> str:
+    """Say what looking for limits of the actuator costs and finds: it changes no prediction of the filter."""
+    mean = mean_replay(of_input(scores, "command"))
+    if mean is None:
+        return "No log has commands: limits were not looked for."
+    share = mean.limits_seconds / mean.seconds
+    return (
+        "Limits of the actuator are looked for after learning and change none of these predictions: "
+        f"{share:.2f} times the default's processor time, kept on {mean.limits_kept} of {mean.logs} logs "
+        f"with commands, {LIMITS.lines} lines."
+    )
+
+
+def main() -> int:
+    """Run the benchmark."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--json", type=Path, help="write all figures to this file too")
+    parser.add_argument("--only", default="", help="only logs whose name contains this")
+    parser.add_argument("--mechanism", default="", help="only mechanisms whose name contains this")
+    parser.add_argument("--workers", type=int, default=2, help="processes at a time")
+    arguments = parser.parse_args()
+    folder = data_folder()
+    if folder is None:
+        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
+        return 2
+    logs = [data.name for data in data_sets(folder) if arguments.only in data.name]
+    chosen = [m for m in MECHANISMS if arguments.mechanism in m.variant.name]
+    core = build_tuned_core() if any(m.variant.constants for m in chosen) else None
+    variants = [LIMITS.variant, *(mechanism.variant for mechanism in chosen)]
+    (default, *others) = score_variants(variants, logs, core=core, workers=arguments.workers)
+    if not default:
+        print(f"no log whose name contains '{arguments.only}' has enough held-out segments")
+        return 2
+    found = list(zip(chosen, others, strict=True))
+    output = Output(arguments.json)
+    for name in ("command", "wheel"):
+        mean = mean_replay(of_input(default, name))
+        if mean is not None:
+            output.table(f"From {name}s, {mean.logs} logs", COLUMNS, rows_of(found, mean, name))
+    output.line(limits_line(default))
+    output.line(FOOTNOTE)
+    output.document(as_document([(LIMITS, default), *found]))
+    return 0
+
+
+def as_document(
+    found: Sequence[tuple[Mechanism, list[ReplayScore] | None]],
+) -> dict[str, dict[str, object]]:
+    """Return all means and figures of logs, for JSON."""
+    return {
+        mechanism.variant.name: {
+            "lines": mechanism.lines,
+            "means": {
+                name: mean.as_dict() if (mean := mean_replay(of_input(scores or [], name))) else None
+                for name in ("command", "wheel")
+            },
+            "logs": [vars(score) for score in scores or []],
+        }
+        for mechanism, scores in found
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())
