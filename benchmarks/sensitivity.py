@@ -187,7 +187,14 @@ def show(output: Output, varied: Sequence[Varied]) -> None:
         Column("value", True),
         *(Column(f"{head} x{factor:g}", True) for factor in FACTORS for head in HEADS),
     )
-    rows = [(v.name, v.value, *(text for change in v.changes for text in _cells(change))) for v in varied]
+    rows = [
+        (
+            v.name.removeprefix("hypotheses."),
+            v.value,
+            *(text for change in v.changes for text in _cells(change)),
+        )
+        for v in varied
+    ]
     caption = "-: the learner refuses the value. cov: largest change of coverage [points of %]."
     output.table("Change of mean errors [%]", columns, rows, caption=caption)
     little = [each.name for each in varied if not each.matters]
