@@ -16,11 +16,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from data_sets import data_folder, data_sets
+from data_sets import FEW, data_folder, data_sets
 from mechanisms import CALIBRATION, LIMITS, MECHANISMS, Mechanism
 from replay_score import MeanReplay, ReplayScore, mean_replay
 from tuning_constants import build_tuned_core
-from variants import of_input, score_variants
+from variants import of_input, scored_variants
 
 from slipwise.cli.output import Column, Output
 
@@ -102,6 +102,7 @@ def main() -> int:
     )
     parser.add_argument("--json", type=Path, help="write all figures to this file too")
     parser.add_argument("--only", default="", help="only logs whose name contains this")
+    parser.add_argument("--few", action="store_true", help="only a few short logs of most data sets")
     parser.add_argument("--mechanism", default="", help="only mechanisms whose name contains this")
     parser.add_argument("--workers", type=int, default=2, help="processes at a time")
     arguments = parser.parse_args()
@@ -109,23 +110,28 @@ def main() -> int:
     if folder is None:
         print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
         return 2
-    logs = [data.name for data in data_sets(folder) if arguments.only in data.name]
+    logs = [
+        d.name for d in data_sets(folder) if arguments.only in d.name and (not arguments.few or d.name in FEW)
+    ]
     chosen = [m for m in MECHANISMS if arguments.mechanism in m.variant.name]
     core = build_tuned_core() if any(m.variant.constants for m in chosen) else None
-    variants = [LIMITS.variant, *(mechanism.variant for mechanism in chosen)]
-    (default, *others) = score_variants(variants, logs, core=core, workers=arguments.workers)
+    output, found = Output(arguments.json), []
+    mechanisms = [LIMITS, *chosen]
+    variants = [mechanism.variant for mechanism in mechanisms]
+    scored = scored_variants(variants, logs, core=core, workers=arguments.workers)
+    for mechanism, scores in zip(mechanisms, scored, strict=True):
+        found.append((mechanism, scores))
+        output.document(as_document(found))
+    (_, default), *others = found
     if not default:
-        print(f"no log whose name contains '{arguments.only}' has enough held-out segments")
+        print("no log of that name has enough held-out segments")
         return 2
-    found = list(zip(chosen, others, strict=True))
-    output = Output(arguments.json)
     for name in ("command", "wheel"):
         mean = mean_replay(of_input(default, name))
         if mean is not None:
-            output.table(f"From {name}s, {mean.logs} logs", COLUMNS, rows_of(found, mean, name))
+            output.table(f"From {name}s, {mean.logs} logs", COLUMNS, rows_of(others, mean, name))
     output.line(limits_line(default))
     output.line(FOOTNOTE)
-    output.document(as_document([(LIMITS, default), *found]))
     return 0
 
 

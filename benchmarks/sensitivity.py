@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from data_sets import data_folder, data_sets
+from data_sets import FEW, data_folder, data_sets
 from replay_score import ReplayScore, mean_replay
 from tuning_constants import build_tuned_core, tuning_constants
 from variants import Variant, of_input, scored_variants
@@ -34,16 +34,6 @@ from slipwise.cli.output import Column, Output
 FACTORS = (2.0, 0.5)
 INPUTS = ("command", "wheel")
 NEGLIGIBLE, NEGLIGIBLE_COVERAGE = 0.2, 0.5  # %, points of %
-SUBSET = (
-    "f1tenth/DS4",
-    "husky/wetgrass_bad_poses",
-    "race_car/LVMS_23_01_04_B",
-    "robotino/brown_surface",
-    "tricycle/agv",
-    "warthog/asphalt_9_25_12h8s57",
-    "warthog/grass_7_18_16h59s20",
-    "warthog_windows/asphalt_8_7_11h30s30",
-)
 #: Fractions of a whole, and quantiles: of these, the odds are varied.
 FRACTIONS = frozenset(
     {
@@ -234,7 +224,7 @@ def main() -> int:
         print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
         return 2
     every = arguments.all or arguments.only
-    logs = [d.name for d in data_sets(folder) if arguments.only in d.name and (every or d.name in SUBSET)]
+    logs = [d.name for d in data_sets(folder) if arguments.only in d.name and (every or d.name in FEW)]
     output, done = Output(arguments.json), []
     for varied in vary(chosen, logs, build_tuned_core(), arguments.workers):
         done = by_effect([*done, varied])
