@@ -34,36 +34,45 @@ COLUMNS = (
     Column("CPU", True),
     Column("lines", True),
 )
+INPUTS = ("command", "wheel")
 GAIN, LINES = 2.0, 200  # what gains less, in %, and costs more has to show elsewhere what it is for
 FOOTNOTE = (
-    "Lines are those of a mechanism's own files and, in shared ones, those that name it; files of the rows "
-    f"overlap. *: gains under {GAIN:g} % of either error, from this input, at more than {LINES} lines. "
-    "What no setting switches off - refits, correlated scores - is switched off by its constants in a build "
-    "of its own. Gating of poses, cleaning and the baseline's own noise cannot be switched off."
+    "Lines are those of a mechanism's own files and, in shared ones, those that name it; rows overlap. "
+    f"*: gains under {GAIN:g} % of either error, from either input, at more than {LINES} lines. "
+    "What no setting switches off - refits, correlated scores - is switched off by its constants, in a build "
+    "of its own. Correlated scores are for the covariance of parameters (promises/covariance.py), the change "
+    "detector for new terrain (promises/terrain_change.py). Gating of poses cannot be switched off."
 )
 
 
-def rows_of(
-    found: Sequence[tuple[Mechanism, list[ReplayScore] | None]], default: MeanReplay, name: str
-) -> list[tuple[str, ...]]:
+Found = Sequence[tuple[Mechanism, list[ReplayScore] | None]]
+
+
+def rows_of(found: Found, default: Sequence[ReplayScore], name: str) -> list[tuple[str, ...]]:
     """Return one row per mechanism, for one input."""
-    rows = [("(nothing)", *_figures(default, default), "")]
+    before = mean_replay(of_input(default, name))
+    if before is None:
+        return []
+    rows = [("(nothing)", *_figures(before, before), "")]
     for mechanism, scores in found:
         mean = mean_replay(of_input(scores or [], name))
         if mean is not None:
             lines = mechanism.lines
-            little = max(_gain(mean.position, default.position), _gain(mean.heading, default.heading)) < GAIN
-            mark = "*" if little and lines > LINES else ""
-            text = f"{lines}{mark}" if lines else "-"
-            rows.append((mechanism.variant.name, *_figures(mean, default), text))
-    rows.append(
-        (
-            "Student-t calibration",
-            *_figures(replace(default, inside=default.inside_normal), default),
-            str(CALIBRATION.lines),
-        )
-    )
+            mark = "*" if lines > LINES and largest_gain(scores or [], default) < GAIN else ""
+            rows.append((mechanism.variant.name, *_figures(mean, before), f"{lines}{mark}" if lines else "-"))
+    uncalibrated = replace(before, inside=before.inside_normal)
+    rows.append(("Student-t calibration", *_figures(uncalibrated, before), str(CALIBRATION.lines)))
     return rows
+
+
+def largest_gain(scores: Sequence[ReplayScore], default: Sequence[ReplayScore]) -> float:
+    """Return by how much an error grows at most without a mechanism, from either input [%]."""
+    gains = [0.0]
+    for name in INPUTS:
+        mean, before = mean_replay(of_input(scores, name)), mean_replay(of_input(default, name))
+        if mean is not None and before is not None:
+            gains += [_gain(mean.position, before.position), _gain(mean.heading, before.heading)]
+    return max(gains)
 
 
 def _gain(without: float, default: float) -> float:
@@ -126,25 +135,23 @@ def main() -> int:
     if not default:
         print("no log of that name has enough held-out segments")
         return 2
-    for name in ("command", "wheel"):
-        mean = mean_replay(of_input(default, name))
-        if mean is not None:
-            output.table(f"From {name}s, {mean.logs} logs", COLUMNS, rows_of(others, mean, name))
+    for name in INPUTS:
+        count = len(of_input(default, name))
+        if count:
+            output.table(f"From {name}s, {count} logs", COLUMNS, rows_of(others, default, name))
     output.line(limits_line(default))
     output.line(FOOTNOTE)
     return 0
 
 
-def as_document(
-    found: Sequence[tuple[Mechanism, list[ReplayScore] | None]],
-) -> dict[str, dict[str, object]]:
+def as_document(found: Found) -> dict[str, dict[str, object]]:
     """Return all means and figures of logs, for JSON."""
     return {
         mechanism.variant.name: {
             "lines": mechanism.lines,
             "means": {
                 name: mean.as_dict() if (mean := mean_replay(of_input(scores or [], name))) else None
-                for name in ("command", "wheel")
+                for name in INPUTS
             },
             "logs": [vars(score) for score in scores or []],
         }

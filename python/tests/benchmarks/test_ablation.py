@@ -9,6 +9,7 @@ from pathlib import Path
 import ablation
 import pytest
 from mechanisms import CALIBRATION, LIMITS, MECHANISMS
+from replay_score import ReplayScore
 from tuning_constants import tuning_constants
 
 from slipwise.calibration.settings import make_settings
@@ -31,6 +32,19 @@ def test_a_mechanism_is_switched_off_on_simulated_logs(
     means = content["baseline structure"]["means"]
     assert 0.0 < means["command"]["position"] < 1.0
     assert means["wheel"]["logs"] == 1
+
+
+def test_what_gains_from_one_input_gains() -> None:
+    def scores(command: float, wheel: float) -> list[ReplayScore]:
+        inside = (0.5, 0.9, 0.95)
+        return [
+            ReplayScore("a", name, 10, error, 0.1, inside, inside, 1.0)
+            for name, error in (("command", command), ("wheel", wheel))
+        ]
+
+    default = scores(0.2, 0.3)
+    assert ablation.largest_gain(scores(0.2, 0.33), default) == pytest.approx(10.0)
+    assert ablation.largest_gain(scores(0.1, 0.2), default) == 0.0
 
 
 @pytest.mark.parametrize("mechanism", [*MECHANISMS, LIMITS, CALIBRATION], ids=lambda m: m.variant.name)
