@@ -19,7 +19,7 @@ namespace {
 
 SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
 
-SLIPWISE_TUNING(kFirst, std::size_t{8});  // segments after which the first refit begins, and the last
+SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, and the last
 SLIPWISE_TUNING(kLast, std::size_t{64});
 SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
 constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
