@@ -88,7 +88,7 @@ MECHANISMS = (
     ),
     Mechanism(
         Variant("slip disturbance", settings={"slip_disturbance": {"learn": False}}),
-        ("estimate/coloured_slip", "estimate/slip_deviation", "motion/slip_wander"),
+        ("estimate/coloured_slip", "estimate/slip_deviation", "motion/slip_wander", "online/recent_slip"),
         (("online/motion_learner", r"disturbance|recent"),),
     ),
     Mechanism(
