@@ -13,6 +13,17 @@ VENDOR_MULTIPLIERS = {"husky": 1.875, "warthog": 1.125}  # the wheel-separation 
 LONG_HORIZON = 5.0  # s
 SHORT_HORIZON = 1.9  # s, where every 2 s have a frame of their own
 SHORT_FOLDERS = ("warthog_windows", "drive_test")
+#: Short logs of most data sets, for what has to push them many times.
+FEW = (
+    "f1tenth/DS4",
+    "husky/wetgrass_bad_poses",
+    "race_car/LVMS_23_01_04_B",
+    "robotino/brown_surface",
+    "tricycle/agv",
+    "warthog/asphalt_9_25_12h8s57",
+    "warthog/grass_7_18_16h59s20",
+    "warthog_windows/asphalt_8_7_11h30s30",
+)
 
 
 @dataclass(frozen=True)

@@ -12,15 +12,17 @@
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kSpeedChange = 0.1;  // the prior follows the speeds when their logarithm moves by more than this
+SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
 
-constexpr std::size_t kFirst = 8, kLast = 64;    // segments after which the first refit begins, and the last
-constexpr double kFactor = std::numbers::sqrt2;  // of the segments, until another begins
-constexpr std::size_t kShortest = 1;             // segments that a refit takes at least
+SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, and the last
+SLIPWISE_TUNING(kLast, std::size_t{64});
+SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
+constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
 
 /// Segments after which a refit takes effect that began after so many.
 std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }

@@ -9,16 +9,19 @@
 
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
+#include "slipwise/linear/tuning.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kFirstSize = 0.1 * 0.1;               // [(m/s)^2, (rad/s)^2]
-constexpr double kLeastSize = 1e-4 * 1e-4;             // nothing is computed or sampled more exactly
-constexpr double kFirstWindows = 3.0, kMemory = 40.0;  // as in NoiseSettings
-constexpr double kMostGain = 8.0;                      // of a window's noise over the expected
-constexpr double kStraight = 0.03, kUnknown = 1.0;     // as in iekf_update
+SLIPWISE_TUNING(kFirstSize, 0.1 * 0.1);     // [(m/s)^2, (rad/s)^2]
+constexpr double kLeastSize = 1e-4 * 1e-4;  // nothing is computed or sampled more exactly
+SLIPWISE_TUNING(kFirstWindows, 3.0);        // as in NoiseSettings
+SLIPWISE_TUNING(kMemory, 40.0);
+SLIPWISE_TUNING(kMostGain, 8.0);   // of a window's noise over the expected
+SLIPWISE_TUNING(kStraight, 0.03);  // as in iekf_update
+SLIPWISE_TUNING(kUnknown, 1.0);
 constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowLag = 4;
 constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
 

@@ -8,20 +8,23 @@
 #include <utility>
 
 #include "slipwise/estimate/prior.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.1;  // [s] one measurement
+SLIPWISE_TUNING(kInterval, 0.1);  // [s] one measurement
 /// White noise alone first; or a deviation that is far larger and lasts for this long.
-constexpr std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
-                                             {.white = 1.0, .wander = 100.0, .time_constant = 0.2},
-                                             {.white = 1.0, .wander = 100.0, .time_constant = 1.0},
-                                             {.white = 1.0, .wander = 100.0, .time_constant = 5.0},
-                                             {.white = 1.0, .wander = 100.0, .time_constant = 25.0}}};
-constexpr std::size_t kFirst = 3, kLast = 256;  // windows from which and up to which all are refitted
-constexpr double kGrowth = 1.25;                // of their number, until that is done again
-constexpr double kHeard = 0.01;                 // weight from which a rival is refitted and has a say
+SLIPWISE_TUNING(kDeviation, 100.0);  // variance of a deviation, over that of one sample
+SLIPWISE_TUNED std::array<DriveNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
+                                                  {.white = 1.0, .wander = kDeviation, .time_constant = 0.2},
+                                                  {.white = 1.0, .wander = kDeviation, .time_constant = 1.0},
+                                                  {.white = 1.0, .wander = kDeviation, .time_constant = 5.0},
+                                                  {.white = 1.0, .wander = kDeviation, .time_constant = 25.0}}};
+SLIPWISE_TUNING(kFirst, std::size_t{3});  // windows from which and up to which all are refitted
+SLIPWISE_TUNING(kLast, std::size_t{256});
+SLIPWISE_TUNING(kGrowth, 1.25);  // of their number, until that is done again
+SLIPWISE_TUNING(kHeard, 0.01);   // weight from which a rival is refitted and has a say
 
 }  // namespace
 

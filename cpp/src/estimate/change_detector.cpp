@@ -11,17 +11,18 @@
 
 #include "slipwise/estimate/heavy_tails.hpp"
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr int kIterations = 4;           // of iteratively reweighted least squares; more change nothing that matters
-constexpr double kStart = 1e-3;          // weight of the change's prior in the first iteration, which has to get far
-constexpr double kLargestRatio = 6.0;    // a gain counts at most this many times what is usual
-constexpr double kUsualSegments = 20.0;  // whiteness is believed as if it had been seen over this many segments
-constexpr double kSizeSegments = 5.0;    // and the size that was foretold over this many
-constexpr double kLargestSquare = 9.0;   // a squared residual counts at most this many times its size
-constexpr double kLeastSize = 0.1;       // smaller residuals count as of this square size
+constexpr int kIterations = 4;          // of iteratively reweighted least squares; more change nothing that matters
+constexpr double kStart = 1e-3;         // weight of the change's prior in the first iteration, which has to get far
+SLIPWISE_TUNING(kLargestRatio, 6.0);    // a gain counts at most this many times what is usual
+SLIPWISE_TUNING(kUsualSegments, 20.0);  // whiteness is believed as if it had been seen over this many segments
+SLIPWISE_TUNING(kSizeSegments, 5.0);    // and the size that was foretold over this many
+SLIPWISE_TUNING(kLargestSquare, 9.0);   // a squared residual counts at most this many times its size
+SLIPWISE_TUNING(kLeastSize, 0.1);       // smaller residuals count as of this square size
 
 /// The change that explains most, with the weights of the segments' residuals and of the change's prior there.
 struct Fitted {

@@ -8,18 +8,19 @@
 #include <utility>
 
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kSlice = 24;                // windows that are walked over at a time
-constexpr double kConverged = 0.1;                // [standard deviations] a step that is not worth a pass
+SLIPWISE_TUNING(kConverged, 0.1);                 // [standard deviations] a step that is not worth a pass
 constexpr std::array kShortened{1.0, 0.5, 0.25};  // fractions of a step, until one helps
-constexpr double kTolerance = 0.1;                // what a step has to gain of -2 log posterior
-constexpr int kMostPasses = 12;                   // with more windows it goes on from there
-constexpr int kMostElsewhere = 10;                // the same from a start elsewhere
+SLIPWISE_TUNING(kTolerance, 0.1);                 // what a step has to gain of -2 log posterior
+SLIPWISE_TUNING(kMostPasses, 12);                 // with more windows it goes on from there
+SLIPWISE_TUNING(kMostElsewhere, 10);              // the same from a start elsewhere
 constexpr Eigen::Index kLag = 0, kSlowShare = 3, kSlowLag = 4;
-constexpr double kApart = 1.4;  // in the logarithm: time constants closer than that may pass for each other
+SLIPWISE_TUNING(kApart, 1.4);  // in the logarithm: time constants closer than that may pass for each other
 
 /// All in one lag, and a slower one beside it.
 ChannelParameters without_slow_mode(ChannelParameters chain) {

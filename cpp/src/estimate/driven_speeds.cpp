@@ -3,12 +3,13 @@
 #include "slipwise/estimate/driven_speeds.hpp"
 
 #include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kReferenceShare = 0.9;  // reference speeds are the 90th percentile of those driven so far
-constexpr double kLeastSpeed = 0.05;     // [m/s] and [rad/s]; slower references would make priors meaningless
+SLIPWISE_TUNING(kReferenceShare, 0.9);  // reference speeds are the 90th percentile of those driven so far
+SLIPWISE_TUNING(kLeastSpeed, 0.05);     // [m/s] and [rad/s]; slower references would make priors meaningless
 
 }  // namespace
 

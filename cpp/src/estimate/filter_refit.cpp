@@ -10,13 +10,14 @@
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kSlice = 2;    // segments that are linearised at a time
-constexpr double kTolerance = 0.03;  // of -2 log posterior: a sixth of a standard deviation
+SLIPWISE_TUNING(kTolerance, 0.03);   // of -2 log posterior: a sixth of a standard deviation
 constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at one pose
 
 }  // namespace

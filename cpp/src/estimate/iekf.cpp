@@ -10,6 +10,7 @@
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
+#include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -17,8 +18,8 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
-constexpr double kUnknown = 1.0;          // [ln s]; a time is known at least to a factor of e before any data
-constexpr double kStraight = 0.03;        // [ln s], [s] or [-]; over so little of the chain a segment is linear
+SLIPWISE_TUNING(kUnknown, 1.0);           // [ln s]; a time is known at least to a factor of e before any data
+SLIPWISE_TUNING(kStraight, 0.03);         // [ln s], [s] or [-]; over so little of the chain a segment is linear
 constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of a perfect fit is no uphill step
 
 /// S = J P J^T + R.

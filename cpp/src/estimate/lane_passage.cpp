@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kSlowRange = 0.3;  // of the speed range, that the slow part may hold
+SLIPWISE_TUNING(kSlowRange, 0.3);  // of the speed range, that the slow part may hold
 
 /// The fastest that the lane was told to go, or went.
 double fastest(const ChannelWindow& window, const ActuatorAxis& lane) {

@@ -12,12 +12,13 @@
 #include <utility>
 
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kChanged = 0.2;  // weight of the models that forgot, at first: most disturbances of real drives pass
-constexpr double kHeard = 0.01;   // weight from which a model has a say
+SLIPWISE_TUNING(kChanged, 0.2);  // weight of the models that forgot, at first: most disturbances of real drives pass
+SLIPWISE_TUNING(kHeard, 0.01);   // weight from which a model has a say
 
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {

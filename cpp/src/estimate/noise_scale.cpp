@@ -4,10 +4,12 @@
 
 #include <algorithm>
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 namespace {
 
-constexpr double kLeastShare = 0.1;  // of a squared error that is noise, however much the parameters leave open
+SLIPWISE_TUNING(kLeastShare, 0.1);  // of a squared error that is noise, however much the parameters leave open
 
 }  // namespace
 

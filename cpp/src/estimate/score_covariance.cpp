@@ -6,18 +6,19 @@
 #include <cmath>
 
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
 /// Residuals as many as the noise model counts for: fewer, and a few segments that say much and fit by chance look as
 /// if they knew more than they do.
-constexpr double kModelSegments = 20.0;
-constexpr double kKernelTime = 16.0;      // [s] scores so far apart count for 1/e in the sum of their correlations
-constexpr double kCorrelationTime = 5.0;  // [s] of slip disturbances, for which the kernel's loss is made good
-constexpr double kMostTaken = 0.6;        // largest fraction of a correlation that the fitted mean is taken to remove
-constexpr double kFewCorrelations = 2.0;  // covariance inflation per unit of kernel time over learned time
-constexpr double kLeast = 0.4;            // factor of the variances by correlations, where these are negative
+SLIPWISE_TUNING(kModelSegments, 20.0);
+SLIPWISE_TUNING(kKernelTime, 16.0);      // [s] scores so far apart count for 1/e in the sum of their correlations
+SLIPWISE_TUNING(kCorrelationTime, 5.0);  // [s] of slip disturbances, for which the kernel's loss is made good
+SLIPWISE_TUNING(kMostTaken, 0.6);        // largest fraction of a correlation that the fitted mean is taken to remove
+SLIPWISE_TUNING(kFewCorrelations, 2.0);  // covariance inflation per unit of kernel time over learned time
+SLIPWISE_TUNING(kLeast, 0.4);            // factor of the variances by correlations, where these are negative
 
 /// tr(A_gg B_gg).
 double block_trace(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b, const std::vector<Eigen::Index>& group) {

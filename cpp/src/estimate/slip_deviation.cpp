@@ -6,11 +6,12 @@
 #include <cmath>
 
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kGate = 16.266;  // 99.9 % of a chi-square of three degrees of freedom
+SLIPWISE_TUNING(kGate, 16.266);  // 99.9 % of a chi-square of three degrees of freedom
 
 }  // namespace
 

@@ -9,14 +9,17 @@
 #include <utility>
 
 #include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kPatience = 0.3;  // of the bases' learning rate: what tells structures apart repeats in each segment
-/// Prior weights: of what predicts alike, the simplest.
-constexpr std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, 1.4, 2.0};
-const double kRefuted = std::log(1e3);  // tempered log odds against a structure from which on it is dropped
+SLIPWISE_TUNING(kPatience, 0.3);     // of the bases' learning rate: what tells structures apart repeats in each segment
+SLIPWISE_TUNING(kDirectPrior, 1.4);  // prior weights, others having 1: of what predicts alike, the simplest
+SLIPWISE_TUNING(kBaselinePrior, 2.0);  // the same
+SLIPWISE_TUNED std::array<double, kStructures> kPrior{1.0, 1.0, 1.0, kDirectPrior, kBaselinePrior};
+SLIPWISE_TUNING(kRefutedOdds, 1e3);
+const double kRefuted = std::log(kRefutedOdds);  // tempered log odds against a structure from which on it is dropped
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
 

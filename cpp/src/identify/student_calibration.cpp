@@ -8,16 +8,19 @@
 #include <ranges>
 
 #include "slipwise/identify/student_t.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
 // The prior: ln(scale) and ln(dof) are normal. A log of some ten predictions outweighs it.
-constexpr double kPriorScaleStd = 0.7;  // of the logarithm, about 0
-constexpr double kPriorDof = 8.0;
-constexpr double kPriorDofStd = 0.8;
+SLIPWISE_TUNING(kPriorScaleStd, 0.7);  // of the logarithm, about 0
+SLIPWISE_TUNING(kPriorDof, 8.0);
+SLIPWISE_TUNING(kPriorDofStd, 0.8);
 /// Errors after which one is forgotten; the last forgets nothing.
-constexpr std::array kForgetting{10.0, 30.0, 100.0, std::numeric_limits<double>::infinity()};
+SLIPWISE_TUNING(kFastest, 10.0);
+SLIPWISE_TUNED std::array kForgetting{kFastest, 3.0 * kFastest, 10.0 * kFastest,
+                                      std::numeric_limits<double>::infinity()};
 constexpr double kInner = 0.50;  // fractions whose ellipsoids the t reported takes over from the posterior
 constexpr double kOuter = 0.95;
 constexpr double kStep = 0.1;  // of the logarithms of scale and squared distance

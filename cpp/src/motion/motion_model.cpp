@@ -9,6 +9,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -49,8 +51,8 @@ constexpr std::array<ChainParameter, kChainParameters + 2> kChain{{
     {&CommandChain::delay_omega, false, "delay_omega", "s", "how much later than its command the yaw rate is there"},
 }};
 
-constexpr double kUsualResponse = 0.3;   // [s]
-constexpr double kShortResponse = 0.03;  // [s]; that much shorter times can hardly be told apart
+SLIPWISE_TUNING(kUsualResponse, 0.3);   // [s]
+SLIPWISE_TUNING(kShortResponse, 0.03);  // [s]; that much shorter times can hardly be told apart
 
 const ChainParameter& chain_parameter(Eigen::Index row) { return kChain[static_cast<std::size_t>(row)]; }
 

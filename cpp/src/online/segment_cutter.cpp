@@ -8,12 +8,13 @@
 #include <utility>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kRecent = 64;       // intervals between poses that tell the median one
-constexpr double kLeastFraction = 0.25;   // of the length asked for; a frame shorter than this is no segment
+SLIPWISE_TUNING(kLeastFraction, 0.25);    // of the length asked for; a frame shorter than this is no segment
 constexpr double kRounding = 1e-9;        // [s] of times
 constexpr double kStrideRounding = 1e-6;  // [s]
 

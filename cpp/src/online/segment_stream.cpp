@@ -11,12 +11,14 @@
 #include <span>
 #include <utility>
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 namespace {
 
 constexpr double kGravity = 9.80665;   // [m/s^2]
-constexpr double kSlipLength = 1.0;    // [s] of segments behind wheel speeds
-constexpr double kWheelLength = 1.0;   // [s] wheel speeds tell a step's response from its start on
+SLIPWISE_TUNING(kSlipLength, 1.0);     // [s] of segments behind wheel speeds
+SLIPWISE_TUNING(kWheelLength, 1.0);    // [s] wheel speeds tell a step's response from its start on
 constexpr double kLookBack = 20.0;     // [s] of inputs before a segment; an actuator remembers no more
 constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
 constexpr double kWheelsBack = 3.0;    // [s] of wheel speeds before a segment; no clock offset is larger

@@ -2,8 +2,10 @@
 // What the residuals of real segments are taken for: a Student-t, whose tails are heavier than a normal's.
 #pragma once
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 
-inline constexpr double kTailDegrees = 5.0;  ///< degrees of freedom of the Student-t
+inline SLIPWISE_TUNING(kTailDegrees, 5.0);  ///< degrees of freedom of the Student-t
 
 }  // namespace slipwise

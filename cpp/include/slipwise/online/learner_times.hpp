@@ -2,9 +2,11 @@
 // The times that decide what a prediction may use: by stamps, so that results do not depend on how fast a machine is.
 #pragma once
 
+#include "slipwise/linear/tuning.hpp"
+
 namespace slipwise {
 
-inline constexpr double kReady = 1.0;   ///< [s] after which a segment has been learned, whatever the latency
-inline constexpr double kRecent = 7.0;  ///< lengths of a segment within which segments tell of the slip now
+inline constexpr double kReady = 1.0;  ///< [s] after which a segment has been learned, whatever the latency
+inline SLIPWISE_TUNING(kRecent, 7.0);  ///< lengths of a segment within which segments tell of the slip now
 
 }  // namespace slipwise
