@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 import sensitivity
 from replay_score import ReplayScore
-from tuning_constants import build_tuned_core, tuning_constants
-from variants import Variant, score_variants
+from tuning_constants import tuning_constants
 
 from slipwise.cli.output import Output
 
@@ -63,18 +62,3 @@ def test_what_matters_most_comes_first(capsys: pytest.CaptureFixture[str]) -> No
     assert "little" in unimportant
     assert "much" not in unimportant
     assert "covers" not in unimportant
-
-
-@pytest.mark.slow
-def test_a_factor_reaches_the_build_with_tuning_constants(data: Path) -> None:
-    core = build_tuned_core()
-    other_constants = {"iekf.kUnknown": 0.25, "motion_noise.kTurnRadius": 4.0}
-    variants = [Variant(), Variant("constants", constants=other_constants)]
-    (installed,) = score_variants([Variant()], ["first/short"])
-    default, varied = score_variants(variants, ["first/short"], core=core)
-    assert installed
-    assert default
-    assert varied
-    for before, same, other in zip(installed, default, varied, strict=True):
-        assert same.position == pytest.approx(before.position, rel=1e-6)
-        assert abs(other.position / same.position - 1.0) > 1e-5

@@ -39,7 +39,7 @@ def test_the_readme_learns_a_model_that_is_good_and_predicts_five_seconds(
 ) -> None:
     monkeypatch.chdir(drive)
     names: dict[str, object] = {}
-    (block,) = blocks(ROOT / "README.md", "python")
+    block, _ = blocks(ROOT / "README.md", "python")
     exec(block, names)
     result, path = names["result"], names["path"]
     assert isinstance(result, sw.Calibration)

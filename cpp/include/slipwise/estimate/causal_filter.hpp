@@ -48,6 +48,7 @@ class CausalFilter {
  private:
   void follow(const ReferenceSpeeds& speeds);
   void keep(const InputTrack& inputs, const Segment& segment);
+  void fade(const IekfUpdate& update);
   void end_refit();
 
   /// A refit that is under way.
