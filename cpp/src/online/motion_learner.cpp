@@ -278,12 +278,11 @@ SegmentList MotionLearner::recent_before(double t) const {
     return found;
   }
   const double since = t - kRecent * settings_.stream.segment_length;
-  for (auto segment = recent_.rbegin(); segment != recent_.rend(); ++segment) {
-    if (segment->known_at <= t + kRounding && segment->segment.start > since) {
-      found.push_back(&*segment);
+  for (const DrivenSegment& segment : recent_) {
+    if (segment.known_at <= t + kRounding && segment.segment.start > since) {
+      found.push_back(&segment);
     }
   }
-  std::ranges::reverse(found);
   return found;
 }
 

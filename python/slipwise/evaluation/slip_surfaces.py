@@ -87,7 +87,7 @@ class _ChainLearner:
 
     def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
         """Learn one window."""
-        return self._chain.learn(inputs, segment, True)
+        return self._chain.learn(inputs, segment)
 
     def belief(self) -> Belief:
         """Return what is known now."""

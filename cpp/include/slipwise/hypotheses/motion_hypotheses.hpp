@@ -23,12 +23,12 @@ std::vector<Basis> averaged_bases();
 /// What is learned.
 struct HypothesisSettings {
   std::vector<Basis> bases = averaged_bases();  ///< averaged, or one
-  bool dynamics = true;      ///< inputs are commands: lag and delay are learned
-  bool clock_offset = true;  ///< learned, where inputs are wheel speeds
-  bool mount = false;        ///< where the pose sensor sits is learned
-  bool cascaded = true;      ///< from commands, once wheel speeds come: also learn the actuator from these
-  bool direct = true;        ///< from commands: also try slip and delays, no lag
-  bool baseline = true;      ///< also try the kinematic baseline
+  bool dynamics = true;                         ///< inputs are commands: lag and delay are learned
+  bool clock_offset = true;                     ///< learned, where inputs are wheel speeds
+  bool mount = false;                           ///< where the pose sensor sits is learned
+  bool cascaded = true;  ///< from commands, once wheel speeds come: also learn the actuator from these
+  bool direct = true;    ///< from commands: also try slip and delays, no lag
+  bool baseline = true;  ///< also try the kinematic baseline
   CausalFilterSettings filter = {};
   ModelAverageSettings average = {};
 
