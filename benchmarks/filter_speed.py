@@ -89,7 +89,7 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
     def work() -> None:
         average = _core.ModelAverage(BASIS, settings.bases(), False, False, False, *filters)
         for track, segment in zip(windows.tracks, windows.segments, strict=True):
-            average.learn(track, segment, True)
+            average.learn(track, segment)
 
     return work
 

@@ -85,7 +85,7 @@ def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTes
     filters = (settings.filter_settings(), settings.average_settings())
     average = _core.ModelAverage("auto", settings.bases(), dynamics, offset, False, *filters)
     for i in range(len(windows)):
-        average.learn(windows.track(i), windows.segments[i], True)
+        average.learn(windows.track(i), windows.segments[i])
         tests.append(average.change)
     return windows, tests
 

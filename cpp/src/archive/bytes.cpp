@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sealing of a blob: what it is, how long, and a checksum.
 #include "slipwise/archive/bytes.hpp"
 
 #include <array>
