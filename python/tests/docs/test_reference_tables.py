@@ -44,7 +44,7 @@ def without_default(block: str) -> set[str]:
 def constants(file: str, *names: str) -> list[float]:
     """Return constants of a source of the core."""
     text = (ROOT / f"cpp/src/{file}.cpp").read_text(encoding="utf-8")
-    found = [re.search(rf"\bk{name} (?: =|,) ([\d.]+)", text) for name in names]
+    found = [re.search(rf"\bk{name}(?: =|,) ([\d.]+)", text) for name in names]
     return [float(match[1]) for match in found if match is not None]
 
 
@@ -131,7 +131,9 @@ def test_the_readme_table_of_real_logs_has_its_columns() -> None:
 def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     derivations, settings = read("derivations.md"), " ".join(read("settings.md").split())
     header = (ROOT / "cpp/include/slipwise/motion/motion_noise.hpp").read_text(encoding="utf-8")
-    turn, straight = (re.search(rf"{name}(?: =|,) ([\d.]+)", header) for name in ("kTurnRadius", "kStraightRadius"))
+    turn, straight = (
+        re.search(rf"{name}(?: =|,) ([\d.]+)", header) for name in ("kTurnRadius", "kStraightRadius")
+    )
     assert turn is not None
     assert straight is not None
     assert f"{float(turn[1]):g} m per radian" in derivations
