@@ -20,9 +20,7 @@ namespace {
 SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
 
 SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, and the last
-SLIPWISE_TUNING(kLast, std::size_t{64});
-SLIPWISE_TUNING(kFading, 60.0);  // [segments] after which what was learned of the slip counts 1 / e
-SLIPWISE_TUNING(kShown, 0.001);  // of a segment's variance: slip that moves it by less is not shown by it
+SLIPWISE_TUNING(kLast, std::size_t{256});
 SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
 constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
 
@@ -87,23 +85,6 @@ Estimate CausalFilter::stated() const {
   return {state_.estimate.mean, stated_.asDiagonal() * state_.estimate.covariance * stated_.asDiagonal()};
 }
 
-/// Tyres and terrain change without a test being sure of it: of what is known of the slip, that which the segment shows
-/// fades, but never beyond the prior. Of the first segments, which are learned anew, all count alike.
-void CausalFilter::fade(const IekfUpdate& update) {
-  const Eigen::Index slip = model_.slip_size();
-  if (!full_ || slip == 0 || update.weight == 0.0) {
-    return;
-  }
-  auto known = state_.estimate.covariance.topLeftCorner(slip, slip);
-  const Eigen::MatrixXd seen = update.at.by_parameter.leftCols(slip) * known;
-  const Eigen::Matrix3d spread = seen * update.at.by_parameter.leftCols(slip).transpose();
-  const Eigen::MatrixXd shown =
-      seen.transpose() * Cholesky(spread + kShown * update.innovation_covariance).solve(seen) / kFading;
-  if (((known.diagonal() + shown.diagonal()).array() < slip_std_.array().square()).all()) {
-    known += shown;
-  }
-}
-
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
 void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
   kept_.push_back({.inputs = inputs, .segment = segment});
@@ -151,7 +132,6 @@ IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment,
   if (!full_ && !update.at.by_parameter.isZero(0.0)) {
     keep(inputs, segment);
   }
-  fade(update);
   if (settings_.noise.adapt) {
     stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);
   }

@@ -103,30 +103,6 @@ TEST_CASE("a first guess of the noise is forgotten once the first segments are l
   }
 }
 
-TEST_CASE("slip that changed is forgotten without an alarm, and nothing is forgotten while a robot is parked") {
-  const MotionModel model(named_basis("edd-2"), {});
-  const auto before = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),
-                                            {.seed = 83, .windows = 400, .window = 1.0, .noise = kTrueNoise});
-  const auto after = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.27),
-                                           {.seed = 84, .windows = 180, .window = 1.0, .noise = kTrueNoise});
-  CausalFilter filter(model, {});
-  for (const Segment& segment : before.segments) {
-    filter.learn(before.inputs, segment, kSpeeds);
-  }
-  CHECK(std::abs(filter.estimate().mean[1] + 0.3) < 0.02);
-  const Eigen::MatrixXd learned = filter.estimate().covariance;
-  const InputTrack parked({0.0}, {BodyTwist{}});
-  for (int i = 0; i < 100; ++i) {
-    filter.learn(parked, {.start = 1.0 + i, .end = 2.0 + i}, kSpeeds);
-  }
-  CHECK(filter.estimate().covariance.isApprox(learned, 1e-12));
-  for (const Segment& segment : after.segments) {
-    filter.learn(after.inputs, segment, kSpeeds);
-  }
-  // Of all segments alike the mean would be half way.
-  CHECK(std::abs(filter.estimate().mean[1] + 0.27) < 0.008);
-}
-
 TEST_CASE("slices of a refit change nothing but when the work is done") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.3),

@@ -23,7 +23,7 @@ class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
-  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 64 segments a refit of
+  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit of
   /// all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called meanwhile
   /// or not. The update returned is that of the segment alone.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
@@ -48,7 +48,6 @@ class CausalFilter {
  private:
   void follow(const ReferenceSpeeds& speeds);
   void keep(const InputTrack& inputs, const Segment& segment);
-  void fade(const IekfUpdate& update);
   void end_refit();
 
   /// A refit that is under way.
