@@ -23,9 +23,9 @@ class CausalFilter {
  public:
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
-  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit of
-  /// all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called meanwhile
-  /// or not. The update returned is that of the segment alone.
+  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
+  /// of all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called
+  /// meanwhile or not. The update returned is that of the segment alone.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
   /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
   bool refit_slice();
