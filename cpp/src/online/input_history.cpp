@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace slipwise {
@@ -153,7 +154,7 @@ InputTrack InputHistory::slice(double start, double end, SliceKind kind, const s
     add(continues ? InputSample{samples_[i].t - kLongAgo, samples_[i].twist} : samples_[i]);
   }
   for (const InputSample& sample : future) {
-    if (sample.t > (samples_.empty() ? -INFINITY : newest()) && sample.t <= end) {
+    if (sample.t > (samples_.empty() ? -std::numeric_limits<double>::infinity() : newest()) && sample.t <= end) {
       add(sample);
     }
   }
