@@ -21,5 +21,6 @@ NB_MODULE(_core, m) {
   bind_regression(m);
   bind_estimators(m);
   bind_limits(m);
+  bind_archive(m);
   bind_online(m);
 }

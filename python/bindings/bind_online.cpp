@@ -276,6 +276,11 @@ void bind_online(nb::module_& m) {
       .def("find_limits", &MotionLearner::find_limits, "wheel_separation"_a, nb::call_guard<nb::gil_scoped_release>(),
            "Looks for limits of the actuator; None where there are too few wheel speeds beside commands.")
       .def("forget", &MotionLearner::forget, "fraction"_a)
+      .def(
+          "save", [](const MotionLearner& learner) { return bytes_of(learner.save()); }, "All of it as bytes.")
+      .def_static(
+          "load", [](const nb::bytes& saved) { return MotionLearner::load(view_of(saved)); }, "saved"_a,
+          "The learner whose bytes these are.")
       .def_prop_ro("newest", &MotionLearner::newest);
 }
 

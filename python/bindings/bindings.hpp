@@ -4,6 +4,8 @@
 
 #include <nanobind/nanobind.h>
 
+#include <string_view>
+
 namespace slipwise::bindings {
 
 void bind_lie(nanobind::module_& m);
@@ -19,6 +21,10 @@ void bind_coloured_slip(nanobind::module_& m);
 void bind_limits(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
 void bind_estimators(nanobind::module_& m);
+void bind_archive(nanobind::module_& m);
 void bind_online(nanobind::module_& m);
+
+inline std::string_view view_of(const nanobind::bytes& bytes) { return {bytes.c_str(), bytes.size()}; }
+inline nanobind::bytes bytes_of(std::string_view text) { return nanobind::bytes(text.data(), text.size()); }
 
 }  // namespace slipwise::bindings

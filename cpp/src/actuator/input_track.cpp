@@ -32,7 +32,18 @@ InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std
                        std::span<const double> omega)
     : InputTrack({t.begin(), t.end()}, joined(t, v, vy, omega)) {}
 
-InputTrack::InputTrack(std::vector<double> t, std::vector<BodyTwist> twist) {
+InputTrack::InputTrack() : samples_(std::make_shared<const Samples>()) {}
+
+InputTrack::InputTrack(std::vector<double> t, std::vector<BodyTwist> twist)
+    : samples_(std::make_shared<const Samples>(Samples{std::move(t), std::move(twist)})) {
+  check_samples();
+}
+
+void InputTrack::check_samples() const {
+  if (!samples_) {
+    throw std::invalid_argument("inputs without samples");
+  }
+  const auto& [t, twist] = *samples_;
   if (twist.size() != t.size()) {
     throw std::invalid_argument("inputs need a twist at each time, got " + std::to_string(twist.size()) + " and " +
                                 std::to_string(t.size()));
@@ -45,7 +56,6 @@ InputTrack::InputTrack(std::vector<double> t, std::vector<BodyTwist> twist) {
                                   " is not finite or its time does not increase; clean the log first");
     }
   }
-  samples_ = std::make_shared<const Samples>(Samples{std::move(t), std::move(twist)});
 }
 
 std::size_t InputTrack::count_until(double t) const {

@@ -38,9 +38,9 @@ std::uint64_t checksum(std::string_view bytes) {
   return ~value;
 }
 
-std::string sealed(std::string_view body, std::string_view version) {
+std::string sealed(std::string_view body) {
   Writer header;
-  header(kFormat, std::string(version), static_cast<std::uint64_t>(body.size()));
+  header(std::string(SLIPWISE_VERSION), static_cast<std::uint64_t>(body.size()));
   std::string blob = std::string(kMagic) + header.bytes();
   blob += body;
   Writer end;
@@ -56,14 +56,12 @@ std::string_view opened(std::string_view blob) {
     refuse("truncated");
   }
   Reader reader(blob.substr(kMagic.size()));
-  std::uint32_t format = 0;
-  std::string version;
+  std::string saved_by;
   std::uint64_t length = 0;
-  reader(format);
-  if (format != kFormat) {
-    refuse("of format " + std::to_string(format) + ", and this slipwise reads format " + std::to_string(kFormat));
+  reader(saved_by, length);
+  if (saved_by != SLIPWISE_VERSION) {
+    refuse("of slipwise " + saved_by + ", and this is slipwise " + SLIPWISE_VERSION);
   }
-  reader(version, length);
   if (reader.remaining() < kChecksumBytes || length > reader.remaining() - kChecksumBytes) {
     refuse("truncated");
   }

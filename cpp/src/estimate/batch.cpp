@@ -94,17 +94,21 @@ BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDat
       settings_(std::move(settings)),
       damping_(kLeastDamping),
       fit_{prior_, 0.0, 0, Status::NotConverged, {}} {
-  check(model_, prior_, data_, settings_.start);
+  check_data();
   if (!at_start.empty() && at_start.size() != data_.size()) {
     throw std::invalid_argument("of all data or of none the linearisation at the start must be given");
   }
-  errors_ = new_errors(data_);
   prior_information_ = Cholesky(prior_.covariance).inverse();
   mean_ = candidate_ = settings_.start.size() > 0 ? settings_.start : prior_.mean;
   if (!at_start.empty()) {
     now_ = normal_equations(std::move(at_start));
     propose();
   }
+}
+
+void BatchSearch::check_data() {
+  check(model_, prior_, data_, settings_.start);
+  errors_ = new_errors(data_);
 }
 
 /// At the candidate.

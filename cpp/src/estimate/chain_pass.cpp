@@ -3,7 +3,10 @@
 #include "slipwise/estimate/chain_pass.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "slipwise/estimate/heavy_tails.hpp"
@@ -18,6 +21,7 @@ using Information = Eigen::Matrix<double, kChannelParameters, kChannelParameters
 using StateByChain = Eigen::Matrix<double, kLaneStates, kChannelParameters>;
 using LaneCovariance = Eigen::Matrix<double, kLaneStates, kLaneStates>;
 constexpr Eigen::Index kDeviation = 2;  // among the lane's states
+constexpr std::array kTwist{&BodyTwist::v, &BodyTwist::vy, &BodyTwist::omega};
 
 }  // namespace
 
@@ -30,11 +34,31 @@ struct ChannelWalk::Learned {
   ChannelParameters gradient = ChannelParameters::Zero();
 };
 
-ChannelWalk::ChannelWalk(const ChannelModel& model, double size, const ChannelParameters& point)
-    : model_(&model), size_(size), point_(point) {
-  const Eigen::VectorXd away = point - model.prior.mean;
-  cost_ = away.cwiseQuotient(model.prior.covariance.diagonal().cwiseSqrt()).squaredNorm();
-  information_ = Cholesky(model.prior.covariance).inverse();
+std::vector<std::size_t> places_in_twist(const std::vector<double BodyTwist::*>& parts) {
+  std::vector<std::size_t> places;
+  for (const auto part : parts) {
+    places.push_back(static_cast<std::size_t>(std::ranges::find(kTwist, part) - kTwist.begin()));
+  }
+  return places;
+}
+
+std::vector<double BodyTwist::*> parts_of_twist(const std::vector<std::size_t>& places) {
+  std::vector<double BodyTwist::*> parts;
+  for (const std::size_t place : places) {
+    if (place >= kTwist.size()) {
+      throw std::invalid_argument("a twist has no place " + std::to_string(place));
+    }
+    parts.push_back(kTwist[place]);
+  }
+  return parts;
+}
+
+ChannelWalk::ChannelWalk(std::shared_ptr<const ChannelModel> model, double size, const ChannelParameters& point)
+    : model_(std::move(model)), size_(size), point_(point) {
+  const Estimate& prior = model_->prior;
+  const Eigen::VectorXd away = point - prior.mean;
+  cost_ = away.cwiseQuotient(prior.covariance.diagonal().cwiseSqrt()).squaredNorm();
+  information_ = Cholesky(prior.covariance).inverse();
   gradient_ = -information_ * away;
 }
 

@@ -34,13 +34,17 @@ ChannelParameters without_slow_mode(ChannelParameters chain) {
 
 }  // namespace
 
-ChannelFit::ChannelFit(const ChannelModel& model, double size, ChannelParameters start, int most_passes)
-    : model_(&model), size_(size), left_(most_passes), point_(std::move(start)), full_(ChannelParameters::Zero()) {
+ChannelFit::ChannelFit(std::shared_ptr<const ChannelModel> model, double size, ChannelParameters start, int most_passes)
+    : model_(std::move(model)),
+      size_(size),
+      left_(most_passes),
+      point_(std::move(start)),
+      full_(ChannelParameters::Zero()) {
   try_step();
 }
 
 void ChannelFit::try_step() {
-  walk_.emplace(*model_, size_, best_ ? point_ + kShortened[shortened_] * full_ : point_);
+  walk_.emplace(model_, size_, best_ ? point_ + kShortened[shortened_] * full_ : point_);
   done_ = 0;
   --left_;
 }
@@ -100,7 +104,7 @@ ChannelRefit::ChannelRefit(const ChainChannel& channel, std::size_t count)
       size_(channel.noise_variance()),
       count_(count),
       done_(count) {
-  fit_.emplace(*model_, size_, channel.estimate().mean, kMostPasses);
+  fit_.emplace(model_, size_, channel.estimate().mean, kMostPasses);
 }
 
 /// Two lags that pass for each other may hide a better fit with one.
@@ -111,7 +115,7 @@ void ChannelRefit::end_fit() {
     const ChannelParameters found = best.joint.mean.head<kChannelParameters>();
     if (found[kSlowLag] < found[kLag] + kApart) {
       first_ = std::move(best);
-      fit_.emplace(*model_, size_, without_slow_mode(found), kMostElsewhere);
+      fit_.emplace(model_, size_, without_slow_mode(found), kMostElsewhere);
       return;
     }
   } else if (!(best.cost < first_->cost)) {

@@ -113,6 +113,20 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ch
   }
 }
 
+void ModelAverage::check_sizes() const {
+  const auto bases = static_cast<std::size_t>(prior_.size());
+  const std::size_t sides = on_trial_ > 0 ? 2 : 1;
+  bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides * bases &&
+             static_cast<std::size_t>(weights_.size()) == filters_.size();
+  for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
+    fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
+          filters_[i].estimate().mean.size() == filters_[i].model().size();
+  }
+  if (!fit) {
+    throw std::invalid_argument("the filters of a model average are not those of its bases");
+  }
+}
+
 IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
   start(inputs, segment);
   while (advance()) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <ranges>
+#include <stdexcept>
 
 #include "slipwise/identify/student_t.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -131,6 +132,12 @@ Eigen::VectorXd normalised(const Eigen::VectorXd& logarithms) {
 }  // namespace
 
 StudentCalibration::StudentCalibration() { evidence_.fill(Eigen::VectorXd::Zero(kScales * kDofCount)); }
+
+void StudentCalibration::check_sizes() const {
+  if (std::ranges::any_of(evidence_, [](const auto& each) { return each.size() != kScales * kDofCount; })) {
+    throw std::invalid_argument("the evidence of a calibration belongs to another grid");
+  }
+}
 
 void StudentCalibration::learn(double squared) {
   const Eigen::VectorXd step = log_likelihood(squared);

@@ -65,6 +65,8 @@ Eigen::Index place_of(Eigen::Index row) {
 
 double even_slope(double seconds) { return (seconds + kShortResponse) / (seconds + kUsualResponse); }
 
+MotionModel::MotionModel() : MotionModel({"none", {}, {}, {}}, {}) {}
+
 MotionModel::MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {
   if (learned_.delays && (learned_.dynamics || learned_.response)) {
     throw std::invalid_argument("a motion model has delays alone, or lags and delays, not both");

@@ -65,6 +65,18 @@ Basis::Basis(std::string name, std::span<const std::string> lon, std::span<const
   }
 }
 
+std::tuple<std::string, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>>
+Basis::definition() const {
+  const auto terms = [&](Channel channel) {
+    std::vector<std::string> texts;
+    for (std::size_t i = begin(channel); i < end(channel); ++i) {
+      texts.push_back(terms_[i].text());
+    }
+    return texts;
+  };
+  return {name_, terms(Channel::Lon), terms(Channel::Lat), terms(Channel::Ang)};
+}
+
 Channel Basis::channel(std::size_t parameter) const {
   return parameter < begin_[1] ? Channel::Lon : (parameter < begin_[2] ? Channel::Lat : Channel::Ang);
 }

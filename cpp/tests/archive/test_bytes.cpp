@@ -4,6 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <stdexcept>
+#include <string>
+
+#include "slipwise/archive/writer.hpp"
 
 using slipwise::archive::checksum;
 using slipwise::archive::opened;
@@ -12,12 +15,12 @@ using slipwise::archive::sealed;
 TEST_CASE("the checksum is CRC-64/XZ") { CHECK(checksum("123456789") == 0x995DC9BBDF1939FAU); }
 
 TEST_CASE("what was sealed is opened") {
-  CHECK(opened(sealed("", "1.2.3")).empty());
-  CHECK(opened(sealed("a body", "1.2.3")) == "a body");
+  CHECK(opened(sealed("")).empty());
+  CHECK(opened(sealed("a body")) == "a body");
 }
 
 TEST_CASE("truncated at any byte, or longer, it is refused") {
-  const std::string blob = sealed("a body", "1.2.3");
+  const std::string blob = sealed("a body");
   for (std::size_t size = 0; size < blob.size(); ++size) {
     CHECK_THROWS_AS(opened(std::string_view(blob).substr(0, size)), std::invalid_argument);
   }
@@ -25,7 +28,7 @@ TEST_CASE("truncated at any byte, or longer, it is refused") {
 }
 
 TEST_CASE("any altered bit is refused") {
-  const std::string blob = sealed("a body", "1.2.3");
+  const std::string blob = sealed("a body");
   for (std::size_t bit = 0; bit < 8 * blob.size(); ++bit) {
     std::string altered = blob;
     altered[bit / 8] = static_cast<char>(static_cast<unsigned char>(altered[bit / 8]) ^ (1U << (bit % 8)));
@@ -39,4 +42,14 @@ TEST_CASE("the message says what is wrong and what to do") {
       "the saved state is no state that slipwise saved; save it with this version of slipwise and pass "
       "all of its bytes unchanged",
       std::invalid_argument);
+}
+
+TEST_CASE("the state of another version is refused") {
+  std::string blob = sealed("a body");
+  const std::size_t version = blob.find('.');  // its first letter but one
+  blob.replace(version, 1, "x");
+  blob.resize(blob.size() - 8);
+  slipwise::archive::Writer end;
+  end(checksum(blob));
+  CHECK_THROWS_WITH_AS(opened(blob + end.bytes()), doctest::Contains("is of slipwise 0x"), std::invalid_argument);
 }

@@ -43,7 +43,7 @@ TEST_CASE("a noise that is known stays, and a restart forgets all residuals") {
   NoiseScale known({.adapt = false});
   known.learn_prediction(4.0 * kExpected, Eigen::Vector3d::Zero(), kExpected);
   CHECK(known.value() == Eigen::Vector3d::Ones());
-  NoiseScale scale({});
+  NoiseScale scale;
   scale.learn_prediction(4.0 * kExpected, Eigen::Vector3d::Zero(), kExpected);
   CHECK(scale.value() != Eigen::Vector3d::Ones());
   scale.restart();

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,17 +17,18 @@ from slipwise.calibration.forecast import tail_of
 from slipwise.calibration.learned_log import held_out_predictions
 from slipwise.calibration.learner import STRUCTURES, belief_of
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
-from slipwise.calibration.settings import Settings
+from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
 from slipwise.models import Model
 from slipwise.models.schema import Range
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
 Floats = NDArray[np.float64]
 
+_LENGTH_BYTES = 8  # of what stands before the core's bytes
 _KINDS = {
     _core.EventKind.SegmentLearned: "segment-learned",
     _core.EventKind.Rejected: "rejected",
@@ -195,6 +197,40 @@ class MotionLearner:
             segments=model.segments,
         )
         return Model(model_content(learned, Judged(judgement, verdict), facts))
+
+    def save(self) -> bytes:
+        """Return all of it as bytes, from which `load` makes a learner that goes on to the same results."""
+        facts = {
+            "input": self._input,
+            "settings": self._settings.model_dump(mode="json"),
+            "runs": self._runs,
+            "wheels": self._wheels,
+        }
+        head = json.dumps(facts).encode()
+        body = len(head).to_bytes(_LENGTH_BYTES, "little") + head + self._core.save()
+        return _core.sealed(body)
+
+    @classmethod
+    def load(cls, saved: bytes) -> MotionLearner:
+        """Return the learner that was saved, in this process or another, on this machine or another.
+
+        Raises:
+            SettingsError: these are not the bytes that this version of slipwise saved.
+        """
+        try:
+            body = _core.opened(saved)
+            split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")
+            facts = json.loads(body[_LENGTH_BYTES:split])
+            core = _core.MotionLearner.load(body[split:])
+            learner = cls(facts["input"], make_settings(facts["settings"], where="saved settings"))
+            learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
+        except (ValueError, TypeError, KeyError) as problem:
+            raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem
+        learner._core = core
+        return learner
+
+    def __reduce__(self) -> tuple[Callable[[bytes], MotionLearner], tuple[bytes]]:
+        return MotionLearner.load, (self.save(),)
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""

@@ -120,6 +120,8 @@ def odd_values(value: Any) -> Iterator[tuple[str, Any]]:
     elif isinstance(value, str):
         for text in ("", "\0", "x" * 100_000, "\udc80"):
             yield repr(text[:10]), text
+    elif isinstance(value, bytes):
+        yield from (("empty", b""), ("cut", value[: len(value) // 2]), ("of zeros", bytes(len(value))))
     elif isinstance(value, list):
         yield from (("empty", []), ("twice", value * 2), ("long", value * 2000), ("of None", [None]))
     else:

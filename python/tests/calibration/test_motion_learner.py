@@ -3,6 +3,11 @@
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
@@ -12,13 +17,15 @@ from slipwise import _core
 from slipwise.errors import SlipwiseError
 from slipwise.logs.log import Log
 
+Row = tuple[float, int, tuple[float, ...]]  # its stamp, the stream, what is pushed
+
 
 @pytest.fixture(scope="module")
 def log() -> Log:
     return simulated_log(Drive(seconds=60.0, seed=4))
 
 
-def rows_of(log: Log) -> list[tuple[float, int, tuple[float, ...]]]:
+def rows_of(log: Log) -> list[Row]:
     """Every measurement of the only run in the order of the stamps."""
     (run,) = log.runs
     found = []
@@ -116,3 +123,63 @@ def test_too_little_is_said_in_one_line() -> None:
         learner.predict([(0.0, 1.0, 0.0)], horizon=1.0)
     with pytest.raises(SlipwiseError, match="unknown input"):
         sw.MotionLearner("gps")
+
+
+def first_half(log: Log, input_name: str) -> tuple[sw.MotionLearner, list[Row]]:
+    """A learner of the first half of the rows, and the others."""
+    learner, rows = sw.MotionLearner(input_name), rows_of(log)
+    learner.start_run("monday")
+    push_rows(learner, rows[: len(rows) // 2])
+    return learner, rows[len(rows) // 2 :]
+
+
+def push_rows(learner: sw.MotionLearner, rows: list[Row]) -> None:
+    for _, kind, row in rows:
+        (learner.push_command, learner.push_wheels, learner.push_pose)[kind](*row)
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_a_learner_that_was_saved_goes_on_as_it_was(log: Log, input_name: str) -> None:
+    learner, rest = first_half(log, input_name)
+    saved = learner.save()
+    moved = [sw.MotionLearner.load(saved), pickle.loads(pickle.dumps(learner))]  # noqa: S301
+    push_rows(learner, rest)
+    for other in moved:
+        push_rows(other, rest)
+        assert other.save() == learner.save()
+        assert other.model().content == learner.model().content
+
+
+def test_settings_are_saved_with_it(log: Log) -> None:
+    settings = sw.Settings(basis="edd-2", window={"length": 1.5})
+    learner = sw.MotionLearner("wheel", settings)
+    other = sw.MotionLearner.load(learner.save())
+    for each in (learner, other):
+        each.start_run("monday")
+        push_rows(each, rows_of(log))
+    assert other.model().content == learner.model().content
+    assert list(other.model().content.weights) == ["edd-2"]
+
+
+def test_it_goes_on_in_another_process(log: Log, tmp_path: Path) -> None:
+    learner, _ = first_half(log, "command")
+    (tmp_path / "saved").write_bytes(learner.save())
+    program = (
+        "import sys; from pathlib import Path; import slipwise as sw\n"
+        "saved = Path(sys.argv[1]).read_bytes()\n"
+        "sys.stdout.buffer.write(sw.MotionLearner.load(saved).save())"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "saved")], capture_output=True, check=True
+    )
+    assert run.stdout == learner.save()
+
+
+def test_what_is_no_saved_learner_is_refused_with_what_to_do(log: Log) -> None:
+    saved = first_half(log, "wheel")[0].save()
+    altered = bytearray(saved)
+    altered[len(saved) // 2] ^= 1
+    sealed = [_core.sealed(body) for body in (b"", b"\xff" * 40, (2).to_bytes(8, "little") + b"{}")]
+    for bad in (b"", b"PK", saved[:-1], saved[: len(saved) // 2], bytes(altered), *sealed):
+        with pytest.raises(SlipwiseError, match="saved"):
+            sw.MotionLearner.load(bad)

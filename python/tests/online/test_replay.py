@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A program that pushes the rows of a file gets what `evaluate` and `calibrate` write."""
+"""Rows of a file that are pushed give what `evaluate` and `calibrate` write, saved and loaded or not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from online.csv_program import inputs_ahead, push, read_runs, seconds_between
+from online.csv_program import Item, inputs_ahead, push, read_runs, seconds_between
 
 from slipwise import _core
 from slipwise.calibration import calibrate
@@ -44,28 +44,46 @@ def new_learner(input_name: str, horizons: Sequence[float]) -> _core.MotionLearn
     return _core.MotionLearner(core_settings(Settings(), input_name, horizons))
 
 
+class MovingLearner:
+    """A learner that moves to another robot now and then: after some rows it is saved, and loaded again."""
+
+    SAVES = 30  # of a log
+
+    def __init__(self, input_name: str, horizons: Sequence[float], path: Path) -> None:
+        self.now = new_learner(input_name, horizons)
+        rows = sum(len(run.items) for run in read_runs(path))
+        self._after = set(np.random.default_rng(5).integers(rows, size=self.SAVES).tolist())
+        self._pushed = 0
+
+    def push(self, item: Item) -> None:
+        push(self.now, item)
+        if self._pushed in self._after:
+            self.now = _core.MotionLearner.load(self.now.save())
+        self._pushed += 1
+
+
 def differences(path: Path, input_name: str, log: Log, horizons: tuple[float, ...]) -> tuple[int, list[str]]:
     """Push a file's rows; return how many predictions were compared, and those that differ."""
     options = EvaluationOptions(horizons=horizons, methods=("auto",))
     result = evaluate(log, input=input_name, options=options)
-    learner, compared, differing = new_learner(input_name, result.horizons), 0, list[str]()
+    learner, compared, differing = MovingLearner(input_name, result.horizons, path), 0, list[str]()
     names = {run.name: k for k, run in enumerate(log.runs)}
     for run in read_runs(path):
-        learner.start_run()
+        learner.now.start_run()
         at = {
             (p.t_start[i], k): i
             for k, p in enumerate(result.predictions)
             for i in np.flatnonzero(p.run == names[run.name]).tolist()
         }
         for place, item in enumerate(run.items):
-            push(learner, item)
+            learner.push(item)
             for k, p in enumerate(result.predictions):
                 i = at.get((item[1][0], k)) if item[0] == "pose" else None
                 if i is not None:
                     end = float(p.t_end[i])
                     ahead = inputs_ahead(run, place, STREAMS[input_name], end)
                     seconds = seconds_between(float(p.t_start[i]), end)
-                    path_ahead = learner.predict(ahead, seconds, p.horizon)
+                    path_ahead = learner.now.predict(ahead, seconds, p.horizon)
                     compared += 1
                     differing += difference(p, i, path_ahead)
     assert compared == sum(len(p) for p in result.predictions)
@@ -119,14 +137,14 @@ def check_predictions(
 
 def check_model(folder: Path, name: str, input_name: str) -> None:
     path = folder / f"{name}.csv.gz"
-    learner = new_learner(input_name, JUDGING_HORIZONS)
+    learner = MovingLearner(input_name, JUDGING_HORIZONS, path)
     for run in read_runs(path):
-        learner.start_run()
+        learner.now.start_run()
         for item in run.items:
-            push(learner, item)
-    learner.end_run()
-    limits = learner.find_limits(Settings().vehicle.track)
-    same_model(calibrate(open_log(path), input=input_name).model.content, learner.model(), limits)
+            learner.push(item)
+    learner.now.end_run()
+    limits = learner.now.find_limits(Settings().vehicle.track)
+    same_model(calibrate(open_log(path), input=input_name).model.content, learner.now.model(), limits)
 
 
 @pytest.mark.parametrize(("name", "input_name"), cases(SHORT))

@@ -15,6 +15,8 @@ namespace slipwise {
 /// never change.
 class InputTrack {
  public:
+  /// No samples: at rest.
+  InputTrack();
   /// Equal lengths, strictly increasing finite times [s]. \throws std::invalid_argument otherwise.
   InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
              std::span<const double> omega);
@@ -29,11 +31,21 @@ class InputTrack {
   /// The twist held at time t [s].
   BodyTwist at(double t) const;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.samples_);
+    self.check_samples();
+  }
+
  private:
   struct Samples {
     std::vector<double> t;
     std::vector<BodyTwist> twist;
   };
+  /// \throws std::invalid_argument unless there is a twist at each time, and times increase.
+  void check_samples() const;
+
   std::shared_ptr<const Samples> samples_;
 };
 

@@ -9,16 +9,14 @@
 
 namespace slipwise::archive {
 
-inline constexpr std::uint32_t kFormat = 1;  ///< of the bytes inside; raised whenever a saved class changes
-
 /// CRC-64 (ECMA-182, reflected) of `bytes`.
 std::uint64_t checksum(std::string_view bytes);
 
-/// `body` behind a header and before a checksum of both. `version` is slipwise's, for messages.
-std::string sealed(std::string_view body, std::string_view version);
+/// `body` behind a header, which says what it is and of which version of slipwise, and before a checksum of both.
+std::string sealed(std::string_view body);
 
 /// The body of what sealed() returned: a view into `blob`. \throws std::invalid_argument that says what is wrong and
-/// what to do if it is something else, truncated, altered or of another format.
+/// what to do if it is something else, truncated, altered or of another version.
 std::string_view opened(std::string_view blob);
 
 /// \throws std::invalid_argument whose message says that the saved state is `wrong`, and what to do.

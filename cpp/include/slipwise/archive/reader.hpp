@@ -12,6 +12,7 @@
 #include <typeindex>
 #include <utility>
 
+#include "slipwise/archive/aggregate.hpp"
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/archive/kinds.hpp"
 
@@ -67,18 +68,23 @@ class Reader {
       read_matrix(value);
     } else if constexpr (Defined<T>) {
       value = make<T>();
-    } else {
-      static_assert(Listed<T, Reader>, "name the members of the class in archive()");
+    } else if constexpr (Listed<T, Reader>) {
       T::archive(value, *this);
+    } else {
+      static_assert(Aggregate<T>, "name the members of the class in archive()");
+      with_members(value, [this](auto&... members) { (*this)(members...); });
     }
   }
 
-  /// A value of a type that has a constructor without arguments, or is rebuilt from its definition.
+  /// A value of a type that has a constructor without arguments, is rebuilt from its definition, or made of its
+  /// members.
   template <class T>
   T make() {
     if constexpr (Defined<T>) {
       auto parts = make_parts(static_cast<decltype(std::declval<const T&>().definition())*>(nullptr));
       return std::make_from_tuple<T>(std::move(parts));
+    } else if constexpr (!std::default_initializable<T>) {
+      return make_aggregate(static_cast<const Members<T>*>(nullptr), static_cast<T*>(nullptr));
     } else {
       T value{};
       read(value);
@@ -89,6 +95,11 @@ class Reader {
   template <class... Parts>
   std::tuple<Parts...> make_parts(const std::tuple<Parts...>* /*type*/) {
     return std::tuple<Parts...>{make<Parts>()...};  // braces: from left to right
+  }
+
+  template <class... M, Aggregate T>
+  T make_aggregate(const std::tuple<M...>* /*members*/, const T* /*type*/) {
+    return T{make<M>()...};  // braces: from left to right
   }
 
   template <class T>

@@ -11,6 +11,7 @@
 #include <typeindex>
 #include <utility>
 
+#include "slipwise/archive/aggregate.hpp"
 #include "slipwise/archive/kinds.hpp"
 
 namespace slipwise::archive {
@@ -59,9 +60,11 @@ class Writer {
       write_each(value.reshaped());
     } else if constexpr (Defined<T>) {
       std::apply([this](const auto&... parts) { (*this)(parts...); }, value.definition());
-    } else {
-      static_assert(Listed<const T, Writer>, "name the members of the class in archive()");
+    } else if constexpr (Listed<const T, Writer>) {
       T::archive(value, *this);
+    } else {
+      static_assert(Aggregate<T>, "name the members of the class in archive()");
+      with_members(value, [this](const auto&... members) { (*this)(members...); });
     }
   }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
@@ -58,6 +59,7 @@ struct NewError {
 /// The search for the fit in slices of bounded work, so that it can run beside something that must not wait.
 class BatchSearch {
  public:
+  BatchSearch() = default;  ///< nothing to do
   /// `at_start` are the data at the search's start, where they were linearised there before.
   /// \throws std::invalid_argument when sizes do not fit or there is no datum.
   BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, BatchSettings settings,
@@ -69,7 +71,21 @@ class BatchSearch {
   BatchFit result() &&;
   const std::vector<BatchDatum>& data() const { return data_; }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.prior_, self.data_, self.settings_, self.prior_information_, self.mean_, self.candidate_,
+      self.at_);
+    a(self.now_, self.damping_, self.predicted_, self.fit_, self.over_);
+    if constexpr (!std::is_const_v<Self>) {
+      self.check_data();
+    }
+  }
+
  private:
+  /// Finds what the data share, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
+  /// datum, or a noise is none.
+  void check_data();
   NormalEquations normal_equations(std::vector<SegmentLinearization> at) const;
   void propose();
   void judge(NormalEquations next);
@@ -84,9 +100,9 @@ class BatchSearch {
   Eigen::VectorXd candidate_;             ///< that is being linearised
   std::vector<SegmentLinearization> at_;  ///< the first data, at the candidate
   std::optional<NormalEquations> now_;    ///< at the mean; nothing before the start is linearised
-  double damping_;
+  double damping_ = 0.0;
   double predicted_ = 0.0;  ///< decrease of the cost, of the step to the candidate
-  BatchFit fit_;
+  BatchFit fit_ = {};
   bool over_ = false;
 };
 

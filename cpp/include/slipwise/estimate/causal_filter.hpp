@@ -21,6 +21,7 @@ namespace slipwise {
 
 class CausalFilter {
  public:
+  CausalFilter() : CausalFilter(MotionModel(), {}) {}  ///< of a model without parameters
   CausalFilter(MotionModel model, const CausalFilterSettings& settings);
 
   /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
@@ -44,6 +45,14 @@ class CausalFilter {
   /// Learned factor of the noise variances of (x, y, theta).
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
+      self.full_);
+    a(self.slip_std_, self.stated_, self.refit_);
+  }
 
  private:
   void follow(const ReferenceSpeeds& speeds);

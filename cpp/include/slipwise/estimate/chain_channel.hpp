@@ -24,6 +24,7 @@ struct ChannelUpdate {
 /// State [parameters; per lane that is followed: fast part, slow part, deviation from the chain].
 class ChainChannel {
  public:
+  ChainChannel() = default;
   explicit ChainChannel(ChannelModel model);
 
   /// Learns a window. It goes on from the last one where it begins at its end; otherwise nothing is known of the drive.
@@ -35,6 +36,12 @@ class ChainChannel {
   Estimate estimate() const;  ///< of the parameters
   /// Variance of one wheel speed's noise, as learned [(m/s)^2 or (rad/s)^2].
   double noise_variance() const { return size_; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.live_, self.joint_, self.until_, self.size_, self.windows_);
+  }
 
  private:
   ActuatorAxis lane(const Eigen::VectorXd& state, std::size_t i) const;
@@ -54,7 +61,7 @@ class ChainChannel {
   std::vector<std::size_t> live_;  ///< lanes that are followed, by their places among the parts
   Estimate joint_;
   double until_ = -std::numeric_limits<double>::infinity();  ///< [s]
-  double size_;
+  double size_ = 0.0;
   double windows_ = 0.0;
 };
 

@@ -42,6 +42,12 @@ class ChainLearner {
   Estimate estimate() const;
   const Eigen::VectorXd& prior_std() const { return prior_std_; }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.prior_std_, self.banks_, self.learned_, self.next_, self.refitted_after_, self.past_);
+  }
+
  private:
   struct Bank {
     std::vector<Eigen::Index> places;  ///< of its parameters among the model's

@@ -5,6 +5,8 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "slipwise/estimate/iekf.hpp"
@@ -12,12 +14,27 @@
 
 namespace slipwise {
 
+/// Where these are among (v, vy, omega).
+std::vector<std::size_t> places_in_twist(const std::vector<double BodyTwist::*>& parts);
+/// The reverse. \throws std::invalid_argument where there is no such place.
+std::vector<double BodyTwist::*> parts_of_twist(const std::vector<std::size_t>& places);
+
 /// Lanes that share their parameters, what is believed of these beforehand, and what else moves the wheels.
 struct ChannelModel {
   std::vector<double BodyTwist::*> parts;
   Estimate prior;
   DriveNoise noise;   ///< a shape, whose size is learned
   IekfSettings iekf;  ///< gate and Huber's bound
+
+  /// Names what is saved: of the parts, their places in a twist.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    std::vector<std::size_t> places = places_in_twist(self.parts);
+    a(places, self.prior, self.noise, self.iekf);
+    if constexpr (!std::is_const_v<Self>) {
+      self.parts = parts_of_twist(places);
+    }
+  }
 };
 
 inline constexpr double kSameStamp = 1e-6;  ///< [s] windows closer than this meet
@@ -48,21 +65,27 @@ struct FollowedLane {
 /// (Friedland 1969): the joint filter, linearised along the way. `size` is that of the noise.
 class ChannelWalk {
  public:
-  /// `model` must outlive the walk.
-  ChannelWalk(const ChannelModel& model, double size, const ChannelParameters& point);
+  ChannelWalk() = default;
+  ChannelWalk(std::shared_ptr<const ChannelModel> model, double size, const ChannelParameters& point);
   /// Learns a window that follows all before it.
   void learn(const ChannelWindow& window);
   ChainPass result() const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.size_, self.point_, self.cost_, self.information_, self.gradient_, self.lanes_, self.until_);
+  }
 
  private:
   struct Learned;
   void begin(const ChannelWindow& window);
   Learned filter(const FollowedLane& lane, const LaneMotion& motion, const WheelMeans& seen, double size) const;
 
-  const ChannelModel* model_;
-  double size_;
+  std::shared_ptr<const ChannelModel> model_;
+  double size_ = 0.0;
   ChannelParameters point_;
-  double cost_;
+  double cost_ = 0.0;
   Eigen::Matrix<double, kChannelParameters, kChannelParameters> information_;  ///< of the parameters
   ChannelParameters gradient_;                                                 ///< of half the cost by them, downhill
   std::vector<FollowedLane> lanes_;

@@ -61,6 +61,12 @@ class ChangeDetector {
   /// Leaves out of the next tests what was measured before.
   void restart() { recent_.clear(); }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.kinds_, self.recent_, self.sizes_, self.sized_, self.usual_, self.seen_);
+  }
+
  private:
   struct Whitened {
     Eigen::Vector3d residual;

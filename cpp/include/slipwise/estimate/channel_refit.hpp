@@ -17,21 +17,28 @@ namespace slipwise {
 /// help. Time constant and delay zigzag towards it, and more is gained by the next windows than by the last steps.
 class ChannelFit {
  public:
-  /// `model` must outlive the fit.
-  ChannelFit(const ChannelModel& model, double size, ChannelParameters start, int most_passes);
+  ChannelFit() = default;  ///< nothing to do
+  ChannelFit(std::shared_ptr<const ChannelModel> model, double size, ChannelParameters start, int most_passes);
 
   /// Learns one window of a pass; whether there is more to do.
   bool advance(std::span<const ChannelWindow> past);
   const ChainPass& best() const { return present(best_); }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.size_, self.left_, self.point_, self.full_, self.shortened_, self.best_, self.walk_,
+      self.done_);
+  }
 
  private:
   void judge(ChainPass pass);
   void next_step();
   void try_step();
 
-  const ChannelModel* model_;
-  double size_;
-  int left_;                 ///< passes
+  std::shared_ptr<const ChannelModel> model_;
+  double size_ = 0.0;
+  int left_ = 0;             ///< passes
   ChannelParameters point_;  ///< of the best pass
   ChannelParameters full_;   ///< the step from there
   std::size_t shortened_ = 0;
@@ -44,6 +51,7 @@ class ChannelFit {
 /// those that came meanwhile.
 class ChannelRefit {
  public:
+  ChannelRefit() = default;  ///< nothing to do
   /// `count` windows have been learned by `channel`.
   ChannelRefit(const ChainChannel& channel, std::size_t count);
 
@@ -52,16 +60,22 @@ class ChannelRefit {
   /// What is known after all windows; the refit must have no more to do.
   const ChainChannel& result() const { return channel_; }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.channel_, self.model_, self.size_, self.count_, self.fit_, self.first_, self.done_);
+  }
+
  private:
   void end_fit();
 
   ChainChannel channel_;
   std::shared_ptr<const ChannelModel> model_;  ///< copies of the refit share it
-  double size_;
-  std::size_t count_;
+  double size_ = 0.0;
+  std::size_t count_ = 0;
   std::optional<ChannelFit> fit_;
   std::optional<ChainPass> first_;  ///< where a second fit, without a slow mode, is compared with it
-  std::size_t done_;                ///< windows learned by the channel after the fit
+  std::size_t done_ = 0;            ///< windows learned by the channel after the fit
 };
 
 }  // namespace slipwise

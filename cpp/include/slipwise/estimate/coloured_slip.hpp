@@ -47,6 +47,7 @@ class ColouredSlip {
  public:
   /// \throws std::invalid_argument when a fraction or a time constant is not positive and finite.
   explicit ColouredSlip(const ColouredSlipSettings& settings);
+  ColouredSlip() = default;  ///< slip that does not wander
   /// As it was learned before, to predict with.
   /// \throws std::invalid_argument when the law's numbers contradict each other.
   explicit ColouredSlip(WanderLaw law);
@@ -69,6 +70,13 @@ class ColouredSlip {
   ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& driven) const;
 
   const WanderLaw& law() const { return law_; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.law_, self.weighing_, self.prior_, self.seen_);
+    check_wander(self.law_);
+  }
 
  private:
   ExpectedPose with_deviation(const SegmentLinearization& at, const ExpectedPose& without, const SlipNow& now,

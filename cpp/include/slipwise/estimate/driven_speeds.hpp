@@ -16,6 +16,12 @@ class DrivenSpeeds {
   /// The 90th percentiles so far, at least 0.05.
   ReferenceSpeeds reference() const;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.speeds_, self.yaw_rates_);
+  }
+
  private:
   SpeedRange speeds_;
   SpeedRange yaw_rates_;

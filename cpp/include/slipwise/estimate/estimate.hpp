@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -15,6 +16,7 @@ struct Estimate {
 };
 
 enum class Status : std::uint8_t { Converged, Downweighted, Rejected, NotConverged };
+constexpr std::size_t enumerators(Status /*type*/) { return 4; }
 
 /// What the status means and what to do about it.
 inline std::string_view advice(Status status) {

@@ -21,6 +21,7 @@ namespace slipwise {
 /// the fit does not converge, what was learned one by one stands.
 class FilterRefit {
  public:
+  FilterRefit() = default;  ///< nothing to do
   /// `before` was known before the first of the segments; `now` after the last of `count`.
   FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
               std::size_t count);
@@ -31,8 +32,16 @@ class FilterRefit {
   /// What is known now; nothing where the fit failed.
   std::optional<FilterState> result() &&;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.before_, self.state_, self.noise_, self.iekf_, self.count_, self.phase_, self.done_);
+    a(self.data_, self.at_, self.places_, self.last_, self.search_, self.fitted_);
+  }
+
  private:
   enum class Phase : std::uint8_t { Weight, Search, Noise, Follow, Failed };
+  friend constexpr std::size_t enumerators(Phase /*type*/) { return 5; }
   void weight(const DrivenSegment& driven);
   void begin_search();
   void end_search();
@@ -43,7 +52,7 @@ class FilterRefit {
   FilterState state_;  ///< at first, by which segments are weighted; then what is learned
   NoiseSettings noise_;
   IekfSettings iekf_;
-  std::size_t count_;
+  std::size_t count_ = 0;
   Phase phase_ = Phase::Weight;
   std::size_t done_ = 0;  ///< segments of this phase
   std::vector<BatchDatum> data_;

@@ -13,11 +13,18 @@ struct FilterState {
   NoiseScale noise_scale;
   ScoreCovariance scores;
 
+  FilterState() = default;
   FilterState(const MotionModel& model, const NoiseSettings& noise) : estimate{}, noise_scale(noise), scores(model) {}
 
   /// Learns one segment.
   IekfUpdate learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,
                    const NoiseSettings& noise, const IekfSettings& iekf);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.estimate, self.noise_scale, self.scores);
+  }
 };
 
 /// Covariance of a segment's measured chart under the noise model alone.

@@ -36,6 +36,7 @@ struct AverageState {
 /// again a model of the same kind: the mean parameters over the union of the terms, with the spread in the covariance.
 class ModelAverage {
  public:
+  ModelAverage() : ModelAverage("none", {MotionModel().basis()}, {}, {}, {}) {}
   /// \throws std::invalid_argument when there is no basis.
   ModelAverage(std::string name, const std::vector<Basis>& bases, ChainParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
@@ -64,6 +65,15 @@ class ModelAverage {
   const ChangeTest& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.seen_, self.speeds_,
+      self.changing_, self.before_);
+    a(self.detector_, self.change_, self.learning_, self.update_, self.on_trial_, self.announced_);
+    self.check_sizes();
+  }
+
  private:
   /// A segment that is being learned, and the updates so far.
   struct Learning {
@@ -73,6 +83,8 @@ class ModelAverage {
     std::vector<IekfUpdate> updates = {};
   };
 
+  /// \throws std::invalid_argument unless there are as many filters, weights and places as bases, or twice as many.
+  void check_sizes() const;
   void look_for_change();
   void update_next_filter();
   void reweigh();

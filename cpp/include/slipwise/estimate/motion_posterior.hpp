@@ -21,6 +21,7 @@ enum class Structure : std::uint8_t {
   Baseline             ///< the kinematic baseline: the robot does at once what it is commanded
 };
 inline constexpr std::size_t kStructures = 5;
+constexpr std::size_t enumerators(Structure /*type*/) { return kStructures; }
 
 struct MotionPosterior {
   MotionModel model;

@@ -24,7 +24,7 @@ struct NoiseSettings {
 
 class NoiseScale {
  public:
-  explicit NoiseScale(const NoiseSettings& settings) : settings_(settings) {}
+  explicit NoiseScale(const NoiseSettings& settings = {}) : settings_(settings) {}
 
   /// Learned factor of the noise variances of (x, y, theta).
   const Eigen::Vector3d& value() const { return value_; }
@@ -40,6 +40,12 @@ class NoiseScale {
   /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain
   /// `open`.
   void learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open, const Eigen::Vector3d& expected);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.value_, self.segments_);
+  }
 
  private:
   void follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected);

@@ -27,6 +27,12 @@ class PredictiveScore {
   /// Learned factor of the noise variances of (x, y, theta).
   const Eigen::Vector3d& noise_scale() const { return noise_scale_.value(); }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.noise_scale_);
+  }
+
  private:
   NoiseSettings settings_;
   NoiseScale noise_scale_;

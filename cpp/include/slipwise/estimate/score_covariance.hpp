@@ -15,6 +15,7 @@ namespace slipwise {
 /// with the information J^T R^-1 J, they give factors for the variances of an estimate (derivations.md, section 6).
 class ScoreCovariance {
  public:
+  ScoreCovariance() = default;  ///< of a model without parameters
   explicit ScoreCovariance(const MotionModel& model);
 
   /// Adds one segment: linearised `at` the estimate whose covariance is given, learned with `noise`. One that says
@@ -28,6 +29,13 @@ class ScoreCovariance {
   /// them, from a prior of this covariance. What comes from segments has one factor per channel of slip, and one for
   /// all other parameters; what comes from the prior stays.
   Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.groups_, self.information_, self.scatter_, self.lagged_, self.earlier_);
+    a(self.segments_, self.earlier_weight_, self.pairs_, self.time_);
+  }
 
  private:
   double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const;

@@ -26,6 +26,7 @@ struct WheelSegment {
 /// joint model has.
 class CascadedModel {
  public:
+  CascadedModel() : CascadedModel(ModelAverage(), {}) {}
   /// `slip` has learned nothing yet; its inputs are wheel speeds.
   CascadedModel(ModelAverage slip, const CausalFilterSettings& settings);
 
@@ -47,6 +48,14 @@ class CascadedModel {
   const ChangeTest& change() const { return change_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
   void forget(double fraction) { slip_.forget(fraction); }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.noise_, self.slip_, self.actuator_, self.score_, self.places_of_slip_, self.places_of_actuator_,
+      self.change_);
+    a(self.change_since_, self.posterior_);
+  }
 
  private:
   MotionModel model_;

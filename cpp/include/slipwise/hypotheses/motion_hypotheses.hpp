@@ -78,6 +78,14 @@ class MotionHypotheses {
   /// Segments learned.
   std::size_t count() const { return count_; }
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.joint_, self.direct_, self.direct_bases_, self.cascaded_, self.baseline_, self.tried_,
+      self.weights_);
+    a(self.evidence_, self.updates_, self.count_, self.segment_, self.to_predict_, self.predicted_, self.averaging_);
+  }
+
  private:
   using Active = std::array<bool, kStructures>;
   bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }

@@ -25,7 +25,17 @@ class StudentCalibration {
   void learn(double squared);
   StudentT fitted() const;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.evidence_, self.predicted_);
+    self.check_sizes();
+  }
+
  private:
+  /// \throws std::invalid_argument unless there is evidence for each place of the grid.
+  void check_sizes() const;
+
   static constexpr std::size_t kForgettingTimes = 4;
   std::array<Eigen::VectorXd, kForgettingTimes> evidence_;  ///< over the grid, logarithms
   std::array<double, kForgettingTimes> predicted_{};        ///< log densities of all errors so far

@@ -10,12 +10,6 @@ struct BodyTwist {
   double vy = 0.0;     ///< to the left [m/s]; zero but for omnidirectional drives
   double omega = 0.0;  ///< yaw rate [rad/s]
 
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.v, self.vy, self.omega);
-  }
-
   bool operator==(const BodyTwist&) const = default;
 };
 

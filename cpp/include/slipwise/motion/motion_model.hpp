@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -35,9 +36,12 @@ double even_slope(double seconds);
 /// reaches, and stamps may make them negative.
 class MotionModel {
  public:
+  MotionModel();  ///< the kinematic baseline: no slip, nothing learned
   /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow part.
   MotionModel(Basis basis, ChainParameters learned);
 
+  /// What the constructor takes.
+  std::tuple<Basis, ChainParameters> definition() const { return {basis_, learned_}; }
   const Basis& basis() const { return basis_; }
   ChainParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }

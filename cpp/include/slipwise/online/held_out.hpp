@@ -9,6 +9,7 @@
 #include <deque>
 #include <memory>
 
+#include "slipwise/archive/bytes.hpp"
 #include "slipwise/estimate/coloured_slip.hpp"
 #include "slipwise/estimate/motion_posterior.hpp"
 #include "slipwise/identify/student_calibration.hpp"
@@ -59,6 +60,15 @@ class HorizonErrors {
   StudentT nominal(Structure structure) const;
   /// Stamps begin anew: all errors so far are known.
   void restart_clock();
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.known_, self.recent_, self.nominal_);
+    if (self.known_.empty()) {
+      slipwise::archive::refuse("malformed: errors of nothing known");
+    }
+  }
 
  private:
   std::deque<Known> known_;  ///< of late; the last is the newest

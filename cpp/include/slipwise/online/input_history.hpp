@@ -18,12 +18,6 @@ namespace slipwise {
 struct InputSample {
   double t;  ///< [s]
   BodyTwist twist;
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.t, self.twist);
-  }
 };
 
 /// How a slice of the history begins, and what of it is kept.

@@ -9,6 +9,8 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
@@ -29,6 +31,7 @@ struct LearnerSettings {
 /// What a learner has to say. Which fields are meant depends on the kind.
 struct LearnerEvent {
   enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut };
+  friend constexpr std::size_t enumerators(Kind /*type*/) { return 4; }
   Kind kind;
   std::size_t run;  ///< in the order in which runs were started
   double t;         ///< [s]
@@ -101,8 +104,22 @@ class MotionLearner {
   void forget(double fraction);
 
   const LearnerSettings& settings() const { return settings_; }
+  /// All of it as bytes, from which `load` makes a learner that goes on to the same results.
+  std::string save() const;
+  /// \throws std::invalid_argument, saying what to do, when these are not the bytes that this version saved.
+  static MotionLearner load(std::string_view saved);
+
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
   double newest() const { return stream_.newest(); }
+
+  /// Names what is saved. Where slip is now is found anew from the rest.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);
+    a(self.recent_, self.wheel_segments_, self.command_segments_, self.errors_, self.held_out_, self.events_);
+    a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
+    a(self.seconds_);
+  }
 
  private:
   void take_in();
@@ -120,6 +137,7 @@ class MotionLearner {
   StudentT student_for(double horizon, Structure structure) const;
   void say(LearnerEvent event);
   void see_stamp(double t);
+  void check_loaded() const;
 
   LearnerSettings settings_;
   SegmentStream stream_;

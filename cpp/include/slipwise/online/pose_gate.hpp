@@ -21,12 +21,6 @@ struct MeasuredPose {
   long frame = 0;
   double gx = 0.0;  ///< gravity along the body's x axis [m/s^2]
   double gy = 0.0;  ///< along its y axis [m/s^2]
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.t, self.x, self.y, self.yaw, self.frame, self.gx, self.gy);
-  }
 };
 
 /// What the gate makes of the poses.

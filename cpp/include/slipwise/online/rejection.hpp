@@ -12,6 +12,7 @@ namespace slipwise {
 /// Which stream a measurement came from.
 enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude };
 inline constexpr std::size_t kStreams = 4;
+constexpr std::size_t enumerators(Stream /*type*/) { return kStreams; }
 
 /// Why a measurement, or a segment, was rejected.
 enum class Reason : std::uint8_t {
@@ -29,6 +30,7 @@ enum class Reason : std::uint8_t {
   AmbiguousHeading
 };
 inline constexpr std::size_t kReasons = 12;
+constexpr std::size_t enumerators(Reason /*type*/) { return kReasons; }
 
 /// A short stable name, such as "duplicate-stamp".
 std::string_view reason_name(Reason reason);

@@ -19,12 +19,6 @@ struct SegmentRules {
   double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
   double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
   double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.late_factor, self.length_tolerance, self.still_speed);
-  }
 };
 
 /// The median time between poses of late, taken again every 64 intervals.
@@ -51,12 +45,6 @@ struct TimedPose {
   MeasuredPose pose;      ///< its yaw unwrapped along its frame
   double interval = 0.0;  ///< median time between poses, as known then [s]
   double gap = 0.0;       ///< the longest time between poses since the last one that was not late [s]
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.pose, self.interval, self.gap);
-  }
 };
 
 /// Unwraps headings, and finds poses that are late by an unknown time.
@@ -94,6 +82,7 @@ struct SegmentCut {
 /// Walks along the poses of one run that are not late.
 class SegmentCutter {
  public:
+  SegmentCutter() = default;
   /// `length` is that of a segment [s]. Where `whole_frames`, a frame that is shorter is one segment. `stride` is the
   /// time between the starts of segments [s]; without one, each starts where the last ended.
   SegmentCutter(double length, SegmentRules rules, bool whole_frames, std::optional<double> stride = {});
@@ -119,9 +108,9 @@ class SegmentCutter {
   std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputHistory& inputs);
   void end_frame(const InputHistory& inputs, std::vector<SegmentCut>& out);
 
-  double length_;
+  double length_ = 0.0;
   SegmentRules rules_;
-  bool whole_frames_;
+  bool whole_frames_ = false;
   std::optional<double> stride_;
   std::deque<TimedPose> poses_;          ///< of the frame, from the next segment's start on
   bool any_ = false;                     ///< whether the frame lost poses at its beginning already

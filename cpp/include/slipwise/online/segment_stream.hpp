@@ -89,6 +89,16 @@ class SegmentStream {
   /// The segment from now on over `horizon` [s], driven by `future` inputs.
   DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
 
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.commands_, self.wheels_,
+      self.wheels_ever_, self.range_);
+    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.gate_, self.timer_, self.wheel_timer_,
+      self.learned_, self.slip_);
+    a(self.wheel_cutter_, self.targets_, self.items_, self.rejected_);
+  }
+
  private:
   struct Tilt {
     double t;

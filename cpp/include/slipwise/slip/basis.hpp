@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "slipwise/slip/term.hpp"
@@ -39,6 +40,10 @@ class Basis {
   std::size_t end(Channel channel) const { return begin_[static_cast<std::size_t>(channel) + 1]; }
   /// `lon.V`, `ang.V*w`, ...: the parameter's name in files and tables.
   std::string parameter_name(std::size_t parameter) const;
+
+  /// What the constructor takes.
+  std::tuple<std::string, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>> definition()
+      const;
 
   /// Writes the features of one state into `value` (length size()).
   void features(const SlipState& state, std::span<double> value) const;
