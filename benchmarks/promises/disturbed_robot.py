@@ -2,11 +2,12 @@
 """A robot with known slip and actuators, whose slip is disturbed by noise and may change with the terrain.
 
 It is commanded random speeds and yaw rates for 1 to 4 s each, 20 times a second; its actuators follow after
-a delay with a first-order lag. Slip rates are those of `BASIS`, and noise: white, of a density that grows
-with the motion, or first-order Gauss-Markov fractions of v and omega with a correlation time of 5 s, or both.
-White noise is normal or, where asked, Student distributed and constant for 0.1 s. Poses and wheel speeds come
-20 times a second, with normal noise; stamps of poses may be off by a constant. From a moment on, yaw slip
-may be another than before.
+a delay with a first-order lag, behind limits where it has any: nothing moves in the dead band, nothing is
+faster than the top, and what is asked for changes no faster than accelerating and braking allow. Slip rates
+are those of `BASIS`, and noise: white, of a density that grows with the motion, or first-order Gauss-Markov
+fractions of v and omega with a correlation time of 5 s, or both. White noise is normal or, where asked,
+Student distributed and constant for 0.1 s. Poses and wheel speeds come 20 times a second, with normal noise;
+stamps of poses may be off by a constant. From a moment on, yaw slip may be another than before.
 """
 
 from __future__ import annotations
@@ -39,11 +40,22 @@ class Disturbance:
 
 
 @dataclass(frozen=True)
+class Limits:
+    """Of the speed or the yaw rate of an actuator, in m/s and m/s^2 or rad/s and rad/s^2."""
+
+    dead_band: float = 0.0
+    top: float = np.inf
+    acceleration: float = np.inf
+    braking: float = np.inf
+
+
+@dataclass(frozen=True)
 class Robot:
     """What does not change from robot to robot."""
 
     delay: tuple[float, float] = (0.1, 0.08)  # s, of speed and yaw rate
     lag: tuple[float, float] = (0.2, 0.15)  # s
+    limits: tuple[Limits, Limits] = (Limits(), Limits())  # of speed and yaw rate
     pose_std: tuple[float, float] = (0.01, 0.004)  # m, rad
     wheel_std: float = 0.003  # m/s and rad/s
     white: tuple[float, float, float] = (1e-3, 5e-4, 2e-3)  # density of slip [m, m, rad^2/m] of motion
@@ -112,8 +124,24 @@ def _followed(robot: Robot, commands: Inputs, channel: int, t: Floats) -> Floats
     """Speed or yaw rate at times `t`, from rest."""
     at = np.searchsorted(commands.t, t - robot.delay[channel] + 1e-9, side="right") - 1
     wish = np.where(at >= 0, (commands.v, commands.omega)[channel][np.maximum(at, 0)], 0.0)
+    wish = _limited(wish, robot.limits[channel])
     keep = np.exp(-STEP / robot.lag[channel])
     return np.asarray(lfilter([1.0 - keep], [1.0, -keep], wish))
+
+
+def _limited(wish: Floats, limits: Limits) -> Floats:
+    """What is let through of a speed that is asked for, step by step, from rest."""
+    clipped = np.where(np.abs(wish) < limits.dead_band, 0.0, np.clip(wish, -limits.top, limits.top))
+    if not np.isfinite(min(limits.acceleration, limits.braking)):
+        return np.asarray(clipped)
+    now, passed = 0.0, np.empty_like(clipped)
+    for i, target in enumerate(clipped.tolist()):
+        slower = now * target <= 0.0 or abs(target) < abs(now)
+        most = STEP * (limits.braking if slower and now != 0.0 else limits.acceleration)
+        change = min(max(target - now, -most), most)
+        now = 0.0 if now * (now + change) < 0.0 else now + change  # through rest, then the other way
+        passed[i] = now
+    return passed
 
 
 def _slip_rates(

@@ -2,25 +2,21 @@
 // A search for limits, and the actuator model behind them.
 #include "slipwise/online/actuator_limits.hpp"
 
-#include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/estimate/chain_learner.hpp"
 #include "slipwise/estimate/predictive_score.hpp"
-#include "slipwise/estimate/weighing.hpp"
+#include "slipwise/online/behind_limits.hpp"
 
 namespace slipwise {
 namespace {
 
-constexpr double kSpacing = 0.05;               // [s] between the twists that are looked at
-constexpr double kRounding = 1e-6;              // [s] of stamps
-constexpr std::size_t kFewTwists = 400;         // 20 s of driving; with fewer, chance passes for limits
-constexpr std::size_t kFewSegments = 8;         // that are predicted to compare
-constexpr double kBetter = std::numbers::ln10;  // log score from which limits are believed to predict better
+constexpr double kSpacing = 0.05;        // [s] between the twists that are looked at
+constexpr double kRounding = 1e-6;       // [s] of stamps
+constexpr std::size_t kFewTwists = 400;  // 20 s of driving; with fewer, chance passes for limits
 
 /// Commands and twists of a stretch while it grows.
 class Stretch {
@@ -85,34 +81,6 @@ MotionPosterior with_actuator(const MotionPosterior& cascaded, const Estimate& a
   return posterior;
 }
 
-DrivenSegment behind(const DrivenSegment& segment, const CommandLimits& limits) {
-  DrivenSegment limited = segment;
-  limited.inputs = limited_track(segment.inputs, limits);
-  return limited;
-}
-
-/// Log score of the segments behind the limits over that without limits, each by what it knew before them.
-double compare(std::span<const DrivenSegment> segments, const std::array<MotionPosterior, 2>& known,
-               const CommandLimits& limits, const NoiseSettings& noise) {
-  std::array scores{PredictiveScore(noise), PredictiveScore(noise)};
-  double sum = 0.0;
-  for (const DrivenSegment& segment : segments) {
-    const DrivenSegment limited = behind(segment, limits);
-    const std::array given{&segment, &limited};
-    std::array<Eigen::Vector3d, 2> innovations;
-    std::array<Eigen::Matrix3d, 2> covariances;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const ScoredSegment scored =
-          scores[i].score(known[i].model, known[i].estimate, given[i]->inputs, given[i]->segment);
-      innovations[i] = scored.innovation;
-      covariances[i] = scored.innovation_covariance;
-    }
-    const Eigen::VectorXd each = common_log_scores(Eigen::Vector2d(0.5, 0.5), innovations, covariances);
-    sum += each[1] - each[0];
-  }
-  return sum;
-}
-
 }  // namespace
 
 std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels) {
@@ -137,42 +105,45 @@ std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels) {
   return records;
 }
 
-std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
-  const std::vector<DriveRecord> records = drive_records(data.wheels);
+std::optional<LimitSearch> search_limits(std::span<const WheelSegment> driven, const PriorSettings& prior,
+                                         double wheel_separation) {
+  const std::vector<DriveRecord> records = drive_records(driven);
   const std::size_t twists =
       std::accumulate(records.begin(), records.end(), std::size_t{0},
                       [](std::size_t sum, const DriveRecord& record) { return sum + record.t.size(); });
   if (twists < kFewTwists) {
     return std::nullopt;
   }
-  ActuatorLimits result{
-      .search = find_limits(records, data.filter.prior, data.wheel_separation, {}), .posterior = nullptr, .score = 0.0};
+  return find_limits(records, prior, wheel_separation, {});
+}
+
+std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data) {
+  auto search = search_limits(data.wheels, data.filter.prior, data.wheel_separation);
+  if (!search) {
+    return std::nullopt;
+  }
+  ActuatorLimits result{.search = std::move(*search), .posterior = nullptr, .score = 0.0};
   if (result.search.found.empty()) {
     return result;
   }
   const CommandLimits& limits = result.search.drive.limits;
   const std::size_t half = data.wheels.size() / 2;
-  const double until = data.wheels[half].end;
-  std::vector<DrivenSegment> later;
-  for (const DrivenSegment& segment : data.segments) {
-    if (segment.segment.start >= until) {
-      later.push_back(segment);
-    }
-  }
+  const auto later = segments_since(data.segments, data.wheels[half].end);
   const auto first = data.wheels.first(half);
-  const std::array known{with_actuator(data.cascaded, learned_actuator(first, data.filter, nullptr)),
-                         with_actuator(data.cascaded, learned_actuator(first, data.filter, &limits))};
-  result.score = compare(later, known, limits, data.filter.noise);
-  const bool better = later.size() >= kFewSegments && result.score > kBetter;
+  const auto without = with_actuator(data.cascaded, learned_actuator(first, data.filter, nullptr));
+  const auto with = with_actuator(data.cascaded, learned_actuator(first, data.filter, &limits));
+  const NoiseSettings& noise = data.filter.noise;
+  result.score = gain_behind(later, {.without = without, .with = with, .limits = limits, .noise = noise});
   // Another structure has learned these segments, which is hard to beat: it need not be beaten clearly.
   const bool best = data.kept.structure == Structure::Cascaded ||
-                    (better && compare(later, {data.kept, known[1]}, limits, data.filter.noise) > 0.0);
-  if (!better || !best) {
+                    (is_clear(result.score, later) &&
+                     gain_behind(later, {.without = data.kept, .with = with, .limits = limits, .noise = noise}) > 0.0);
+  if (!is_clear(result.score, later) || !best) {
     return result;
   }
   MotionPosterior posterior = with_actuator(data.cascaded, learned_actuator(data.wheels, data.filter, &limits));
-  posterior.structure = Structure::CascadedWithLimits;
-  PredictiveScore score(data.filter.noise);
+  posterior.structure = Structure::Limited;
+  PredictiveScore score(noise);
   for (const DrivenSegment& segment : data.segments) {
     const DrivenSegment limited = behind(segment, limits);
     score.score(posterior.model, posterior.estimate, limited.inputs, limited.segment);

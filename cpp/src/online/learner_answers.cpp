@@ -10,6 +10,7 @@
 #include "slipwise/identify/student_t.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
+#include "slipwise/online/pose_limits.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
@@ -125,11 +126,16 @@ std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation
   MotionLearner complete = *this;
   complete.end_run();
   const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
+  const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
   if (cascaded == nullptr) {
-    return std::nullopt;
+    const std::vector<WheelSegment> twists(complete.twist_segments_.begin(), complete.twist_segments_.end());
+    return find_pose_limits({.twists = twists,
+                             .segments = segments,
+                             .kept = *complete.known_.back().motion,
+                             .settings = settings_.hypotheses,
+                             .wheel_separation = wheel_separation});
   }
   const std::vector<WheelSegment> wheels(complete.wheel_segments_.begin(), complete.wheel_segments_.end());
-  const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
   return find_actuator_limits({.wheels = wheels,
                                .segments = segments,
                                .cascaded = *cascaded,

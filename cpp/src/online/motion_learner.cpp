@@ -46,6 +46,13 @@ Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean
   return integrate_segment(model, mean, driven.inputs, driven.segment).sensor_motion().vector();
 }
 
+void keep(std::deque<WheelSegment>& kept, WheelSegment&& segment) {
+  kept.push_back(std::move(segment));
+  if (kept.size() > kMostWheelSegments) {
+    kept.pop_front();
+  }
+}
+
 ColouredSlip disturbance_of(const LearnerSettings& settings) {
   return settings.learn_disturbance ? ColouredSlip(settings.disturbance) : ColouredSlip(WanderLaw{});
 }
@@ -152,10 +159,9 @@ bool MotionLearner::work() {
   bool more = false;
   if (auto* wheels = std::get_if<WheelSegment>(&waiting_.front())) {
     hypotheses_.learn_actuator(*wheels);
-    wheel_segments_.push_back(std::move(*wheels));
-    if (wheel_segments_.size() > kMostWheelSegments) {
-      wheel_segments_.pop_front();
-    }
+    keep(wheel_segments_, std::move(*wheels));
+  } else if (auto* twists = std::get_if<TwistSegment>(&waiting_.front())) {
+    keep(twist_segments_, std::move(twists->driven));
   } else if (const auto* slip = std::get_if<SlipSegment>(&waiting_.front())) {
     if (!started_) {
       hypotheses_.start_slip(slip->driven);
@@ -194,6 +200,9 @@ void MotionLearner::work_until(double t) {
   const auto known_at = [](const StreamItem& item) {
     if (const auto* wheels = std::get_if<WheelSegment>(&item)) {
       return wheels->end;
+    }
+    if (const auto* twists = std::get_if<TwistSegment>(&item)) {
+      return twists->driven.end;
     }
     if (const auto* slip = std::get_if<SlipSegment>(&item)) {
       return slip->driven.known_at;

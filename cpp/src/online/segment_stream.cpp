@@ -40,7 +40,8 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       now_(-kNever),
       learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
       slip_(kSlipLength, settings.rules, true),
-      wheel_cutter_(kWheelLength, settings.rules, true) {
+      wheel_cutter_(kWheelLength, settings.rules, true),
+      twists_(settings.rules, settings.sensor) {
   double longest = settings.segment_length;
   for (const double horizon : settings.horizons) {
     targets_.emplace_back(horizon, settings.rules, false);
@@ -187,6 +188,8 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     }
     if (settings_.from_commands && wheels_ever_) {
       emit_slip(slip_.push(*timed, wheels_));
+    } else if (settings_.from_commands) {
+      emit_twists(twists_.push(*timed, commands_));
     }
     emit_learned(learned_.push(*timed, inputs()));
     for (std::size_t i = 0; i < targets_.size(); ++i) {
@@ -198,6 +201,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
 void SegmentStream::finish_cutters() {
   if (settings_.from_commands) {
     emit_wheel_segments(wheel_cutter_.finish(commands_));
+    emit_twists(twists_.finish(commands_));
     if (wheels_ever_) {
       emit_slip(slip_.finish(wheels_));
     }
@@ -226,6 +230,16 @@ void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
     if (!cut.rejected) {
       items_.emplace_back(SlipSegment{driven(cut, true, now_)});
     }
+  }
+}
+
+void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
+  for (const TwistStretch& stretch : stretches) {
+    items_.emplace_back(
+        TwistSegment{{.commands = commands_.slice(stretch.start - kActuatorBack, stretch.end, SliceKind::Commands),
+                      .wheels = InputTrack(stretch.t, stretch.twist),
+                      .start = stretch.start,
+                      .end = stretch.end}});
   }
 }
 
@@ -283,6 +297,7 @@ SegmentStream::Tilt SegmentStream::tilt_at(double t) const {
 /// Inputs are kept for segments that have begun, unless poses do not come for long.
 void SegmentStream::trim() {
   double begun = std::max(now_, newest_ - settings_.latency);
+  begun = std::min(begun, twists_.begins());
   for (const SegmentCutter* cutter : {&learned_, &slip_, &wheel_cutter_}) {
     begun = std::min(begun, cutter->begins());
   }

@@ -1,11 +1,22 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which kinds of limits of the drive a log does not show, and the driving that would, in words."""
+"""Which limits of the drive a log does not show, or not clearly, and what would show them, in words."""
 
 from __future__ import annotations
 
 from slipwise import _core
 from slipwise.number_text import number_text
 
+_KINDS = {
+    _core.LimitKind.DeadBand: "dead band",
+    _core.LimitKind.Top: "top",
+    _core.LimitKind.Acceleration: "acceleration",
+    _core.LimitKind.Braking: "braking",
+}
+_LANES = {
+    _core.LimitedAxis.Speed: "speed",
+    _core.LimitedAxis.YawRate: "yaw rate",
+    _core.LimitedAxis.Side: "each side",
+}
 LEAST_DEAD_BAND = 1e-3  # m/s or rad/s; no drive's is less, so slower commands need not be tried
 
 
@@ -31,6 +42,19 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
         f" {_pair(speed.step, turn.step)} to see one.",
     }
     return tuple(sentence for kind, sentence in sentences.items() if sentence and kind not in found)
+
+
+def doubted_limits(search: _core.LimitSearch, *, wheels_logged: bool) -> tuple[str, ...]:
+    """Return a sentence about limits that were found, yet not kept, as they predict no better."""
+    if not search.found:
+        return ()
+    names = ", ".join(f"{_LANES[each.lane]}: {_KINDS[each.kind]}" for each in search.found)
+    remedy = "drive longer" if wheels_logged else "record wheel speeds"
+    sentence = (
+        f"The drive looks limited ({names}), yet behind these limits nothing is predicted better. They "
+        f"are left out, and lags and delays may stand for what they are not. To tell, {remedy}."
+    )
+    return (sentence,)
 
 
 def _pair(speed: float, turn: float) -> str:

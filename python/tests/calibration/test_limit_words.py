@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from limited_drives import FREE, TRACK, track_of, wheels_behind
+from limited_drives import FREE, SIDES, TRACK, search, track_of, wheels_behind
 
 from slipwise import _core
-from slipwise.calibration.limit_words import limits_advice
+from slipwise.calibration.limit_words import doubted_limits, limits_advice
 from slipwise.logs.log import Inputs
 from slipwise.simulation import steps_drive
 
@@ -42,3 +42,10 @@ def test_nobody_is_sent_to_command_less_than_a_dead_band_can_be() -> None:
     text = " ".join(limits_advice(searched(with_slowest(0.05, 1e-4))))
     assert "command less than 0.050 m/s to see one" in text
     assert "dead-band" not in " ".join(limits_advice(searched(with_slowest(1e-4, 1e-4))))
+
+
+def test_limits_that_are_left_out_are_named() -> None:
+    (sentence,) = doubted_limits(search(SIDES, steps_drive(4, 120.0), 1), wheels_logged=False)
+    assert "each side: top" in sentence
+    assert sentence.endswith("record wheel speeds.")
+    assert doubted_limits(searched(steps_drive(4, 40.0)), wheels_logged=False) == ()

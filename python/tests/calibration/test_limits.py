@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Limits of the drive: found where wheel speeds show them, left alone where not, never from the future."""
+"""Limits of the drive: found where wheel speeds or poses show them, never from the future."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from limited_drives import CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
+from limited_drives import CHAIN, CHANNELS, FREE, SIDES, TRACK, search, track_of, true_value, wheels_behind
 from sample_models import make_model, named
 
 from slipwise import _core
@@ -173,6 +173,45 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
     free = with_limits(bounds, body_limits(None, gains, numbers), numbers)
     assert free == [Entry(("vx_max",), 3.0, "as far as the log went"), Entry(("wz_max",), 2.0, "the same")]
     assert dead_bands(None, numbers) == []
+
+
+def without_wheels(log: Log) -> Log:
+    return replace(log, runs=tuple(replace(run, wheels=None) for run in log.runs))
+
+
+@pytest.mark.parametrize("limits", [SIDES, CHANNELS], ids=["sides", "channels"])
+def test_limits_are_learned_from_commands_and_poses_alone(limits: _core.CommandLimits) -> None:
+    commands = steps_drive(3, SECONDS)
+    log = without_wheels(driven(commands, wheels_behind(limits, commands, 1)))
+    learned = calibrate(log, input="command").model
+    assert learned.limits is not None
+    if limits is SIDES:
+        assert learned.limits.track == pytest.approx(TRACK, rel=0.02)
+    for lane, truth in (
+        (learned.limits.speed, limits.speed),
+        (learned.limits.yaw_rate, limits.yaw_rate),
+        (learned.limits.side, limits.side),
+    ):
+        assert lane.dead_band == pytest.approx(truth.dead_band, abs=0.03)
+        assert lane.top == pytest.approx(truth.top, rel=0.03)
+        assert lane.acceleration == pytest.approx(truth.acceleration, rel=0.05)
+        assert lane.braking == pytest.approx(truth.braking, rel=0.05)
+    known = {p.name: p for p in learned.content.parameters}
+    held = 0.025  # s by which the simulated robot is later: it drives each wheel speed until the next
+    for name, truth in (("lag_v", CHAIN.lag_v), ("lag_omega", CHAIN.lag_omega)):
+        assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
+    for name, truth in (("delay_v", CHAIN.delay_v + held), ("delay_omega", CHAIN.delay_omega + held)):
+        assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
+
+
+def test_a_drive_without_limits_shows_none_in_its_poses() -> None:
+    commands = steps_drive(3, SECONDS)
+    unlimited = _core.CommandLimits(FREE, FREE, FREE, TRACK, 1.0, 1.0)
+    result = calibrate(
+        without_wheels(driven(commands, wheels_behind(unlimited, commands, 1))), input="command"
+    )
+    assert result.model.limits is None
+    assert not any("looks limited" in each for each in result.verdict.advice)
 
 
 @pytest.mark.slow

@@ -14,11 +14,11 @@ namespace slipwise {
 
 /// How motion is explained.
 enum class Structure : std::uint8_t {
-  Joint,               ///< slip and actuator learned from poses alone
-  Cascaded,            ///< the actuator learned from wheel speeds, the slip behind it from poses
-  CascadedWithLimits,  ///< the same behind dead band, saturation and slew rates
-  Direct,              ///< slip and delays: no lag
-  Baseline             ///< the kinematic baseline: the robot does at once what it is commanded
+  Joint,     ///< slip and actuator learned from poses alone
+  Cascaded,  ///< the actuator learned from wheel speeds, the slip behind it from poses
+  Limited,   ///< one of these behind dead band, saturation and slew rates
+  Direct,    ///< slip and delays: no lag
+  Baseline   ///< the kinematic baseline: the robot does at once what it is commanded
 };
 inline constexpr std::size_t kStructures = 5;
 constexpr std::size_t enumerators(Structure /*type*/) { return kStructures; }

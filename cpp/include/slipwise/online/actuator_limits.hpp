@@ -37,6 +37,10 @@ struct ActuatorLimits {
 /// segments of poses that end after what they are learned from. Nothing where there are too few wheel speeds.
 std::optional<ActuatorLimits> find_actuator_limits(const LimitData& data);
 
+/// The limits that the twists of stretches show; nothing where there are too few twists.
+std::optional<LimitSearch> search_limits(std::span<const WheelSegment> driven, const PriorSettings& prior,
+                                         double wheel_separation);
+
 /// Commands and wheel speeds as the search takes them: stretches without a gap, a twist in each twentieth of a second.
 std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels);
 

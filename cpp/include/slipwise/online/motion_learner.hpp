@@ -95,9 +95,9 @@ class MotionLearner {
   PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
   /// What was learned of all that was pushed; as if the run ended now.
   LearnedModel model() const;
-  /// Looks for limits of the actuator in the last wheel speeds and commands, and keeps them where they predict better.
-  /// This takes up to seconds, and changes nothing of what is learned. Nothing where there are too few wheel speeds
-  /// beside commands.
+  /// Looks for limits of the actuator in the last commands and wheel speeds, or twists between poses where there are no
+  /// wheel speeds, and keeps them where they predict better. This takes up to seconds, and changes nothing of what is
+  /// learned. Nothing where there are too few of these.
   std::optional<ActuatorLimits> find_limits(double wheel_separation) const;
   /// Gives what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
   /// \throws std::invalid_argument when the fraction is not between 0 and 1.
@@ -116,7 +116,8 @@ class MotionLearner {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);
-    a(self.recent_, self.wheel_segments_, self.command_segments_, self.errors_, self.held_out_, self.events_);
+    a(self.recent_, self.wheel_segments_, self.twist_segments_, self.command_segments_, self.errors_, self.held_out_,
+      self.events_);
     a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
     a(self.seconds_);
   }
@@ -148,6 +149,7 @@ class MotionLearner {
   std::deque<Knowledge> known_;                 ///< of late; the last is the newest
   std::deque<DrivenSegment> recent_;            ///< segments of the run
   std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
+  std::deque<WheelSegment> twist_segments_;     ///< the same, of twists between poses
   std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
   RecentSlip recent_slip_;                      ///< for the next prediction
   std::vector<HorizonErrors> errors_;

@@ -12,6 +12,7 @@
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/online/input_history.hpp"
 #include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/pose_twists.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/segment_cutter.hpp"
@@ -43,6 +44,11 @@ struct SlipSegment {
   DrivenSegment driven;
 };
 
+/// Commands, and twists between poses that followed them, where no wheel speeds come.
+struct TwistSegment {
+  WheelSegment driven;
+};
+
 /// Something rejected.
 struct Rejected {
   Stream stream;
@@ -50,7 +56,7 @@ struct Rejected {
   double t;  ///< [s]
 };
 
-using StreamItem = std::variant<WheelSegment, SlipSegment, DrivenSegment, TargetSegment>;
+using StreamItem = std::variant<WheelSegment, SlipSegment, TwistSegment, DrivenSegment, TargetSegment>;
 
 /// Takes measurements of one run after another. Streams are in order each, and late relative to each other by no more
 /// than the latency: a pose is used once no earlier measurement can arrive, so that what comes out does not depend on
@@ -96,7 +102,7 @@ class SegmentStream {
       self.wheels_ever_, self.range_);
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.gate_, self.timer_, self.wheel_timer_,
       self.learned_, self.slip_);
-    a(self.wheel_cutter_, self.targets_, self.items_, self.rejected_);
+    a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_);
   }
 
  private:
@@ -113,6 +119,7 @@ class SegmentStream {
   void process_accepted(const GatedPoses& gated);
   void emit_learned(const std::vector<SegmentCut>& cuts);
   void emit_slip(const std::vector<SegmentCut>& cuts);
+  void emit_twists(const std::vector<TwistStretch>& stretches);
   void emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts);
   void emit_wheel_segments(const std::vector<SegmentCut>& cuts);
   void finish_cutters();
@@ -144,6 +151,7 @@ class SegmentStream {
   SegmentCutter learned_;
   SegmentCutter slip_;
   SegmentCutter wheel_cutter_;
+  PoseTwists twists_;
   std::vector<SegmentCutter> targets_;
   std::vector<StreamItem> items_;
   std::vector<Rejected> rejected_;

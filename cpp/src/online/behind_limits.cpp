@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two models predict the same segments, one of them behind limits.
+#include "slipwise/online/behind_limits.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+
+#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/estimate/weighing.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kFewSegments = 8;         // that are predicted to compare
+constexpr double kBetter = std::numbers::ln10;  // log score from which limits are believed to predict better
+
+}  // namespace
+
+DrivenSegment behind(const DrivenSegment& segment, const CommandLimits& limits) {
+  DrivenSegment limited = segment;
+  limited.inputs = limited_track(segment.inputs, limits);
+  return limited;
+}
+
+double gain_behind(std::span<const DrivenSegment> segments, const LimitContest& contest) {
+  std::array scores{PredictiveScore(contest.noise), PredictiveScore(contest.noise)};
+  const std::array known{&contest.without, &contest.with};
+  double sum = 0.0;
+  for (const DrivenSegment& segment : segments) {
+    const DrivenSegment limited = behind(segment, contest.limits);
+    const std::array given{&segment, &limited};
+    std::array<Eigen::Vector3d, 2> innovations;
+    std::array<Eigen::Matrix3d, 2> covariances;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const ScoredSegment scored =
+          scores[i].score(known[i]->model, known[i]->estimate, given[i]->inputs, given[i]->segment);
+      innovations[i] = scored.innovation;
+      covariances[i] = scored.innovation_covariance;
+    }
+    const Eigen::VectorXd each = common_log_scores(Eigen::Vector2d(0.5, 0.5), innovations, covariances);
+    sum += each[1] - each[0];
+  }
+  return sum;
+}
+
+bool is_clear(double gain, std::span<const DrivenSegment> segments) {
+  return segments.size() >= kFewSegments && gain > kBetter;
+}
+
+std::vector<DrivenSegment> segments_since(std::span<const DrivenSegment> segments, double t) {
+  std::vector<DrivenSegment> later;
+  std::ranges::copy_if(segments, std::back_inserter(later),
+                       [&](const DrivenSegment& segment) { return segment.segment.start >= t; });
+  return later;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A search for limits in twists between poses, and the joint model behind them.
+#include "slipwise/online/pose_limits.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "slipwise/online/behind_limits.hpp"
+
+namespace slipwise {
+namespace {
+
+/// What segments lead to.
+std::shared_ptr<const MotionPosterior> learned(std::span<const DrivenSegment> segments,
+                                               const HypothesisSettings& settings, const CommandLimits* limits) {
+  MotionHypotheses hypotheses(settings);
+  for (const DrivenSegment& segment : segments) {
+    hypotheses.start(limits == nullptr ? segment : behind(segment, *limits), false);
+    while (hypotheses.advance()) {
+    }
+  }
+  return hypotheses.posterior();
+}
+
+/// Limits act on an actuator, whose lag and delay are learned behind them.
+HypothesisSettings joint_alone(HypothesisSettings settings) {
+  settings.cascaded = settings.direct = settings.baseline = false;
+  return settings;
+}
+
+/// Twists between poses slip: a gain below 1 is the ground's, and stands behind the sides. The search has all gain in
+/// front of them, which is the same to another track and other limits: g_v s = g_v v + g_omega omega w' / 2 asks
+/// s = v + omega w / 2 of a side, where w = w' g_omega / g_v.
+LimitSearch with_gain_behind_sides(LimitSearch search) {
+  auto& [limits, chain, edge] = search.drive;
+  if (!limits_sides(limits)) {
+    return search;
+  }
+  chain.gain_v = std::min(limits.gain_v, 1.0);
+  chain.gain_omega = std::min(limits.gain_omega, 1.0);
+  limits.gain_v /= chain.gain_v;
+  limits.gain_omega /= chain.gain_omega;
+  limits.track *= chain.gain_omega / chain.gain_v;
+  search.track_std *= chain.gain_omega / chain.gain_v;
+  for (const LimitKind kind : kLimitKinds) {
+    limit_of(limits.side, kind) /= chain.gain_v;
+  }
+  for (FoundLimit& found : search.found) {
+    if (found.lane == LimitedAxis::Side) {
+      found.value /= chain.gain_v;
+      found.std /= chain.gain_v;
+    }
+  }
+  return search;
+}
+
+}  // namespace
+
+std::optional<ActuatorLimits> find_pose_limits(const PoseLimitData& data) {
+  auto search = search_limits(data.twists, data.settings.filter.prior, data.wheel_separation);
+  if (!search || data.segments.empty()) {
+    return std::nullopt;
+  }
+  ActuatorLimits result{.search = with_gain_behind_sides(std::move(*search)), .posterior = nullptr, .score = 0.0};
+  if (result.search.found.empty()) {
+    return result;
+  }
+  const CommandLimits& limits = result.search.drive.limits;
+  const NoiseSettings& noise = data.settings.filter.noise;
+  const auto first = data.segments.first(data.segments.size() / 2);
+  const auto later = data.segments.subspan(first.size());
+  const HypothesisSettings joint = joint_alone(data.settings);
+  const auto without = learned(first, data.settings, nullptr);
+  const auto with = learned(first, joint, &limits);
+  result.score = gain_behind(later, {.without = *without, .with = *with, .limits = limits, .noise = noise});
+  // What is kept has learned these segments, which is hard to beat: it need not be beaten clearly.
+  if (is_clear(result.score, later) &&
+      gain_behind(later, {.without = data.kept, .with = *with, .limits = limits, .noise = noise}) > 0.0) {
+    MotionPosterior posterior = *learned(data.segments, joint, &limits);
+    posterior.structure = Structure::Limited;
+    result.posterior = std::make_shared<const MotionPosterior>(std::move(posterior));
+  }
+  return result;
+}
+
+}  // namespace slipwise

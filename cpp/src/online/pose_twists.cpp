@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Twists of short segments between poses, joined until they are long enough.
+#include "slipwise/online/pose_twists.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+constexpr double kInterval = 0.2;  // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kLongest = 0.3;   // [s]; over longer ones, a ramp that they blur passes for one of the actuator
+constexpr double kStretch = 1.0;   // [s] from which on a stretch is complete
+constexpr double kRounding = 1e-9;
+
+/// A robot that stands still although it is commanded to move tells of a dead band.
+SegmentRules with_still(SegmentRules rules) {
+  rules.still_speed = -1.0;
+  return rules;
+}
+
+}  // namespace
+
+PoseTwists::PoseTwists(const SegmentRules& rules, const Pose2& sensor)
+    : sensor_(sensor), cutter_(kInterval, with_still(rules), false) {}
+
+std::vector<TwistStretch> PoseTwists::push(const TimedPose& pose, const InputHistory& commands) {
+  return joined(cutter_.push(pose, commands));
+}
+
+std::vector<TwistStretch> PoseTwists::finish(const InputHistory& commands) {
+  std::vector<TwistStretch> out = joined(cutter_.finish(commands));
+  close(out);
+  return out;
+}
+
+double PoseTwists::begins() const { return stretch_ ? std::min(stretch_->start, cutter_.begins()) : cutter_.begins(); }
+
+std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts) {
+  std::vector<TwistStretch> out;
+  for (const SegmentCut& cut : cuts) {
+    const double seconds = cut.second.t - cut.first.t;
+    if (stretch_ && std::abs(cut.first.t - stretch_->end) > kRounding) {
+      close(out);
+    }
+    if (cut.rejected || seconds > kLongest) {
+      close(out);
+      continue;
+    }
+    if (!stretch_) {
+      stretch_ = TwistStretch{.start = cut.first.t, .end = cut.first.t, .t = {}, .twist = {}};
+    }
+    const Eigen::Vector3d twist = adjoint(sensor_) * log(cut.measured()) / seconds;
+    stretch_->t.push_back(cut.first.t + 0.5 * seconds);
+    stretch_->twist.push_back({.v = twist.x(), .vy = twist.y(), .omega = twist.z()});
+    stretch_->end = cut.second.t;
+    if (stretch_->end - stretch_->start >= kStretch) {
+      close(out);
+    }
+  }
+  return out;
+}
+
+void PoseTwists::close(std::vector<TwistStretch>& out) {
+  if (stretch_) {
+    out.push_back(*std::exchange(stretch_, std::nullopt));
+  }
+}
+
+}  // namespace slipwise

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "slipwise/online/behind_limits.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "slipwise/segment/integrate_segment.hpp"
+
+using slipwise::CommandLimits;
+using slipwise::DrivenSegment;
+using slipwise::InputTrack;
+using slipwise::MotionPosterior;
+using slipwise::NoiseSettings;
+
+namespace {
+
+constexpr double kTop = 0.6;  // [m/s]
+
+CommandLimits limited() {
+  CommandLimits limits;
+  limits.speed.top = kTop;
+  return limits;
+}
+
+/// Segments of 2 s driven at a command of 1 m/s, of which 0.6 m/s come through.
+std::vector<DrivenSegment> segments(int count) {
+  std::vector<DrivenSegment> all;
+  for (int i = 0; i < count; ++i) {
+    const double start = 2.0 * i;
+    DrivenSegment driven{.inputs = InputTrack({start}, {{.v = 1.0}}), .segment = {.start = start, .end = start + 2.0}};
+    driven.segment.measured.x = 2.0 * kTop;
+    all.push_back(driven);
+  }
+  return all;
+}
+
+MotionPosterior baseline() {
+  return {.model = {},
+          .estimate = {Eigen::VectorXd(0), Eigen::MatrixXd(0, 0)},
+          .prior_std = Eigen::VectorXd(0),
+          .noise = {},
+          .noise_scale = Eigen::Vector3d::Ones()};
+}
+
+}  // namespace
+
+TEST_CASE("behind a limit a segment is driven by what comes through") {
+  const DrivenSegment driven = behind(segments(1).front(), limited());
+  CHECK(driven.inputs.at(1.0).v == doctest::Approx(kTop));
+  CHECK(driven.segment.measured.x == doctest::Approx(2.0 * kTop));
+}
+
+TEST_CASE("limits that act gain, and limits that do not lose nothing") {
+  const MotionPosterior same = baseline();
+  const NoiseSettings noise;
+  const CommandLimits free;
+  const CommandLimits limits = limited();
+  const auto all = segments(12);
+  CHECK(gain_behind(all, {.without = same, .with = same, .limits = limits, .noise = noise}) > 3.0);
+  CHECK(gain_behind(all, {.without = same, .with = same, .limits = free, .noise = noise}) == doctest::Approx(0.0));
+}
+
+TEST_CASE("a gain over few segments, or a little one, is not clear") {
+  const auto all = segments(12);
+  CHECK(slipwise::is_clear(3.0, all));
+  CHECK_FALSE(slipwise::is_clear(2.0, all));
+  CHECK_FALSE(slipwise::is_clear(3.0, segments(7)));
+}
+
+TEST_CASE("segments since a moment start there or later") {
+  const auto later = slipwise::segments_since(segments(5), 4.0);
+  REQUIRE(later.size() == 3);
+  CHECK(later.front().segment.start == 4.0);
+}
