@@ -54,8 +54,8 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputTrack& wheels, const Segment& 
   prior.diagonal() += squares(settings_.walk_ratio, settings_.walk_angle) * (segment.end - segment.start);
   const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.track);
   const Eigen::Matrix3d& h = at.by_slip_ratios;
-  const Eigen::Matrix3d noise =
-      slip_covariance(at.segment.path, settings_.noise) + pose_noise_covariance(segment.measured, settings_.noise);
+  const Eigen::Matrix3d noise = slip_covariance(at.segment.path, settings_.noise) +
+                                pose_noise_covariance(segment.measured, settings_.noise, segment.pose_std);
   SlipRatioUpdate update{.innovation = segment.measured.vector() - at.segment.predicted.vector(),
                          .innovation_covariance = h * prior * h.transpose() + noise,
                          .nis = 0.0,

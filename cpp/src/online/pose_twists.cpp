@@ -48,14 +48,12 @@ std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts
       close(out);
       continue;
     }
-    if (!stretch_) {
-      stretch_ = TwistStretch{.start = cut.first.t, .end = cut.first.t, .t = {}, .twist = {}};
-    }
+    TwistStretch& stretch = stretch_ ? *stretch_ : stretch_.emplace(TwistStretch{.start = cut.first.t});
     const Eigen::Vector3d twist = adjoint(sensor_) * log(cut.measured()) / seconds;
-    stretch_->t.push_back(cut.first.t + 0.5 * seconds);
-    stretch_->twist.push_back({.v = twist.x(), .vy = twist.y(), .omega = twist.z()});
-    stretch_->end = cut.second.t;
-    if (stretch_->end - stretch_->start >= kStretch) {
+    stretch.t.push_back(cut.first.t + 0.5 * seconds);
+    stretch.twist.push_back({.v = twist.x(), .vy = twist.y(), .omega = twist.z()});
+    stretch.end = cut.second.t;
+    if (stretch.end - stretch.start >= kStretch) {
       close(out);
     }
   }
@@ -64,7 +62,8 @@ std::vector<TwistStretch> PoseTwists::joined(const std::vector<SegmentCut>& cuts
 
 void PoseTwists::close(std::vector<TwistStretch>& out) {
   if (stretch_) {
-    out.push_back(*std::exchange(stretch_, std::nullopt));
+    out.push_back(std::move(*stretch_));
+    stretch_.reset();
   }
 }
 

@@ -124,7 +124,9 @@ void SegmentStream::push_attitude(double t, double roll, double pitch) {
 }
 
 void SegmentStream::push_pose(const MeasuredPose& pose) {
-  if (arrives(Stream::Pose, pose.t, std::array{pose.x, pose.y, pose.yaw})) {
+  const auto allowed = [](double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); };
+  const std::array numbers{pose.x, pose.y, pose.yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
+  if (arrives(Stream::Pose, pose.t, numbers)) {
     poses_.push_back(pose);
   }
   advance(newest_ - settings_.latency);
@@ -267,7 +269,8 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .measured = cut.measured(),
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
-                  .sensor = settings_.sensor};
+                  .sensor = settings_.sensor,
+                  .pose_std = {cut.first.std, cut.second.std}};
   if (!by_wheels) {
     set_actuator_state(segment);
   }

@@ -24,10 +24,11 @@ Eigen::Matrix3d end_by_start(const Pose2& measured) {
   return by_start;
 }
 
-Eigen::Matrix3d pose_covariance(const MotionNoise& noise) {
-  const double xy = noise.pose_std_xy * noise.pose_std_xy;
-  const double yaw = noise.pose_std_yaw * noise.pose_std_yaw;
-  return Eigen::Vector3d(xy, xy, yaw).asDiagonal();
+/// Of a pose that came with standard deviations, or without.
+Eigen::Matrix3d pose_covariance(const MotionNoise& noise, const PoseStd& own) {
+  const double xy = own.xy > 0.0 ? own.xy : noise.pose_std_xy;
+  const double yaw = own.yaw > 0.0 ? own.yaw : noise.pose_std_yaw;
+  return Eigen::Vector3d(xy * xy, xy * xy, yaw * yaw).asDiagonal();
 }
 
 std::array<double, 3> motion_of(const DriveStep& step) {
@@ -58,16 +59,17 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
   return seen * covariance * seen.transpose();
 }
 
-Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise) {
+Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
+                                      const std::array<PoseStd, 2>& std) {
   const Eigen::Matrix3d from_start = end_by_start(measured);
-  const Eigen::Matrix3d pose = pose_covariance(noise);
-  return from_start * pose * from_start.transpose() + pose;
+  return from_start * pose_covariance(noise, std[0]) * from_start.transpose() + pose_covariance(noise, std[1]);
 }
 
-Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise) {
+Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
+                                  const PoseStd& std) {
   Eigen::Matrix3d seen_there = Eigen::Matrix3d::Identity();  // turns back to the frame of the earlier start
   seen_there.topLeftCorner<2, 2>() = rotation(-before.theta);
-  return end_by_start(measured) * seen_there * pose_covariance(noise);
+  return end_by_start(measured) * seen_there * pose_covariance(noise, std);
 }
 
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
@@ -77,7 +79,7 @@ Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen
 
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise), scale);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std), scale);
 }
 
 }  // namespace slipwise

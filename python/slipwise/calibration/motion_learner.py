@@ -100,9 +100,29 @@ class MotionLearner:
         self._wheels = True
         self._core.push_wheels(t, v, omega, vy)
 
-    def push_pose(self, t: float, x: float, y: float, yaw: float, frame: int = 0) -> None:
-        """Take a measured pose: its stamp [s], x, y [m], yaw [rad]; comparable in one frame alone."""
-        self._core.push_pose(t, x, y, yaw, frame)
+    def push_pose(
+        self,
+        t: float,
+        x: float,
+        y: float,
+        yaw: float,
+        std_xy: float | None = None,
+        std_yaw: float | None = None,
+        frame: int = 0,
+    ) -> None:
+        """Take a measured pose: its stamp [s], x, y [m], yaw [rad]; comparable in one frame alone.
+
+        Args:
+            t: stamp [s].
+            x: position [m].
+            y: position [m].
+            yaw: heading [rad].
+            std_xy: standard deviation of x and of y [m], where the sensor says it: how much this pose counts
+                beside others. How large errors are on the whole is learned.
+            std_yaw: the same of the heading [rad].
+            frame: poses of different frames are not compared.
+        """
+        self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0)
 
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""

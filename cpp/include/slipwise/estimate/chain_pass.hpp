@@ -29,7 +29,7 @@ struct ChannelModel {
   /// Names what is saved: of the parts, their places in a twist.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    std::vector<std::size_t> places = places_in_twist(self.parts);
+    auto places = places_in_twist(self.parts);  // NOLINT(misc-const-correctness): a reader changes them
     a(places, self.prior, self.noise, self.iekf);
     if constexpr (!std::is_const_v<Self>) {
       self.parts = parts_of_twist(places);

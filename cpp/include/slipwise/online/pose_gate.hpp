@@ -9,6 +9,7 @@
 
 #include "slipwise/estimate/speed_range.hpp"
 #include "slipwise/online/input_history.hpp"
+#include "slipwise/segment/segment.hpp"
 
 namespace slipwise {
 
@@ -21,6 +22,7 @@ struct MeasuredPose {
   long frame = 0;
   double gx = 0.0;  ///< gravity along the body's x axis [m/s^2]
   double gy = 0.0;  ///< along its y axis [m/s^2]
+  PoseStd std = {};
 };
 
 /// What the gate makes of the poses.

@@ -14,10 +14,10 @@ namespace slipwise {
 
 /// Twists between poses one after another, without a gap.
 struct TwistStretch {
-  double start;                  ///< [s]
-  double end;                    ///< [s]
-  std::vector<double> t;         ///< [N] s, in the middle between two poses
-  std::vector<BodyTwist> twist;  ///< [N] of base_link
+  double start = 0.0;                 ///< [s]
+  double end = 0.0;                   ///< [s]
+  std::vector<double> t = {};         ///< [N] s, in the middle between two poses
+  std::vector<BodyTwist> twist = {};  ///< [N] of base_link
 };
 
 /// Takes the poses of one run after another. Poses that are too rare to tell a slow actuator from one with limits give

@@ -2,6 +2,7 @@
 // A segment: two measured poses of one drive, and where the second lies as seen from the first.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "slipwise/actuator/command_chain.hpp"
@@ -9,6 +10,12 @@
 #include "slipwise/lie/se2.hpp"
 
 namespace slipwise {
+
+/// Standard deviations that a measured pose came with; zero where it came without: those of the model of the noise.
+struct PoseStd {
+  double xy = 0.0;   ///< per axis [m]
+  double yaw = 0.0;  ///< [rad]
+};
 
 struct Segment {
   double start;                           ///< stamp of the first pose [s]
@@ -19,6 +26,7 @@ struct Segment {
   double gy = 0.0;                        ///< [m/s^2]
   std::optional<KnownDrive> known = {};   ///< what was measured of the drive; `initial` is where it ends
   Pose2 sensor = {};                      ///< known pose in base_link of what `measured` is the motion of
+  std::array<PoseStd, 2> pose_std = {};   ///< of the first and the second pose
 };
 
 }  // namespace slipwise
