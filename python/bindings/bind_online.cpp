@@ -40,14 +40,20 @@ std::vector<InputSample> samples(const Rows& rows, const char* what) {
 
 Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses) {
   check_columns(attitudes, 3, "attitudes");
-  check_columns(poses, 5, "poses");
+  const bool with_std = poses.cols() != 5;
+  check_columns(poses, with_std ? 7 : 5, "poses");
   Recording run{
       .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
   for (const auto& row : attitudes.rowwise()) {
     run.attitudes.push_back({row[0], row[1], row[2]});
   }
   for (const auto& row : poses.rowwise()) {
-    run.poses.push_back({.t = row[0], .x = row[1], .y = row[2], .yaw = row[3], .frame = static_cast<long>(row[4])});
+    run.poses.push_back({.t = row[0],
+                         .x = row[1],
+                         .y = row[2],
+                         .yaw = row[3],
+                         .frame = static_cast<long>(row[4]),
+                         .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{}});
   }
   return run;
 }
@@ -107,7 +113,7 @@ void bind_recordings(nb::module_& m) {
           },
           "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
-          "(t, x, y, yaw, frame) [s, m, m, rad, -].");
+          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where unknown, or both left away.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)
       .def_ro("t", &Rejected::t)

@@ -161,7 +161,10 @@ void bind_segment(nb::module_& m) {
          const Segment& segment) { return linearize_segment(model, parameters, inputs, segment); },
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
   m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);
-  m.def("pose_noise_covariance", &pose_noise_covariance, "measured"_a, "noise"_a);
+  m.def(
+      "pose_noise_covariance",
+      [](const Pose2& measured, const MotionNoise& noise) { return pose_noise_covariance(measured, noise); },
+      "measured"_a, "noise"_a);
   bind_steady(m);
 }
 

@@ -47,7 +47,7 @@ void FilterRefit::weight(const DrivenSegment& driven) {
   }
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
   if (!model_.learned().dynamics && last_ && std::abs(segment.start - last_->end) < kSameStamp) {
-    const PoseStd& met = segment.pose_std.front();
+    const PoseStdRatio& met = segment.pose_std_ratio.front();
     shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), scale);
   }
   const double larger = std::max(std::sqrt(nis) / iekf_.huber, 1.0);

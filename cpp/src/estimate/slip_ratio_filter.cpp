@@ -55,7 +55,7 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputTrack& wheels, const Segment& 
   const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.track);
   const Eigen::Matrix3d& h = at.by_slip_ratios;
   const Eigen::Matrix3d noise = slip_covariance(at.segment.path, settings_.noise) +
-                                pose_noise_covariance(segment.measured, settings_.noise, segment.pose_std);
+                                pose_noise_covariance(segment.measured, settings_.noise, segment.pose_std_ratio);
   SlipRatioUpdate update{.innovation = segment.measured.vector() - at.segment.predicted.vector(),
                          .innovation_covariance = h * prior * h.transpose() + noise,
                          .nis = 0.0,

@@ -159,14 +159,16 @@ void SegmentStream::process_wheels(double until) {
 
 void SegmentStream::process_pose(const MeasuredPose& raw) {
   now_ = raw.t;
-  process_accepted(gate_.push(tilted(raw), gate_inputs(now_)));
+  process_accepted(gate_.push(complete(raw, accuracy_), gate_inputs(now_)));
 }
 
-MeasuredPose SegmentStream::tilted(const MeasuredPose& raw) const {
+/// With what is known beside it: how the robot was tilted, and how exact its like were.
+MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const {
   MeasuredPose pose = raw;
   const Tilt tilt = tilt_at(raw.t);
   pose.gx = tilt.gx;
   pose.gy = tilt.gy;
+  pose.std_ratio = accuracy.ratio(raw.std);
   return pose;
 }
 
@@ -270,7 +272,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
                   .sensor = settings_.sensor,
-                  .pose_std = {cut.first.std, cut.second.std}};
+                  .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
   if (!by_wheels) {
     set_actuator_state(segment);
   }
@@ -320,12 +322,13 @@ std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items
 std::vector<Rejected> SegmentStream::take_rejected() { return std::exchange(rejected_, {}); }
 
 std::vector<DrivenSegment> SegmentStream::pending_segments() const {
+  PoseAccuracy accuracy = accuracy_;
   PoseGate gate = gate_;
   PoseTimer timer = timer_;
   SegmentCutter cutter = learned_;
   std::vector<DrivenSegment> found;
   for (const MeasuredPose& raw : poses_) {
-    for (const MeasuredPose& pose : gate.push(tilted(raw), gate_inputs(raw.t)).accepted) {
+    for (const MeasuredPose& pose : gate.push(complete(raw, accuracy), gate_inputs(raw.t)).accepted) {
       const auto timed = timer.push(pose, settings_.rules.late_factor);
       for (const SegmentCut& cut : timed ? cutter.push(*timed, inputs()) : std::vector<SegmentCut>{}) {
         if (!cut.rejected) {

@@ -41,7 +41,7 @@ class GrowingPath {
     path_.tangents.reserve(steps);
     path_.times.push_back(segment.start);
     path_.poses.emplace_back();
-    path_.pose_std = segment.pose_std;
+    path_.pose_std_ratio = segment.pose_std_ratio;
   }
 
   const Eigen::Matrix2d& heading() const { return heading_; }

@@ -24,10 +24,9 @@ Eigen::Matrix3d end_by_start(const Pose2& measured) {
   return by_start;
 }
 
-/// Of a pose that came with standard deviations, or without.
-Eigen::Matrix3d pose_covariance(const MotionNoise& noise, const PoseStd& own) {
-  const double xy = own.xy > 0.0 ? own.xy : noise.pose_std_xy;
-  const double yaw = own.yaw > 0.0 ? own.yaw : noise.pose_std_yaw;
+Eigen::Matrix3d pose_covariance(const MotionNoise& noise, const PoseStdRatio& ratio) {
+  const double xy = ratio.xy * noise.pose_std_xy;
+  const double yaw = ratio.yaw * noise.pose_std_yaw;
   return Eigen::Vector3d(xy * xy, xy * xy, yaw * yaw).asDiagonal();
 }
 
@@ -60,16 +59,16 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
-                                      const std::array<PoseStd, 2>& std) {
+                                      const std::array<PoseStdRatio, 2>& ratio) {
   const Eigen::Matrix3d from_start = end_by_start(measured);
-  return from_start * pose_covariance(noise, std[0]) * from_start.transpose() + pose_covariance(noise, std[1]);
+  return from_start * pose_covariance(noise, ratio[0]) * from_start.transpose() + pose_covariance(noise, ratio[1]);
 }
 
 Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
-                                  const PoseStd& std) {
+                                  const PoseStdRatio& ratio) {
   Eigen::Matrix3d seen_there = Eigen::Matrix3d::Identity();  // turns back to the frame of the earlier start
   seen_there.topLeftCorner<2, 2>() = rotation(-before.theta);
-  return end_by_start(measured) * seen_there * pose_covariance(noise, std);
+  return end_by_start(measured) * seen_there * pose_covariance(noise, ratio);
 }
 
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale) {
@@ -79,7 +78,7 @@ Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen
 
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std), scale);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std_ratio), scale);
 }
 
 }  // namespace slipwise

@@ -9,7 +9,7 @@
 
 #include "slipwise/estimate/speed_range.hpp"
 #include "slipwise/online/input_history.hpp"
-#include "slipwise/segment/segment.hpp"
+#include "slipwise/online/pose_accuracy.hpp"
 
 namespace slipwise {
 
@@ -23,6 +23,7 @@ struct MeasuredPose {
   double gx = 0.0;  ///< gravity along the body's x axis [m/s^2]
   double gy = 0.0;  ///< along its y axis [m/s^2]
   PoseStd std = {};
+  PoseStdRatio std_ratio = {};
 };
 
 /// What the gate makes of the poses.

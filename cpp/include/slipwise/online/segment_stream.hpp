@@ -11,6 +11,7 @@
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/online/input_history.hpp"
+#include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/pose_twists.hpp"
 #include "slipwise/online/rejection.hpp"
@@ -100,7 +101,7 @@ class SegmentStream {
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.commands_, self.wheels_,
       self.wheels_ever_, self.range_);
-    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.gate_, self.timer_, self.wheel_timer_,
+    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_, self.wheel_timer_,
       self.learned_, self.slip_);
     a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_);
   }
@@ -128,7 +129,7 @@ class SegmentStream {
   const InputHistory& gate_inputs(double t) const;
   DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;
   void set_actuator_state(Segment& segment) const;
-  MeasuredPose tilted(const MeasuredPose& raw) const;
+  MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;
   Tilt tilt_at(double t) const;
   void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
 
@@ -145,6 +146,7 @@ class SegmentStream {
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_;                       ///< stamp of the pose that is being used, or was last [s]
+  PoseAccuracy accuracy_;
   PoseGate gate_;
   PoseTimer timer_;
   PoseTimer wheel_timer_;

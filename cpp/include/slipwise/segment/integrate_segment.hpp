@@ -23,7 +23,7 @@ struct SegmentPath {
   std::vector<Eigen::Vector3d> tangents;  ///< [steps], twist * duration with slip
   std::vector<DriveStep> drive;           ///< [steps], the drive without slip
   Pose2 sensor;                           ///< pose in base_link of the sensor that measures the path
-  std::array<PoseStd, 2> pose_std = {};   ///< that the segment's measured poses came with
+  std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
 
   /// The sensor's motion, X^-1 T X: what `Segment::measured` is compared with.
   Pose2 sensor_motion() const;

@@ -11,10 +11,10 @@
 
 namespace slipwise {
 
-/// Standard deviations that a measured pose came with; zero where it came without: those of the model of the noise.
-struct PoseStd {
-  double xy = 0.0;   ///< per axis [m]
-  double yaw = 0.0;  ///< [rad]
+/// How exact a measured pose is said to be beside others: factors of the standard deviations of its noise.
+struct PoseStdRatio {
+  double xy = 1.0;
+  double yaw = 1.0;
 };
 
 struct Segment {
@@ -26,7 +26,7 @@ struct Segment {
   double gy = 0.0;                        ///< [m/s^2]
   std::optional<KnownDrive> known = {};   ///< what was measured of the drive; `initial` is where it ends
   Pose2 sensor = {};                      ///< known pose in base_link of what `measured` is the motion of
-  std::array<PoseStd, 2> pose_std = {};   ///< of the first and the second pose
+  std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the first and the second pose
 };
 
 }  // namespace slipwise

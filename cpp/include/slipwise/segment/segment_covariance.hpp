@@ -12,14 +12,13 @@ namespace slipwise {
 
 /// Covariance of the chart (x, y, theta) of T_start_end of the pose sensor that the slip noise causes along the path.
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
-/// Covariance of a measured T_start_end because both poses are measured: H R1 H^T + R2. Poses that came with standard
-/// deviations `std` of their own have these.
+/// Covariance of a measured T_start_end because both poses are measured: H R1 H^T + R2, with each pose's
+/// standard deviations times its ratios.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
-                                      const std::array<PoseStd, 2>& std = {});
-/// Covariance of the chart of a measured motion with that of the one before it, where they meet at one measured pose,
-/// which may have come with standard deviations of its own.
+                                      const std::array<PoseStdRatio, 2>& ratio = {});
+/// Covariance of the chart of a measured motion with that of the one before it, where they meet at one measured pose.
 Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
-                                  const PoseStd& std = {});
+                                  const PoseStdRatio& ratio = {});
 /// A covariance of (x, y, theta) with a factor of its variances.
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale);
 /// R of a measured segment: slip and both poses, with a factor of the variances of (x, y, theta).
