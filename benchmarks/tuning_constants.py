@@ -39,7 +39,8 @@ def tuning_constants(root: Path = ROOT) -> list[TuningConstant]:
 
 def build_tuned_core() -> Path:
     """Build the core that reads factors of tuning constants, as far as it is not built; return its path."""
-    environment = os.environ | {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "VIRTUAL_ENV": sys.prefix}
     configure = [
         "-S",
         ROOT,

@@ -59,5 +59,6 @@ int main() {
   }
   const slipwise::PredictedPath path = learner.predict({{learner.newest(), command.twist}}, 5.0);
   std::printf("%zu segments; 5 s ahead, the last command held: x %.3f m +- %.3f, y %.3f m +- %.3f\n", learned.segments,
-              path.pose.x(), std::sqrt(path.covariance(0, 0)), path.pose.y(), std::sqrt(path.covariance(1, 1)));
+              path.poses.back().x(), std::sqrt(path.covariances.back()(0, 0)), path.poses.back().y(),
+              std::sqrt(path.covariances.back()(1, 1)));
 }

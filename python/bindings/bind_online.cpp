@@ -113,7 +113,8 @@ void bind_recordings(nb::module_& m) {
           },
           "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
-          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where unknown, or both left away.");
+          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where unknown, or "
+          "both left away.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)
       .def_ro("t", &Rejected::t)
@@ -170,17 +171,9 @@ void bind_results(nb::module_& m) {
   nb::class_<PredictedPath>(m, "PredictedPath", "A path that is predicted from now on.")
       .def_ro("start", &PredictedPath::start)
       .def_ro("t", &PredictedPath::t)
-      .def_prop_ro("poses",
-                   [](const PredictedPath& path) {
-                     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rows(std::ssize(path.poses), 3);
-                     for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-                       rows.row(i) = path.poses[static_cast<std::size_t>(i)].vector();
-                     }
-                     return rows;
-                   })
-      .def_ro("pose", &PredictedPath::pose)
-      .def_ro("covariance", &PredictedPath::covariance)
-      .def_ro("student", &PredictedPath::student)
+      .def_ro("poses", &PredictedPath::poses)
+      .def_ro("covariances", &PredictedPath::covariances)
+      .def_ro("students", &PredictedPath::students)
       .def_prop_ro("structure", [](const PredictedPath& path) { return static_cast<int>(path.structure); });
   nb::class_<ActuatorLimits>(m, "ActuatorLimits", "What a search for limits found.")
       .def_ro("search", &ActuatorLimits::search)
@@ -208,7 +201,8 @@ void bind_events(nb::module_& m) {
       .value("SegmentLearned", LearnerEvent::Kind::SegmentLearned)
       .value("Rejected", LearnerEvent::Kind::Rejected)
       .value("TerrainChange", LearnerEvent::Kind::TerrainChange)
-      .value("HeldOut", LearnerEvent::Kind::HeldOut);
+      .value("HeldOut", LearnerEvent::Kind::HeldOut)
+      .value("Refit", LearnerEvent::Kind::Refit);
   nb::class_<LearnerEvent>(m, "LearnerEvent", "Something that a learner has to say.")
       .def_ro("kind", &LearnerEvent::kind)
       .def_ro("run", &LearnerEvent::run)

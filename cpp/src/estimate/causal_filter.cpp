@@ -124,10 +124,12 @@ void CausalFilter::end_refit() {
     found->estimate = std::move(*changed);
   }
   state_ = std::move(*found);
+  refitted_ = true;
 }
 
 IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
+  refitted_ = false;
   IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
   if (!full_ && !update.at.by_parameter.isZero(0.0)) {
     keep(inputs, segment);

@@ -130,9 +130,20 @@ ExpectedPose ColouredSlip::predict_at(const MotionPosterior& posterior, const Sl
                                       const SegmentLinearization& at, const Segment& segment) const {
   const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
   check_fits(now, law_, terms);
-  const ExpectedPose without{at.predicted.vector(), prediction_covariance(at, posterior.estimate.covariance,
-                                                                          posterior.noise, posterior.noise_scale)};
-  return with_deviation(at, without, now, terms, segment);
+  return expected(posterior, now, terms, at, {segment.start, segment.end});
+}
+
+std::vector<ExpectedPose> ColouredSlip::predict_along(const MotionPosterior& posterior, const SlipNow& now,
+                                                      std::span<const SegmentLinearization> beginnings,
+                                                      const Segment& segment) const {
+  const WanderingTerms terms = wandering_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  std::vector<ExpectedPose> along;
+  for (const SegmentLinearization& at : beginnings) {
+    const double end = &at == &beginnings.back() ? segment.end : at.path.times.back();
+    along.push_back(expected(posterior, now, terms, at, {segment.start, end}));
+  }
+  return along;
 }
 
 ExpectedPoses ColouredSlip::predict_both(const MotionPosterior& posterior, const SlipNow& now,
@@ -142,21 +153,23 @@ ExpectedPoses ColouredSlip::predict_both(const MotionPosterior& posterior, const
           .nominal = predict_at(posterior, this->now(posterior, {}), at, driven.segment)};
 }
 
-/// Adds the mean of the deviation over the segment, and its covariance, as mixed by the candidates' weights.
-ExpectedPose ColouredSlip::with_deviation(const SegmentLinearization& at, const ExpectedPose& without,
-                                          const SlipNow& now, const WanderingTerms& terms,
-                                          const Segment& segment) const {
+/// Adds the mean of the deviation over a time span, and its covariance, as mixed by the candidates' weights.
+ExpectedPose ColouredSlip::expected(const MotionPosterior& posterior, const SlipNow& now, const WanderingTerms& terms,
+                                    const SegmentLinearization& at, const std::array<double, 2>& span) const {
+  const auto [start, end] = span;
   const SeenSlip::ByDeviation h = at.by_parameter(Eigen::all, terms.places);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
-    const auto [deviation, covariance] = now.of_candidates[i].mean_over(segment.start, segment.end);
+    const auto [deviation, covariance] = now.of_candidates[i].mean_over(start, end);
     const Eigen::Vector3d shift = h * deviation;
     const double weight = law_.weights[static_cast<Eigen::Index>(i)];
     mean += weight * shift;
     square += weight * (h * covariance * h.transpose() + shift * shift.transpose());
   }
-  return {without.pose + mean, without.covariance + square - mean * mean.transpose()};
+  const Eigen::Matrix3d without =
+      prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
+  return {at.predicted.vector() + mean, without + square - mean * mean.transpose()};
 }
 
 }  // namespace slipwise

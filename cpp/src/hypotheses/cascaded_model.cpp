@@ -54,6 +54,7 @@ bool CascadedModel::advance_slip() {
   if (slip_.advance()) {
     return true;
   }
+  refitted_since_ = refitted_since_ || slip_.refitted();
   if (stronger(slip_.change(), change_since_)) {
     change_since_ = slip_.change();
   }
@@ -87,6 +88,7 @@ void CascadedModel::refresh() {
       actuator.covariance.diagonal().cwiseQuotient(actuator_.prior_std().cwiseAbs2());
   posterior_ = std::make_shared<const MotionPosterior>(std::move(all));
   change_ = std::exchange(change_since_, {});
+  refitted_ = std::exchange(refitted_since_, false);
 }
 
 }  // namespace slipwise

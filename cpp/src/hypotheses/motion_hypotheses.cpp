@@ -156,6 +156,7 @@ void MotionHypotheses::start(const DrivenSegment& segment, bool wheels_known) {
   segment_ = segment;
   to_predict_ = structures();
   predicted_.clear();
+  std::ranges::for_each(updates_, [](StructureUpdate& update) { update.refitted = false; });
 }
 
 bool MotionHypotheses::advance() {
@@ -204,7 +205,10 @@ ScoredSegment MotionHypotheses::predict(Structure structure) {
 
 ScoredSegment MotionHypotheses::learned(const ModelAverage& average, Structure structure) {
   const IekfUpdate& update = average.update();
-  updates_[index(structure)] = {.nis = update.nis, .weight = update.weight, .change = average.change()};
+  updates_[index(structure)] = {.nis = update.nis,
+                                .weight = update.weight,
+                                .change = average.change(),
+                                .refitted = average.refitted()};
   return {update.innovation, update.innovation_covariance, update.nis};
 }
 
@@ -213,6 +217,7 @@ void MotionHypotheses::update_weights() {
   if (cascaded_ && tried(Structure::Cascaded)) {
     cascaded_->refresh();
     updates_[index(Structure::Cascaded)].change = cascaded_->change();
+    updates_[index(Structure::Cascaded)].refitted = cascaded_->refitted();
   }
   const auto count = std::ssize(to_predict_);
   Eigen::VectorXd weights(count);

@@ -13,13 +13,13 @@
 #include "slipwise/online/pose_limits.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
-#include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr double kLongest = 3600.0;    // [s] horizon
 constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
+constexpr std::size_t kPathPoses = 10;  // of a prediction
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -83,21 +83,23 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
       known.disturbance->follow(*known.motion, slip, segment);
     }
   }
-  const auto at = linearize_segment(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment);
-  const ExpectedPose expected = known.disturbance->predict_at(*known.motion, slip, at, ahead.segment);
-  const SegmentPath& path = at.path;
-  const StudentT student = student_for(horizon, known.motion->structure);
-  PredictedPath result{.start = stream_.newest(),
-                       .t = path.times,
-                       .poses = {},
-                       .pose = expected.pose,
-                       .covariance = student.inflation * expected.covariance,
-                       .student = student,
-                       .structure = known.motion->structure};
-  for (const Pose2& pose : path.poses) {
-    result.poses.push_back(sensor_motion(pose, path.sensor));
+  const auto beginnings = linearize_beginnings(known.motion->model, known.motion->estimate.mean, ahead.inputs,
+                                               ahead.segment, kPathPoses);
+  PredictedPath path{.start = stream_.newest(),
+                     .t = {},
+                     .poses = {},
+                     .covariances = {},
+                     .students = {},
+                     .structure = known.motion->structure};
+  for (std::size_t i = 0;
+       const ExpectedPose& expected : known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment)) {
+    path.t.push_back(i + 1 < beginnings.size() ? beginnings[i].path.times.back() : ahead.segment.end);
+    path.students.push_back(student_for(path.t.back() - path.start, known.motion->structure));
+    path.poses.push_back(expected.pose);
+    path.covariances.push_back(path.students.back().inflation * expected.covariance);
+    ++i;
   }
-  return result;
+  return path;
 }
 
 LearnedModel MotionLearner::model() const {

@@ -263,10 +263,14 @@ void MotionLearner::publish(const DrivenSegment& segment) {
     event.posteriors[i] =
         supported(hypotheses_.of(static_cast<Structure>(i)), stream_.wheel_interval(), hypotheses_.count());
   }
+  const bool refitted = std::ranges::any_of(event.updates, &StructureUpdate::refitted);
   const bool alarm = event.updates[index(known_.back().slip->structure)].change.alarm;
   say(event);
   if (alarm) {
     say({.kind = LearnerEvent::Kind::TerrainChange, .run = runs_, .t = segment.segment.end});
+  }
+  if (refitted) {
+    say({.kind = LearnerEvent::Kind::Refit, .run = runs_, .t = segment.segment.end});
   }
 }
 

@@ -11,6 +11,8 @@
 namespace slipwise {
 namespace {
 
+constexpr double kRounding = 1e-9;  // [s] of stamps
+
 /// One column per learned parameter of the chain.
 using ChainColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kChainParameters>;
 using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kChainParameters>;
@@ -58,6 +60,8 @@ class GrowingPath {
     path_.poses.push_back(next);
     path_.tangents.push_back(tangent);
   }
+
+  double time() const { return path_.times.back(); }
 
   SegmentPath finish(std::vector<DriveStep> drive, const Pose2& sensor) && {
     path_.drive = std::move(drive);
@@ -126,9 +130,11 @@ struct SensitivitySums {
   }
 };
 
-/// By the slip parameters, and by the others too where these are asked for.
+/// By the slip parameters, and by the others too where these are asked for. After each step but the last, `see` is
+/// handed the path, the steps and the sums so far.
+template <class See>
 SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                const InputTrack& inputs, const Segment& segment, bool all) {
+                                const InputTrack& inputs, const Segment& segment, bool all, const See& see) {
   model.check(parameters);
   const CommandChain chain = model.chain(parameters);
   const bool by_chain = all && model.chain_size() > 0;
@@ -152,12 +158,17 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
         sums.chain += by_tangent * tangent_by(step, learned, along, slip);
       }
     }
+    if (k + 1 < drive.steps.size()) {
+      see(path, std::span(drive.steps).first(k + 1), sums);
+    }
   }
   SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
   const Pose2 predicted = finished.sensor_motion();
   auto by_parameter = all ? sums.at(finished, model, chain) : sums.by_slip(finished);
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
+
+void see_nothing(const GrowingPath& /*path*/, std::span<const DriveStep> /*steps*/, const SensitivitySums& /*sums*/) {}
 
 }  // namespace
 
@@ -188,12 +199,36 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment) {
-  return linearized(model, parameters, inputs, segment, true);
+  return linearized(model, parameters, inputs, segment, true, see_nothing);
 }
 
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputTrack& inputs, const Segment& segment) {
-  return linearized(model, parameters, inputs, segment, false);
+  return linearized(model, parameters, inputs, segment, false, see_nothing);
+}
+
+std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
+                                                       const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                                       const InputTrack& inputs, const Segment& segment,
+                                                       std::size_t parts) {
+  const CommandChain chain = model.chain(parameters);
+  const Pose2 sensor = sensor_of(model, parameters, segment);
+  const double part = (segment.end - segment.start) / static_cast<double>(parts);
+  double next = segment.start + part;
+  std::vector<SegmentLinearization> found;
+  auto whole = linearized(model, parameters, inputs, segment, true,
+                          [&](const GrowingPath& path, std::span<const DriveStep> steps, const SensitivitySums& sums) {
+                            if (path.time() < next - kRounding || path.time() > segment.end - part + kRounding) {
+                              return;
+                            }
+                            next = path.time() + part;
+                            SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
+                            const Pose2 predicted = so_far.sensor_motion();
+                            auto by_parameter = sums.at(so_far, model, chain);
+                            found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
+                          });
+  found.push_back(std::move(whole));
+  return found;
 }
 
 }  // namespace slipwise

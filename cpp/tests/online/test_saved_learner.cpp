@@ -55,8 +55,8 @@ TEST_CASE("saved and loaded at random places, a learner goes on to the same byte
           const std::vector<InputSample> ahead{{run.commands[i].t + 0.1, {0.5, 0.0, 0.2}}};
           const PredictedPath one = silent.predict(ahead, 2.0);
           const PredictedPath other = moved.predict(ahead, 2.0);
-          CHECK(one.pose == other.pose);
-          CHECK(one.covariance == other.covariance);
+          CHECK(one.poses == other.poses);
+          CHECK(one.covariances == other.covariances);
         }
       }
     }

@@ -19,7 +19,7 @@ from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all, tail_of
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
-from slipwise.calibration.limit_words import doubted_limits, limits_advice
+from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
 from slipwise.calibration.plain import plain_forecaster
 from slipwise.calibration.result import Calibration
@@ -181,10 +181,10 @@ def judged_on(
         wheels_advice=log.advice.get("wheel", ""),
     )
     verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
-    if learned.limits is not None and not any(each.spoils for each in found):
-        wheels = has_wheels(windows.drive)
-        doubts = () if learned.kept.limits else doubted_limits(learned.limits, wheels_logged=wheels)
-        verdict = replace(verdict, advice=(*verdict.advice, *doubts, *limits_advice(learned.limits)))
+    if not any(each.spoils for each in found):
+        kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)
+        limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=wheels)
+        verdict = replace(verdict, advice=(*verdict.advice, *limits))
     return Judged(judgement, verdict)
 
 

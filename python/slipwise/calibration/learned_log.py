@@ -77,12 +77,8 @@ def learn_log(
     several = core.hypotheses.several
     predictions, baseline = held_out_predictions(model, horizons, drive)
     found = None if keep is None else learner.find_limits(keep.wheel_separation)
-    motion = (found.posterior if found is not None else None) or model.motion
-    kept = belief_of(motion, model.disturbance)
-    if found is not None and motion.structure == LIMITS:
-        kept = replace(kept, limits=found.search.limits)
     return LearnedLog(
-        kept=kept,
+        kept=kept_belief(model, found),
         slip=belief_of(model.slip, model.disturbance),
         students=tuple(model.students),
         predictions=predictions,
@@ -93,6 +89,13 @@ def learn_log(
         seconds=model.seconds,
         limits=None if found is None else found.search,
     )
+
+
+def kept_belief(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Belief:
+    """Return what goes into a model: behind limits of the actuator, where these were found and kept."""
+    motion = (found.posterior if found is not None else None) or model.motion
+    kept = belief_of(motion, model.disturbance)
+    return replace(kept, limits=found.search.limits) if found and motion.structure == LIMITS else kept
 
 
 _LEARNED = _core.EventKind.SegmentLearned

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,8 +14,9 @@ from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.forecast import tail_of
-from slipwise.calibration.learned_log import held_out_predictions
+from slipwise.calibration.learned_log import held_out_predictions, kept_belief
 from slipwise.calibration.learner import STRUCTURES, belief_of
+from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
@@ -34,6 +35,7 @@ _KINDS = {
     _core.EventKind.Rejected: "rejected",
     _core.EventKind.TerrainChange: "terrain-change",
     _core.EventKind.HeldOut: "held-out",
+    _core.EventKind.Refit: "refit",
 }
 
 
@@ -41,7 +43,7 @@ _KINDS = {
 class Event:
     """Something that a learner has to say."""
 
-    kind: str  # "segment-learned", "rejected", "terrain-change" or "held-out"
+    kind: str  # "segment-learned", "rejected", "terrain-change", "held-out" or "refit"
     run: str
     t: float  # s
     reason: str = ""  # why something was rejected
@@ -52,11 +54,10 @@ class PredictedPath:
     """Where the robot will be, in the frame of the pose sensor at the start."""
 
     start: float  # s, stamp of the newest measurement
-    t: Floats  # [N] s, stamps of the poses
+    t: Floats  # [N] s, stamps of the poses; the last is at the horizon
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
-    end: Floats  # [3] the last of them, with the slip disturbance of the moment
-    covariance: Floats  # [3, 3] there, of a Student t
-    dof: float  # its degrees of freedom
+    covariance: Floats  # [N, 3, 3] of a Student t each
+    dof: Floats  # [N] its degrees of freedom; few are heavy tails
     structure: str  # of the model that predicts: "joint", "cascaded", "direct" or "baseline"
 
 
@@ -165,9 +166,8 @@ class MotionLearner:
             start=path.start,
             t=np.array(path.t),
             poses=np.array(path.poses),
-            end=np.array(path.pose),
-            covariance=np.array(path.covariance),
-            dof=path.student.dof,
+            covariance=np.array(path.covariances),
+            dof=np.array([student.dof for student in path.students]),
             structure=STRUCTURES[path.structure],
         )
 
@@ -182,8 +182,12 @@ class MotionLearner:
         except ValueError as problem:
             raise SettingsError(str(problem)) from problem
 
-    def model(self) -> Model:
+    def model(self, *, limits: bool = True) -> Model:
         """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
+
+        Args:
+            limits: look for limits of the actuator in the last minutes, and keep them where they predict better.
+                This takes up to seconds; without, what was found of lag and delay holds for small commands.
 
         Raises:
             SettingsError: nothing was learned yet.
@@ -193,20 +197,25 @@ class MotionLearner:
             raise SettingsError(
                 "nothing was learned yet", advice="push inputs and poses of some seconds first"
             )
+        found = self._core.find_limits(self._settings.vehicle.track) if limits else None
         predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         students = zip(predictions, model.students, strict=True)
         learned = Learned(
-            belief_of(model.motion, model.disturbance),
+            kept_belief(model, found),
             belief_of(model.slip, model.disturbance),
             predictions,
             baseline,
             {p.horizon: tail_of(student) for p, student in students if len(p)},
             None,
             tuple(basis.name for basis in self._settings.bases()),
+            None if found is None else found.search,
         )
         judgement = judgement_of(learned)
         known = identified(learned.identifiable, wheels_logged=self._wheels)
         verdict = give_verdict(judgement, known, LogFacts(input_name=self._input))
+        kept = learned.kept.limits is not None
+        of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)
+        verdict = replace(verdict, advice=(*verdict.advice, *of_limits))
         slowest, fastest, right, left = model.range
         facts = ModelFacts(
             input_name=self._input,

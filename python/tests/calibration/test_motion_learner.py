@@ -55,6 +55,8 @@ def test_what_is_pushed_is_what_calibrate_learns(log: Log, input_name: str) -> N
     assert model.content.covariance == learned.content.covariance
     assert model.content.noise == learned.content.noise
     assert model.content.verdict.held_out == learned.content.verdict.held_out
+    assert model.content.verdict.advice == learned.content.verdict.advice
+    assert model.content.limits == learned.content.limits
     assert model.content.range == learned.content.range
 
 
@@ -62,10 +64,24 @@ def test_a_path_starts_at_the_newest_measurement_and_says_how_sure_it_is(log: Lo
     learner = pushed(log, "wheel")
     path = learner.predict([(60.1, 0.5, 0.2)], horizon=5.0)
     assert path.start == pytest.approx(max(t for t, _, _ in rows_of(log)))
-    assert path.t[-1] == pytest.approx(path.start + 5.0)
-    assert path.poses.shape == (len(path.t), 3)
+    assert path.t[-1] == path.start + 5.0
+    assert len(path.t) == 10
+    assert np.all(np.diff(path.t) > 0.4)
+    assert path.poses.shape == (10, 3)
+    assert path.covariance.shape == (10, 3, 3)
     assert np.linalg.eigvalsh(path.covariance).min() > 0.0
-    assert path.dof > 2.0
+    assert np.all(path.dof > 2.0)
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_each_pose_of_a_path_is_where_a_shorter_path_ends(log: Log, input_name: str) -> None:
+    learner, inputs = pushed(log, input_name), [(60.1, 0.5, 0.2), (61.53, 0.2, -0.4)]
+    path = learner.predict(inputs, horizon=5.0)
+    for i, t in enumerate(path.t):
+        shorter = learner.predict(inputs, horizon=t - path.start)
+        np.testing.assert_allclose(shorter.poses[-1], path.poses[i], atol=1e-9)
+        np.testing.assert_allclose(shorter.covariance[-1], path.covariance[i], atol=1e-9)
+        assert shorter.dof[-1] == path.dof[i]
 
 
 def test_asking_changes_nothing_that_is_learned(log: Log) -> None:
@@ -78,7 +94,7 @@ def test_asking_changes_nothing_that_is_learned(log: Log) -> None:
         if i % 211 == 210:
             asked.predict([(t + 0.1, 0.4, -0.2)], horizon=2.0)
         if i % 997 == 996 and t > 10.0:
-            asked.model()
+            asked.model(limits=False)
     assert asked.model().content == silent.model().content
 
 
@@ -92,7 +108,7 @@ def test_what_is_wrong_is_said_and_changes_nothing(log: Log) -> None:
             learner.push_wheels(t - 30.0, 1.0, 0.0)
             learner.push_wheels(float("inf"), 1e300, 0.0)
     events = learner.events()
-    assert {event.kind for event in events} == {"segment-learned", "rejected", "held-out"}
+    assert {event.kind for event in events} == {"segment-learned", "rejected", "held-out", "refit"}
     assert {event.reason for event in events if event.kind == "rejected"} >= {
         "a number is missing or impossible",
         "the stamp goes backward",

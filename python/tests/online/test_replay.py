@@ -92,14 +92,14 @@ def differences(path: Path, input_name: str, log: Log, horizons: tuple[float, ..
 
 def difference(p: Predictions, i: int, other: _core.PredictedPath) -> list[str]:
     pairs = {
-        "pose": (p.pose[i], other.pose),
-        "covariance": (p.covariance[i], other.covariance),
-        "inflation": (p.growth[i], other.student.inflation),
-        "dof": (p.dof[i], other.student.dof),
+        "pose": (p.pose[i], other.poses[-1]),
+        "covariance": (p.covariance[i], other.covariances[-1]),
+        "inflation": (p.growth[i], other.students[-1].inflation),
+        "dof": (p.dof[i], other.students[-1].dof),
         "structure": (p.structure[i], other.structure),
     }
     unequal = [name for name, (a, b) in pairs.items() if not np.array_equal(a, b)]
-    largest = np.abs(p.pose[i] - other.pose).max()
+    largest = np.abs(p.pose[i] - other.poses[-1]).max()
     where = f"run {p.run[i]}, t = {p.t_start[i]}, horizon {p.horizon}"
     return [f"{where}: {', '.join(unequal)} (pose by {largest:g})"] if unequal else []
 

@@ -30,6 +30,8 @@ class CausalFilter {
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
   /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
   bool refit_slice();
+  /// Whether a refit took effect with the last segment.
+  bool refitted() const { return refitted_; }
 
   /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
   /// robot's, not the ground's: they stay as learned.
@@ -51,7 +53,7 @@ class CausalFilter {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
       self.full_);
-    a(self.slip_std_, self.stated_, self.refit_);
+    a(self.slip_std_, self.stated_, self.refit_, self.refitted_);
   }
 
  private:
@@ -78,6 +80,7 @@ class CausalFilter {
   Eigen::VectorXd slip_std_;
   Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
   std::optional<Refit> refit_;
+  bool refitted_ = false;
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

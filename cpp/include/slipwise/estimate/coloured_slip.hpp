@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -66,6 +67,10 @@ class ColouredSlip {
   /// The same of a segment that is linearised `at` the posterior's mean.
   ExpectedPose predict_at(const MotionPosterior& posterior, const SlipNow& now, const SegmentLinearization& at,
                           const Segment& segment) const;
+  /// The same of a segment's beginnings, of which the last is all of it.
+  std::vector<ExpectedPose> predict_along(const MotionPosterior& posterior, const SlipNow& now,
+                                          std::span<const SegmentLinearization> beginnings,
+                                          const Segment& segment) const;
   /// The same, and what is predicted where nothing recent is known.
   ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& driven) const;
 
@@ -79,8 +84,8 @@ class ColouredSlip {
   }
 
  private:
-  ExpectedPose with_deviation(const SegmentLinearization& at, const ExpectedPose& without, const SlipNow& now,
-                              const WanderingTerms& terms, const Segment& segment) const;
+  ExpectedPose expected(const MotionPosterior& posterior, const SlipNow& now, const WanderingTerms& terms,
+                        const SegmentLinearization& at, const std::array<double, 2>& span) const;
 
   WanderLaw law_;
   WeighingSettings weighing_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstddef>
 #include <deque>
 #include <optional>
@@ -55,6 +56,8 @@ class ModelAverage {
 
   /// Does a bounded slice of the models' refits; whether there was any to do. Results do not depend on it.
   bool refit_slice();
+  /// Whether a refit took effect with the last segment.
+  bool refitted() const { return std::ranges::any_of(filters_, &CausalFilter::refitted); }
 
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);

@@ -46,6 +46,8 @@ class CascadedModel {
   const std::shared_ptr<const MotionPosterior>& posterior() const { return posterior_; }
   /// The strongest test for a change of terrain since the last `refresh`.
   const ChangeTest& change() const { return change_; }
+  /// Whether a refit of the slip took effect since the last `refresh` but one.
+  bool refitted() const { return refitted_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
   void forget(double fraction) { slip_.forget(fraction); }
 
@@ -54,7 +56,7 @@ class CascadedModel {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.noise_, self.slip_, self.actuator_, self.score_, self.places_of_slip_, self.places_of_actuator_,
       self.change_);
-    a(self.change_since_, self.posterior_);
+    a(self.change_since_, self.refitted_, self.refitted_since_, self.posterior_);
   }
 
  private:
@@ -67,6 +69,8 @@ class CascadedModel {
   std::vector<Eigen::Index> places_of_actuator_;
   ChangeTest change_;
   ChangeTest change_since_;
+  bool refitted_ = false;
+  bool refitted_since_ = false;
   std::shared_ptr<const MotionPosterior> posterior_;
 };
 

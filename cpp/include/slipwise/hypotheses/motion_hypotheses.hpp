@@ -41,6 +41,7 @@ struct StructureUpdate {
   double nis = 0.0;     ///< of the segment before it was learned
   double weight = 1.0;  ///< how much it counted: 0 rejected
   ChangeTest change = {};
+  bool refitted = false;  ///< whether a refit of its filters took effect
 };
 
 /// Runs all structures causally and weights them by their predictive likelihood, as bases are weighted. Predictions are

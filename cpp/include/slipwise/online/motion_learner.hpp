@@ -30,8 +30,8 @@ struct LearnerSettings {
 
 /// What a learner has to say. Which fields are meant depends on the kind.
 struct LearnerEvent {
-  enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut };
-  friend constexpr std::size_t enumerators(Kind /*type*/) { return 4; }
+  enum class Kind : std::uint8_t { SegmentLearned, Rejected, TerrainChange, HeldOut, Refit };
+  friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
   Kind kind;
   std::size_t run;  ///< in the order in which runs were started
   double t;         ///< [s]
@@ -46,13 +46,12 @@ struct LearnerEvent {
 
 /// A path that is predicted from now on.
 struct PredictedPath {
-  double start;                ///< [s]
-  std::vector<double> t;       ///< after the start, [N] s; the last is the horizon
-  std::vector<Pose2> poses;    ///< of the sensor in the frame of its pose at the start
-  Eigen::Vector3d pose;        ///< at the horizon
-  Eigen::Matrix3d covariance;  ///< there, of a Student t, its inflation included
-  StudentT student;            ///< of the nearest horizon whose errors are known
-  Structure structure;         ///< that predicts
+  double start;                              ///< [s]
+  std::vector<double> t;                     ///< [N] s, the last at the horizon
+  std::vector<Eigen::Vector3d> poses;        ///< [N] of the sensor in the frame of its pose at the start
+  std::vector<Eigen::Matrix3d> covariances;  ///< [N] of a Student t each, its inflation included
+  std::vector<StudentT> students;            ///< [N] of the nearest horizon whose errors are known
+  Structure structure;                       ///< that predicts
 };
 
 /// What was learned so far.

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -49,5 +51,11 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
 /// The same by the slip parameters alone, which come first: cheaper where the chain is learned too.
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputTrack& inputs, const Segment& segment);
+/// As `linearize_segment`, of the segment's beginnings, each longer by at least a `parts`-th part of it, up to all of it: at the ends of
+/// steps, so that there are as many as `parts` where steps are short.
+std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
+                                                       const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                                                       const InputTrack& inputs, const Segment& segment,
+                                                       std::size_t parts);
 
 }  // namespace slipwise
