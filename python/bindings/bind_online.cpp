@@ -113,7 +113,8 @@ void bind_recordings(nb::module_& m) {
           },
           "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
-          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where unknown, or "
+          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
+          "unknown, or "
           "both left away.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)

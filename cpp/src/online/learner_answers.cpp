@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kLongest = 3600.0;    // [s] horizon
 constexpr double kFastestInput = 1e3;  // [m/s, rad/s]
-constexpr std::size_t kPathPoses = 10;  // of a prediction
+constexpr std::size_t kPathPoses = 5;  // of a prediction
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -77,22 +77,22 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   work_until(stream_.newest() - kReady);
   const Knowledge& known = known_at(stream_.newest() - std::max(embargo, kReady));
   const DrivenSegment ahead = stream_.segment_ahead(horizon, future);
-  SlipNow slip = recent_slip_.now(known, recent_before(stream_.newest()));
+  SlipNow slip = recent_slip_.after(*known.disturbance, known.motion, recent_before(stream_.newest()));
   if (settings_.learn_disturbance) {
     for (const DrivenSegment& segment : complete_now()) {
       known.disturbance->follow(*known.motion, slip, segment);
     }
   }
-  const auto beginnings = linearize_beginnings(known.motion->model, known.motion->estimate.mean, ahead.inputs,
-                                               ahead.segment, kPathPoses);
+  const auto beginnings =
+      linearize_beginnings(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},
                      .covariances = {},
                      .students = {},
                      .structure = known.motion->structure};
-  for (std::size_t i = 0;
-       const ExpectedPose& expected : known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment)) {
+  for (std::size_t i = 0; const ExpectedPose& expected :
+                          known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment)) {
     path.t.push_back(i + 1 < beginnings.size() ? beginnings[i].path.times.back() : ahead.segment.end);
     path.students.push_back(student_for(path.t.back() - path.start, known.motion->structure));
     path.poses.push_back(expected.pose);

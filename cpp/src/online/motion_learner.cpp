@@ -75,6 +75,7 @@ void MotionLearner::start_run() {
   before_run_ = std::max(before_run_, stream_.newest());
   stream_.start_run();
   recent_.clear();
+  recent_slip_.restart();
   runs_ += run_begins_ ? 0 : 1;
   run_begins_ = true;
 }
@@ -192,7 +193,8 @@ bool MotionLearner::work() {
 /// So that a prediction need not find out where slip is now.
 void MotionLearner::prepare_prediction() {
   if (settings_.learn_disturbance) {
-    recent_slip_.now(known_at(stream_.newest() - kReady), recent_before(stream_.newest()));
+    const Knowledge& known = known_at(stream_.newest() - kReady);
+    recent_slip_.after(*known.disturbance, known.motion, recent_before(stream_.newest()));
   }
 }
 
@@ -223,8 +225,9 @@ void MotionLearner::work_through() {
 /// How slip differs now is learned about what was known before the segment.
 void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
   if (settings_.learn_disturbance) {
-    const MotionPosterior& before = *known_.back().slip;
-    disturbance_.learn(before, slip_after(disturbance_, before, recent_before(segment.segment.start)), segment);
+    const auto& before = known_.back().slip;
+    const SlipNow& slip = recent_slip_.after(disturbance_, before, recent_before(segment.segment.start));
+    disturbance_.learn(*before, slip, segment);
   }
 }
 
@@ -306,7 +309,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   const double horizon = settings_.stream.horizons[target.horizon];
   const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
   const SegmentList recent = recent_before(segment.start);
-  const SlipNow slip = slip_after(*known.disturbance, *known.motion, recent);
+  const SlipNow& slip = recent_slip_.after(*known.disturbance, known.motion, recent);
   const auto [expected, nominal] = known.disturbance->predict_both(*known.motion, slip, driven);
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;

@@ -3,35 +3,37 @@
 #include "slipwise/online/recent_slip.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
+#include <utility>
 
 namespace slipwise {
 namespace {
 
-double end_of(const DrivenSegment* segment) { return segment->segment.end; }
+constexpr std::size_t kKept = 8;  // of several horizons, of the prediction to come, and of what is learned next
 
 }  // namespace
 
-SlipNow slip_after(const ColouredSlip& disturbance, const MotionPosterior& motion, const SegmentList& segments) {
-  SlipNow slip = disturbance.now(motion, {});
+const SlipNow& RecentSlip::after(const ColouredSlip& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
+                                 const SegmentList& segments) {
+  const auto end_of = [](const DrivenSegment* segment) { return segment->segment.end; };
+  const auto place = std::ranges::find_if(found_, [&](const Found& each) {
+    return each.motion == motion && std::ranges::equal(each.ends, segments, {}, {}, end_of);
+  });
+  if (place != found_.end()) {
+    std::rotate(found_.begin(), place, std::next(place));
+    return found_.front().slip;
+  }
+  Found found{.motion = motion, .ends = {}, .slip = disturbance.now(*motion, {})};
   for (const DrivenSegment* segment : segments) {
-    disturbance.follow(motion, slip, *segment);
+    disturbance.follow(*motion, found.slip, *segment);
+    found.ends.push_back(end_of(segment));
   }
-  return slip;
-}
-
-bool RecentSlip::has(const Knowledge& known, const SegmentList& learned) const {
-  return motion_ == known.motion && std::ranges::equal(ends_, learned, {}, {}, end_of);
-}
-
-const SlipNow& RecentSlip::now(const Knowledge& known, const SegmentList& learned) {
-  if (!has(known, learned)) {
-    slip_ = slip_after(*known.disturbance, *known.motion, learned);
-    motion_ = known.motion;
-    ends_.clear();
-    std::ranges::transform(learned, std::back_inserter(ends_), end_of);
+  found_.push_front(std::move(found));
+  if (found_.size() > kKept) {
+    found_.pop_back();
   }
-  return slip_;
+  return found_.front().slip;
 }
 
 }  // namespace slipwise

@@ -340,6 +340,25 @@ std::vector<DrivenSegment> SegmentStream::pending_segments() const {
   return found;
 }
 
+std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>& future, double end) const {
+  std::vector<InputSample> all;
+  std::optional<BodyTwist> held = inputs().known_at(newest_);
+  double since = newest_;
+  const auto repeat_until = [&](double t) {
+    for (double next = since + settings_.unknown_after; held && next < t; next += settings_.unknown_after) {
+      all.push_back({next, *held});
+    }
+  };
+  for (const InputSample& sample : future) {
+    repeat_until(std::min(sample.t, end));
+    all.push_back(sample);
+    held = sample.twist;
+    since = std::max(sample.t, newest_);
+  }
+  repeat_until(end);
+  return all;
+}
+
 DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
   const Tilt tilt = tilt_at(newest_);
   Segment segment{.start = newest_, .end = newest_ + horizon, .gx = tilt.gx, .gy = tilt.gy, .sensor = settings_.sensor};
@@ -349,7 +368,7 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
   }
   const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
   const double back = by_wheels ? kWheelsBack : kLookBack;
-  return {.inputs = inputs().slice(segment.start - back, segment.end, kind, future),
+  return {.inputs = inputs().slice(segment.start - back, segment.end, kind, repeated(future, segment.end)),
           .segment = std::move(segment),
           .known_at = newest_};
 }

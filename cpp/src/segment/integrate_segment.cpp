@@ -130,14 +130,14 @@ struct SensitivitySums {
   }
 };
 
-/// By the slip parameters, and by the others too where these are asked for. After each step but the last, `see` is
-/// handed the path, the steps and the sums so far.
-template <class See>
+/// By the slip parameters, and by the others too where `kAll`. After each step but the last, `see` is handed the path,
+/// the steps and the sums so far.
+template <bool kAll, class See>
 SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                const InputTrack& inputs, const Segment& segment, bool all, const See& see) {
+                                const InputTrack& inputs, const Segment& segment, const See& see) {
   model.check(parameters);
   const CommandChain chain = model.chain(parameters);
-  const bool by_chain = all && model.chain_size() > 0;
+  const bool by_chain = kAll && model.chain_size() > 0;
   const auto alpha = parameters.head(model.slip_size());
   DriveSteps drive = by_chain ? linearize_drive_steps(inputs, chain, window_of(segment))
                               : drive_steps(inputs, chain, window_of(segment));
@@ -164,7 +164,7 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   }
   SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
   const Pose2 predicted = finished.sensor_motion();
-  auto by_parameter = all ? sums.at(finished, model, chain) : sums.by_slip(finished);
+  auto by_parameter = kAll ? sums.at(finished, model, chain) : sums.by_slip(finished);
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
 
@@ -199,12 +199,12 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment) {
-  return linearized(model, parameters, inputs, segment, true, see_nothing);
+  return linearized<true>(model, parameters, inputs, segment, see_nothing);
 }
 
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputTrack& inputs, const Segment& segment) {
-  return linearized(model, parameters, inputs, segment, false, see_nothing);
+  return linearized<false>(model, parameters, inputs, segment, see_nothing);
 }
 
 std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
@@ -216,17 +216,19 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
   const double part = (segment.end - segment.start) / static_cast<double>(parts);
   double next = segment.start + part;
   std::vector<SegmentLinearization> found;
-  auto whole = linearized(model, parameters, inputs, segment, true,
-                          [&](const GrowingPath& path, std::span<const DriveStep> steps, const SensitivitySums& sums) {
-                            if (path.time() < next - kRounding || path.time() > segment.end - part + kRounding) {
-                              return;
-                            }
-                            next = path.time() + part;
-                            SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
-                            const Pose2 predicted = so_far.sensor_motion();
-                            auto by_parameter = sums.at(so_far, model, chain);
-                            found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
-                          });
+  const auto see = [&](const GrowingPath& path, std::span<const DriveStep> steps, const SensitivitySums& sums) {
+    if (path.time() < next - kRounding) {
+      return;
+    }
+    while (next <= path.time() + kRounding) {
+      next += part;
+    }
+    SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
+    const Pose2 predicted = so_far.sensor_motion();
+    auto by_parameter = sums.at(so_far, model, chain);
+    found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
+  };
+  auto whole = linearized<true>(model, parameters, inputs, segment, see);
   found.push_back(std::move(whole));
   return found;
 }

@@ -65,10 +65,10 @@ def test_a_path_starts_at_the_newest_measurement_and_says_how_sure_it_is(log: Lo
     path = learner.predict([(60.1, 0.5, 0.2)], horizon=5.0)
     assert path.start == pytest.approx(max(t for t, _, _ in rows_of(log)))
     assert path.t[-1] == path.start + 5.0
-    assert len(path.t) == 10
-    assert np.all(np.diff(path.t) > 0.4)
-    assert path.poses.shape == (10, 3)
-    assert path.covariance.shape == (10, 3, 3)
+    assert len(path.t) == 5
+    assert np.all(np.diff(path.t) > 0.8)
+    assert path.poses.shape == (5, 3)
+    assert path.covariance.shape == (5, 3, 3)
     assert np.linalg.eigvalsh(path.covariance).min() > 0.0
     assert np.all(path.dof > 2.0)
 

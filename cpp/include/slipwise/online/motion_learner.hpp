@@ -150,7 +150,7 @@ class MotionLearner {
   std::deque<WheelSegment> wheel_segments_;     ///< the last, in which limits are looked for
   std::deque<WheelSegment> twist_segments_;     ///< the same, of twists between poses
   std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
-  RecentSlip recent_slip_;                      ///< for the next prediction
+  RecentSlip recent_slip_;                      ///< found again from the rest where it is loaded
   std::vector<HorizonErrors> errors_;
   std::vector<std::deque<HeldOutPrediction>> held_out_;
   std::deque<LearnerEvent> events_;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where slip is now, kept from one prediction to the next.
+// Where slip was of late, kept from one prediction to the next.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <vector>
 
 #include "slipwise/estimate/coloured_slip.hpp"
-#include "slipwise/online/held_out.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -14,23 +14,24 @@ namespace slipwise {
 /// Segments in the order of time, kept elsewhere.
 using SegmentList = std::vector<const DrivenSegment*>;
 
-/// Where slip is after some segments.
-SlipNow slip_after(const ColouredSlip& disturbance, const MotionPosterior& motion, const SegmentList& segments);
-
-/// What the last segments say of the slip now changes with a segment, not with a prediction: it is kept, so that a
-/// prediction costs little more than its own path. Results are those of `slip_after`.
+/// What the last segments say of the slip now changes with a segment or with what is known, not with a prediction: what
+/// was found of late is kept, so that a prediction costs little more than its own path.
 class RecentSlip {
  public:
-  /// Whether `now` would find what it needs.
-  bool has(const Knowledge& known, const SegmentList& learned) const;
-  /// Where slip is after the `learned` segments, which are the last and do not change any more.
-  const SlipNow& now(const Knowledge& known, const SegmentList& learned);
+  /// Where slip is after `segments`, the last of a run, by what is known of the motion: good until the next call.
+  const SlipNow& after(const ColouredSlip& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
+                       const SegmentList& segments);
+  /// Another run begins: segments of one run are told apart by their ends.
+  void restart() { found_.clear(); }
 
  private:
-  /// Segments of one run are told apart by their ends.
-  std::vector<double> ends_;
-  std::shared_ptr<const MotionPosterior> motion_;
-  SlipNow slip_;
+  struct Found {
+    std::shared_ptr<const MotionPosterior> motion;
+    std::vector<double> ends;  ///< of the segments [s]
+    SlipNow slip;
+  };
+
+  std::deque<Found> found_;  ///< the last one that was asked for comes first
 };
 
 }  // namespace slipwise

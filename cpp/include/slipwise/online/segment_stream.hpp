@@ -93,7 +93,8 @@ class SegmentStream {
 
   /// The segments that are complete with all that was pushed, were nothing late.
   std::vector<DrivenSegment> pending_segments() const;
-  /// The segment from now on over `horizon` [s], driven by `future` inputs.
+  /// The segment from now on over `horizon` [s], driven by `future` inputs. What is held for longer than any input that
+  /// was measured is repeated, so that there are poses on the way.
   DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
 
   /// Names what is saved.
@@ -101,8 +102,8 @@ class SegmentStream {
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.commands_, self.wheels_,
       self.wheels_ever_, self.range_);
-    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_, self.wheel_timer_,
-      self.learned_, self.slip_);
+    a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
+      self.wheel_timer_, self.learned_, self.slip_);
     a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_);
   }
 
@@ -127,6 +128,7 @@ class SegmentStream {
   void trim();
   const InputHistory& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
   const InputHistory& gate_inputs(double t) const;
+  std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
   DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;
   void set_actuator_state(Segment& segment) const;
   MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;

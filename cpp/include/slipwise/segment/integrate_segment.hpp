@@ -20,11 +20,11 @@ enum class Integrator : std::uint8_t { Exact, Rk4 };
 
 /// The robot's path seen from its start.
 struct SegmentPath {
-  std::vector<double> times;              ///< [steps + 1], [s], in pose stamps
-  std::vector<Pose2> poses;               ///< [steps + 1], the first is the origin
-  std::vector<Eigen::Vector3d> tangents;  ///< [steps], twist * duration with slip
-  std::vector<DriveStep> drive;           ///< [steps], the drive without slip
-  Pose2 sensor;                           ///< pose in base_link of the sensor that measures the path
+  std::vector<double> times;                        ///< [steps + 1], [s], in pose stamps
+  std::vector<Pose2> poses;                         ///< [steps + 1], the first is the origin
+  std::vector<Eigen::Vector3d> tangents;            ///< [steps], twist * duration with slip
+  std::vector<DriveStep> drive;                     ///< [steps], the drive without slip
+  Pose2 sensor;                                     ///< pose in base_link of the sensor that measures the path
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
 
   /// The sensor's motion, X^-1 T X: what `Segment::measured` is compared with.
@@ -51,8 +51,8 @@ SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Re
 /// The same by the slip parameters alone, which come first: cheaper where the chain is learned too.
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputTrack& inputs, const Segment& segment);
-/// As `linearize_segment`, of the segment's beginnings, each longer by at least a `parts`-th part of it, up to all of it: at the ends of
-/// steps, so that there are as many as `parts` where steps are short.
+/// As `linearize_segment`, of the segment's beginnings: up to the first step's end after each `parts`-th of its time,
+/// the last up to its own end.
 std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                                        const InputTrack& inputs, const Segment& segment,

@@ -18,14 +18,14 @@ struct PoseStdRatio {
 };
 
 struct Segment {
-  double start;                           ///< stamp of the first pose [s]
-  double end;                             ///< stamp of the second pose [s]
-  Pose2 measured = {};                    ///< T_start_end, heading unwrapped
-  std::optional<BodyTwist> initial = {};  ///< the drive's measured twist at the start, or where `known` ends
-  double gx = 0.0;                        ///< body-frame gravity at the start [m/s^2]
-  double gy = 0.0;                        ///< [m/s^2]
-  std::optional<KnownDrive> known = {};   ///< what was measured of the drive; `initial` is where it ends
-  Pose2 sensor = {};                      ///< known pose in base_link of what `measured` is the motion of
+  double start;                                     ///< stamp of the first pose [s]
+  double end;                                       ///< stamp of the second pose [s]
+  Pose2 measured = {};                              ///< T_start_end, heading unwrapped
+  std::optional<BodyTwist> initial = {};            ///< the drive's measured twist at the start, or where `known` ends
+  double gx = 0.0;                                  ///< body-frame gravity at the start [m/s^2]
+  double gy = 0.0;                                  ///< [m/s^2]
+  std::optional<KnownDrive> known = {};             ///< what was measured of the drive; `initial` is where it ends
+  Pose2 sensor = {};                                ///< known pose in base_link of what `measured` is the motion of
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the first and the second pose
 };
 
