@@ -2,8 +2,10 @@
 // One measurement at a time: what is learned does not depend on how streams interleave, nor on being asked.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "slipwise/online/motion_learner.hpp"
 #include "streamed_robot.hpp"
@@ -190,6 +192,31 @@ TEST_CASE("a robot whose turns slip is learned") {
       CHECK(slip.estimate.mean[i] == doctest::Approx(-1.0 / 3.0).epsilon(0.05));
     }
   }
+}
+
+TEST_CASE("poses that are said to be poor spoil less, and poses said to be alike are poses without a word") {
+  Recording run = streamed_robot(4, 2.0 * kSeconds);
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < run.poses.size(); ++i) {
+    const bool poor = (i / 100) % 3 == 2;  // ten seconds of thirty
+    run.poses[i].yaw += (poor ? 0.05 : 0.0) * normal(random);
+    run.poses[i].std = {.xy = 0.005, .yaw = poor ? 0.05 : 0.003};
+  }
+  Recording silent = run;
+  std::ranges::for_each(silent.poses, [](MeasuredPose& pose) { pose.std = {}; });
+  Recording alike = run;
+  std::ranges::for_each(alike.poses, [](MeasuredPose& pose) { pose.std = {.xy = 3.0, .yaw = 1e6}; });
+  check_same(learned(silent, false), learned(alike, false));
+  const auto uncertainty = [](const Recording& recording) {
+    const Estimate& estimate = learned(recording, false).known.slip->estimate;
+    return estimate.covariance.trace();
+  };
+  CHECK(uncertainty(run) < uncertainty(silent));
+  Recording impossible = silent;
+  impossible.poses[50].std.yaw = -1.0;
+  const RejectionCounts rejected = learned(impossible, false).rejected;
+  CHECK(rejected[static_cast<std::size_t>(Stream::Pose)][static_cast<std::size_t>(Reason::NotFinite)] == 1);
 }
 
 TEST_CASE("forgetting makes slip less sure at once, and a fraction beyond 0 to 1 is refused") {

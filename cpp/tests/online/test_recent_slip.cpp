@@ -2,7 +2,10 @@
 // What is kept of the slip now is what would be found again, and no longer than it holds.
 #include <doctest/doctest.h>
 
+#include <cstddef>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "simulated_drive.hpp"
 #include "slipwise/online/recent_slip.hpp"
@@ -19,10 +22,7 @@ struct Setting {
                       .prior_std = Eigen::Vector2d(0.3, 0.3),
                       .noise = {.pose_std_xy = 0.02, .pose_std_yaw = 0.02},
                       .noise_scale = Eigen::Vector3d::Ones()});
-  Knowledge known{.until = 0.0,
-                  .motion = motion,
-                  .slip = motion,
-                  .disturbance = std::make_shared<const ColouredSlip>(ColouredSlipSettings{})};
+  ColouredSlip disturbance{ColouredSlipSettings{}};
   std::vector<DrivenSegment> segments;
 
   Setting() {
@@ -31,34 +31,47 @@ struct Setting {
     }
   }
 
-  ExpectedPose next(const SlipNow& slip) const { return known.disturbance->predict(*known.motion, slip, segments[5]); }
+  ExpectedPose next(const SlipNow& slip) const { return disturbance.predict(*motion, slip, segments[5]); }
+  SlipNow at_once(std::size_t count) const { return disturbance.now(*motion, std::span(segments).first(count)); }
 };
 
 }  // namespace
 
-TEST_CASE("what was found is kept until a segment or the posterior changes, and is what would be found again") {
+TEST_CASE("where slip was is what is found of all segments at once, whatever was asked for before") {
   Setting s;
   const SegmentList three{&s.segments[0], &s.segments[1], &s.segments[2]};
   const SegmentList four{&s.segments[0], &s.segments[1], &s.segments[2], &s.segments[3]};
   RecentSlip kept;
-  CHECK(!kept.has(s.known, three));
-  const ExpectedPose first = s.next(kept.now(s.known, three));
-  CHECK(kept.has(s.known, three));
-  CHECK(!kept.has(s.known, four));
-  CHECK(s.next(kept.now(s.known, three)).pose == first.pose);
-  CHECK(first.pose == s.next(slip_after(*s.known.disturbance, *s.known.motion, three)).pose);
-  CHECK(s.next(kept.now(s.known, four)).pose != first.pose);
-  s.known.motion = std::make_shared<const MotionPosterior>(*s.motion);
-  CHECK(!kept.has(s.known, four));
+  for (int i = 0; i < 3; ++i) {
+    CHECK(s.next(kept.after(s.disturbance, s.motion, three)).pose == s.next(s.at_once(3)).pose);
+    CHECK(s.next(kept.after(s.disturbance, s.motion, four)).pose == s.next(s.at_once(4)).pose);
+    CHECK(s.next(kept.after(s.disturbance, s.motion, three)).covariance == s.next(s.at_once(3)).covariance);
+  }
 }
 
-TEST_CASE("segments followed one by one are those learned of at once") {
+TEST_CASE("where slip was is kept for the posterior that was asked about, until another run begins") {
   Setting s;
-  const SlipNow at_once = s.known.disturbance->now(*s.motion, std::span(s.segments).first(3));
-  const SlipNow followed =
-      slip_after(*s.known.disturbance, *s.motion, {&s.segments[0], &s.segments[1], &s.segments[2]});
-  CHECK(s.next(at_once).pose == s.next(followed).pose);
-  CHECK(s.next(at_once).covariance == s.next(followed).covariance);
+  const SegmentList three{&s.segments[0], &s.segments[1], &s.segments[2]};
+  RecentSlip kept;
+  const SlipNow* first = &kept.after(s.disturbance, s.motion, three);
+  CHECK(&kept.after(s.disturbance, s.motion, three) == first);
+  MotionPosterior other = *s.motion;
+  other.estimate.mean *= 1.5;
+  const ExpectedPose by_other =
+      s.next(kept.after(s.disturbance, std::make_shared<const MotionPosterior>(other), three));
+  CHECK(by_other.pose != s.next(kept.after(s.disturbance, s.motion, three)).pose);
+  // Segments of another run may end at the same stamps.
+  const SegmentList again{&s.segments[3], &s.segments[4], &s.segments[5]};
+  std::vector<DrivenSegment> same_ends;
+  for (std::size_t i = 0; i < 3; ++i) {
+    same_ends.push_back(*again[i]);
+    same_ends.back().segment.end = three[i]->segment.end;
+    same_ends.back().segment.start = three[i]->segment.start;
+  }
+  kept.restart();
+  const SegmentList there{&same_ends[0], &same_ends[1], &same_ends[2]};
+  CHECK(s.next(kept.after(s.disturbance, s.motion, there)).pose ==
+        s.next(s.disturbance.now(*s.motion, same_ends)).pose);
 }
 
 }  // namespace slipwise

@@ -110,6 +110,34 @@ TEST_CASE("the derivative where both channels have the same delay is the limit o
   }
 }
 
+TEST_CASE("a segment's beginnings are linearised as segments that end there, and the last is all of it") {
+  const Basis basis = named_basis("odd-even-10");
+  for (const Case& chain : sample_chains()) {
+    const MotionModel model(basis, chain.learned);
+    const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), chain.chain);
+    for (const tests::SampleDrive& drive : tests::sample_drives()) {
+      CAPTURE(chain.name);
+      CAPTURE(drive.name);
+      const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+      const auto beginnings = linearize_beginnings(model, parameters, inputs, kSegment, 5);
+      REQUIRE(beginnings.size() == 5);
+      for (std::size_t i = 0; i < 5; ++i) {
+        Segment part = kSegment;
+        part.end = i < 4 ? beginnings[i].path.times.back() : kSegment.end;
+        const double wanted = kSegment.start + 0.2 * (kSegment.end - kSegment.start) * static_cast<double>(i + 1);
+        CHECK(part.end > wanted - 1e-9);
+        CHECK(part.end < wanted + 0.1);
+        const auto alone = linearize_segment(model, parameters, inputs, part);
+        CHECK((beginnings[i].predicted.vector() - alone.predicted.vector()).norm() < 1e-9);
+        CHECK(beginnings[i].path.poses.size() == beginnings[i].path.drive.size() + 1);
+        // The end of a step lies where a delayed input changes: there the derivative by delays has a kink.
+        CHECK((beginnings[i].by_parameter - alone.by_parameter).leftCols(model.slip_size()).norm() < 1e-9);
+      }
+      CHECK(beginnings.back().by_parameter == linearize_segment(model, parameters, inputs, kSegment).by_parameter);
+    }
+  }
+}
+
 TEST_CASE("linearised segments predict what integration predicts") {
   for (const Basis& basis : tests::all_bases()) {
     for (const Case& chain : sample_chains()) {
