@@ -83,7 +83,7 @@ lint-headers: $(STAMPS)/dev
 
 lint-tidy: $(STAMPS)/dev
 	@cmake --preset tidy > /dev/null
-	@cmake --build --preset tidy
+	@run-clang-tidy.py -quiet -p build/tidy '$(CURDIR)/cpp/src/'
 
 format: $(STAMPS)/dev ## lay out all Python and C++ sources
 	@ruff check --select I --fix --quiet .

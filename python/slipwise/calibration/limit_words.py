@@ -20,9 +20,7 @@ _LANES = {
 LEAST_DEAD_BAND = 1e-3  # m/s or rad/s; no drive's is less, so slower commands need not be tried
 
 
-def advice_on_limits(
-    search: _core.LimitSearch | None, *, kept: bool, wheels_logged: bool
-) -> tuple[str, ...]:
+def advice_on_limits(search: _core.LimitSearch | None, *, kept: bool, wheels_logged: bool) -> tuple[str, ...]:
     """Return what there is to say of a search for limits: nothing where there was none."""
     if search is None:
         return ()

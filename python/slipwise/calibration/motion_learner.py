@@ -101,7 +101,7 @@ class MotionLearner:
         self._wheels = True
         self._core.push_wheels(t, v, omega, vy)
 
-    def push_pose(
+    def push_pose(  # noqa: PLR0913 (a measurement has as many numbers)
         self,
         t: float,
         x: float,
@@ -186,8 +186,8 @@ class MotionLearner:
         """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
 
         Args:
-            limits: look for limits of the actuator in the last minutes, and keep them where they predict better.
-                This takes up to seconds; without, what was found of lag and delay holds for small commands.
+            limits: look for limits of the actuator in the last minutes, and keep them where they predict
+                better. This takes up to seconds; without, lag and delay stand for what limits do.
 
         Raises:
             SettingsError: nothing was learned yet.

@@ -69,8 +69,8 @@ def input_rows(inputs: Inputs | None) -> Floats:
 def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     """Return what was measured in a run, a row each in the order of the stamps.
 
-    Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame, std_xy,
-    std_yaw), with deviations of 0 where they are not known.
+    Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame,
+    std_xy, std_yaw), with deviations of 0 where they are not known.
     """
     poses = run.poses if run.poses.measured is None else run.poses.measured
     attitudes = np.empty((0, 3))

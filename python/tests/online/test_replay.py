@@ -62,11 +62,13 @@ class MovingLearner:
         self._pushed += 1
 
 
-def differences(path: Path, input_name: str, log: Log, horizons: tuple[float, ...]) -> tuple[int, list[str]]:
-    """Push a file's rows; return how many predictions were compared, and those that differ."""
+def replayed(
+    path: Path, input_name: str, log: Log, horizons: tuple[float, ...]
+) -> tuple[_core.MotionLearner, list[str]]:
+    """Push a file's rows, asking for what `evaluate` predicts; return the learner, and what differs."""
     options = EvaluationOptions(horizons=horizons, methods=("auto",))
     result = evaluate(log, input=input_name, options=options)
-    learner, compared, differing = MovingLearner(input_name, result.horizons, path), 0, list[str]()
+    learner, compared, differing = MovingLearner(input_name, horizons, path), 0, list[str]()
     names = {run.name: k for k, run in enumerate(log.runs)}
     for run in read_runs(path):
         learner.now.start_run()
@@ -87,7 +89,8 @@ def differences(path: Path, input_name: str, log: Log, horizons: tuple[float, ..
                     compared += 1
                     differing += difference(p, i, path_ahead)
     assert compared == sum(len(p) for p in result.predictions)
-    return compared, differing
+    assert compared > 0
+    return learner.now, differing
 
 
 def difference(p: Predictions, i: int, other: _core.PredictedPath) -> list[str]:
@@ -126,56 +129,32 @@ def same_model(
     assert content.range.speed + content.range.yaw_rate == list(learned.range)
 
 
-def check_predictions(
-    folder: Path, name: str, input_name: str, horizons: tuple[float, ...] = JUDGING_HORIZONS
-) -> None:
+def check(folder: Path, name: str, input_name: str) -> None:
+    """The rows give the predictions of `evaluate` and the model of `calibrate`."""
     path = folder / f"{name}.csv.gz"
-    compared, differing = differences(path, input_name, open_log(path), horizons)
-    assert compared > 0
-    assert not differing, f"{len(differing)} of {compared} predictions differ: {differing[0]}"
-
-
-def check_model(folder: Path, name: str, input_name: str) -> None:
-    path = folder / f"{name}.csv.gz"
-    learner = MovingLearner(input_name, JUDGING_HORIZONS, path)
-    for run in read_runs(path):
-        learner.now.start_run()
-        for item in run.items:
-            learner.push(item)
-    learner.now.end_run()
-    limits = learner.now.find_limits(Settings().vehicle.track)
-    same_model(calibrate(open_log(path), input=input_name).model.content, learner.now.model(), limits)
+    log = open_log(path)
+    learner, differing = replayed(path, input_name, log, JUDGING_HORIZONS)
+    assert not differing, f"{len(differing)} predictions differ: {differing[0]}"
+    limits = learner.find_limits(Settings().vehicle.track)
+    same_model(calibrate(log, input=input_name).model.content, learner.model(), limits)
 
 
 @pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
-def test_rows_pushed_one_by_one_give_the_predictions_of_evaluate(
+def test_rows_pushed_one_by_one_give_what_evaluate_and_calibrate_write(
     real_log_dir: Path, name: str, input_name: str
 ) -> None:
-    check_predictions(real_log_dir, name, input_name)
+    check(real_log_dir, name, input_name)
 
 
 def test_predictions_of_less_than_a_second_are_the_same_too(real_log_dir: Path) -> None:
-    check_predictions(real_log_dir, "warthog/grass_7_29_14h8s51", "command", horizons=(0.5, 10.0))
-
-
-@pytest.mark.parametrize(("name", "input_name"), cases(SHORT))
-def test_rows_pushed_one_by_one_give_the_model_of_calibrate(
-    real_log_dir: Path, name: str, input_name: str
-) -> None:
-    check_model(real_log_dir, name, input_name)
+    path = real_log_dir / "warthog/grass_7_29_14h8s51.csv.gz"
+    _, differing = replayed(path, "command", open_log(path), (0.5, 10.0))
+    assert not differing, differing[0]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "input_name"), cases(LONG))
-def test_rows_of_long_logs_give_the_predictions_of_evaluate(
+def test_rows_of_long_logs_give_what_evaluate_and_calibrate_write(
     real_log_dir: Path, name: str, input_name: str
 ) -> None:
-    check_predictions(real_log_dir, name, input_name)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "input_name"), cases(LONG))
-def test_rows_of_long_logs_give_the_model_of_calibrate(
-    real_log_dir: Path, name: str, input_name: str
-) -> None:
-    check_model(real_log_dir, name, input_name)
+    check(real_log_dir, name, input_name)
