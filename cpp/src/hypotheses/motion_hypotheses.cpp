@@ -205,10 +205,8 @@ ScoredSegment MotionHypotheses::predict(Structure structure) {
 
 ScoredSegment MotionHypotheses::learned(const ModelAverage& average, Structure structure) {
   const IekfUpdate& update = average.update();
-  updates_[index(structure)] = {.nis = update.nis,
-                                .weight = update.weight,
-                                .change = average.change(),
-                                .refitted = average.refitted()};
+  updates_[index(structure)] = {
+      .nis = update.nis, .weight = update.weight, .change = average.change(), .refitted = average.refitted()};
   return {update.innovation, update.innovation_covariance, update.nis};
 }
 

@@ -2,6 +2,8 @@
 // What a learner is asked: a path from now on, the model so far, the limits of the actuator.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -91,13 +93,14 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
                      .covariances = {},
                      .students = {},
                      .structure = known.motion->structure};
-  for (std::size_t i = 0; const ExpectedPose& expected :
-                          known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment)) {
-    path.t.push_back(i + 1 < beginnings.size() ? beginnings[i].path.times.back() : ahead.segment.end);
-    path.students.push_back(student_for(path.t.back() - path.start, known.motion->structure));
-    path.poses.push_back(expected.pose);
-    path.covariances.push_back(path.students.back().inflation * expected.covariance);
-    ++i;
+  std::ranges::transform(beginnings, std::back_inserter(path.t),
+                         [](const SegmentLinearization& part) { return part.path.times.back(); });
+  path.t.back() = ahead.segment.end;
+  const auto along = known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment);
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    path.students.push_back(student_for(path.t[i] - path.start, known.motion->structure));
+    path.poses.push_back(along[i].pose);
+    path.covariances.emplace_back(path.students.back().inflation * along[i].covariance);
   }
   return path;
 }

@@ -345,8 +345,10 @@ std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>&
   std::optional<BodyTwist> held = inputs().known_at(newest_);
   double since = newest_;
   const auto repeat_until = [&](double t) {
-    for (double next = since + settings_.unknown_after; held && next < t; next += settings_.unknown_after) {
+    double next = since + settings_.unknown_after;
+    while (held && next < t) {
       all.push_back({next, *held});
+      next += settings_.unknown_after;
     }
   };
   for (const InputSample& sample : future) {

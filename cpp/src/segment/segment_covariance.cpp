@@ -78,7 +78,8 @@ Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen
 
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std_ratio), scale);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std_ratio),
+                           scale);
 }
 
 }  // namespace slipwise
