@@ -85,6 +85,7 @@ def calibrate(
         log.left_out + windows.left_out,
         log.notes,
         smooth_windows(learned.kept, windows, settings) if smooth else None,
+        learned.predictions if settings.estimator == AVERAGE else (),
     )
 
 

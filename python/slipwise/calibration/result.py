@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise.calibration.identifiability import LookAlike
+from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
 from slipwise.frames import data_frame
@@ -97,6 +98,7 @@ class Calibration:
     left_out: tuple[LeftOut, ...]  # of the log and of the segmentation
     notes: tuple[str, ...]
     smoothed: SmoothedCourse | None = None  # where it was asked for
+    predictions: tuple[Predictions, ...] = ()  # those judged, of each horizon; what `evaluate` makes again
 
     def __repr__(self) -> str:
         state = "good" if self.verdict.good else "not good enough"

@@ -76,7 +76,9 @@ def run_demo(
         log,
         input=INPUT,
         settings=Settings(),
-        options=EvaluationOptions(HORIZONS, METHODS, VENDOR_TRACK_MULTIPLIER),
+        options=EvaluationOptions(
+            HORIZONS, METHODS, VENDOR_TRACK_MULTIPLIER, made={calibration.method: calibration.predictions}
+        ),
         progress=lambda name, share: progress(f"judging {name}", 0.8 + 0.1 * share),
     )
     progress("writing the report", 0.9)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -40,6 +40,8 @@ class EvaluationOptions:
     methods: tuple[str, ...] | None = None  # None: all that apply
     vendor_track_multiplier: float | None = None
     model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
+    # What a calibration of this log with these settings predicted, by method: not learned a second time.
+    made: Mapping[str, tuple[Predictions, ...]] = field(default_factory=dict)
 
     @property
     def models(self) -> dict[str, Model]:
@@ -74,7 +76,8 @@ def evaluate(
     for done, name in enumerate(methods):
         if progress is not None:
             progress(name, done / len(methods))
-        predictions += method_info(name, models).predict(name, contest)
+        made = _made(name, options, contest)
+        predictions += made if made is not None else method_info(name, models).predict(name, contest)
     return Evaluation(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
@@ -89,6 +92,13 @@ def evaluate(
         ),
         models=tuple(models),
     )
+
+
+def _made(name: str, options: EvaluationOptions, contest: Contest) -> tuple[Predictions, ...] | None:
+    """Return the predictions of a method that were made already, where all horizons are among them."""
+    by_horizon = {each.horizon: replace(each, method=name) for each in options.made.get(name, ())}
+    wanted = [targets.length for targets in contest.targets]
+    return tuple(by_horizon[h] for h in wanted) if by_horizon.keys() >= set(wanted) else None
 
 
 def _input_name(log: Log, input_name: str | None, models: Mapping[str, Model]) -> str:

@@ -38,7 +38,10 @@ def report_calibration(
         log,
         input=calibration.model.content.input,
         settings=settings,
-        options=EvaluationOptions(methods=tuple(dict.fromkeys((*BASELINES, *learned)))),
+        options=EvaluationOptions(
+            methods=tuple(dict.fromkeys((*BASELINES, *learned))),
+            made={calibration.method: calibration.predictions} if calibration.predictions else {},
+        ),
     )
     calibration = proposing(calibration, evaluation)
     title = ", ".join(run.name for run in log.runs[:3])

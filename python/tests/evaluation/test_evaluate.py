@@ -207,3 +207,18 @@ def test_percent_of_distance_is_that_of_the_path_driven_and_not_of_the_chord() -
 
 def test_second_half_is_scored_and_the_odd_window_belongs_to_it() -> None:
     assert [held_out_half(n) for n in (0, 1, 2, 7)] == [slice(0, 0), slice(0, 1), slice(1, 2), slice(3, 7)]
+
+
+def test_what_a_calibration_predicted_is_what_would_be_predicted_again(
+    log: Log, evaluation: Evaluation
+) -> None:
+    made = {"auto": calibrate(log, input="wheel").predictions}
+    found = evaluate(log, input="wheel", options=EvaluationOptions(methods=("auto",), made=made))
+    again = [p for p in evaluation.predictions if p.method == "auto"]
+    assert [p.horizon for p in found.predictions] == [p.horizon for p in again]
+    for one, other in zip(found.predictions, again, strict=True):
+        for name, value in vars(other).items():
+            np.testing.assert_array_equal(getattr(one, name), value, err_msg=name)
+    assert found.score("auto", 2.0).position == evaluation.score("auto", 2.0).position
+    elsewhere = EvaluationOptions(horizons=(3.0,), methods=("auto",), made=made)
+    assert evaluate(log, input="wheel", options=elsewhere).horizons == (3.0,)
