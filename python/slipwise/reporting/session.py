@@ -40,7 +40,7 @@ def report_calibration(
         settings=settings,
         options=EvaluationOptions(
             methods=tuple(dict.fromkeys((*BASELINES, *learned))),
-            made={calibration.method: calibration.predictions} if calibration.predictions else {},
+            made={calibration.method: calibration.predictions},
         ),
     )
     calibration = proposing(calibration, evaluation)
