@@ -21,7 +21,7 @@ class RecentSlip {
   /// Where slip is after `segments`, the last of a run, by what is known of the motion: good until the next call.
   const SlipNow& after(const ColouredSlip& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
                        const SegmentList& segments);
-  /// Another run begins: segments of one run are told apart by their ends.
+  /// Another run begins: segments of one run are distinguished by their ends.
   void restart() { found_.clear(); }
 
  private:
