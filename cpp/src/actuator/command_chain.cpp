@@ -7,33 +7,42 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 
+#include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/channel_response.hpp"
-#include "slipwise/actuator/drive_channel.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 
 namespace slipwise {
 namespace {
 
-using Row = ChainRow;
-using Value = ChainValue;
 constexpr Eigen::Index kFixed = -1;
 constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+
+/// Where the parameters of speed and yaw rate stand among the chain's.
+constexpr AxisPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
+constexpr AxisPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
 
 /// A moment that moves with one of the chain's parameters: later with a delay, earlier with the clock offset.
 struct Moment {
   double t;
   Eigen::Index parameter;
-
-  Row slope() const {
-    Row row = Row::Zero();
-    if (parameter != kFixed) {
-      row[parameter] = parameter == kOffset ? -1.0 : 1.0;
-    }
-    return row;
-  }
 };
+
+/// By how much the time between two moments moves with each of N parameters: the chain's, or none.
+template <int N>
+Eigen::Matrix<double, 1, N> slope_between(const Moment& from, const Moment& until) {
+  Eigen::Matrix<double, 1, N> row = Eigen::Matrix<double, 1, N>::Zero();
+  if constexpr (N > 0) {
+    for (const auto& [moment, sign] : {std::pair{until, 1.0}, std::pair{from, -1.0}}) {
+      if (moment.parameter != kFixed) {
+        row[moment.parameter] += moment.parameter == kOffset ? -sign : sign;
+      }
+    }
+  }
+  return row;
+}
 
 /// The samples of one channel as the drive sees them: delayed.
 class DelayedCursor {
@@ -67,13 +76,13 @@ class DelayedCursor {
   std::size_t end_;
 };
 
-/// Walks over the delayed input changes of a window, with or without slopes.
+/// Walks over the delayed input changes of a window, with slopes by N parameters: the chain's, or none.
+template <int N>
 class ChainWalk {
  public:
-  ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window, bool with_slopes)
+  ChainWalk(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window)
       : chain_(chain),
         window_(window),
-        with_slopes_(with_slopes),
         speed_(speed_response(chain)),
         turn_(turn_response(chain)),
         start_(moment_of(window.start)),
@@ -94,14 +103,14 @@ class ChainWalk {
     DriveSteps result;
     const std::size_t steps = cursor_v_.changes_left() + cursor_omega_.changes_left() + 2;
     result.steps.reserve(steps);
-    result.jacobians.reserve(with_slopes_ ? steps : 0);
+    result.jacobians.reserve(N > 0 ? steps : 0);
     if (warm_up_ > 0.0) {
       approach({chain_start_.t - warm_up_, kFixed}, chain_start_);
     }
     if (window_.initial) {
-      start_at(cursor_v_, v_, window_.initial->v, &BodyTwist::v);
-      start_at(cursor_v_, vy_, window_.initial->vy, &BodyTwist::vy);
-      start_at(cursor_omega_, omega_, window_.initial->omega, &BodyTwist::omega);
+      start_at(cursor_v_, v_, window_.initial->v);
+      start_at(cursor_v_, vy_, window_.initial->vy);
+      start_at(cursor_omega_, omega_, window_.initial->omega);
     }
     if (window_.known && start_.t < chain_start_.t) {
       follow_measured(*window_.known->twist, result);
@@ -113,6 +122,10 @@ class ChainWalk {
   }
 
  private:
+  using Axis = AxisStepper<N>;
+  using Row = Axis::Row;
+  static constexpr bool kSlopes = N > 0;
+
   Moment moment_of(double stamp) const { return {stamp - chain_.clock_offset, kOffset}; }
 
   /// How long the state at the start hangs on earlier inputs: where the drive was measured, its parts alone do.
@@ -121,12 +134,12 @@ class ChainWalk {
                            : kSettledLags * std::max(speed_.longest_lag(), turn_.longest_lag());
   }
 
-  /// The channel where the chain starts, as it was measured.
-  static void start_at(const DelayedCursor& cursor, DriveChannel& channel, double measured, double BodyTwist::* part) {
+  /// An axis where the chain starts, as it was measured.
+  static void start_at(const DelayedCursor& cursor, Axis& axis, double measured) {
     if (cursor.before_first()) {
-      channel.keep(measured);
+      axis.keep(measured);
     } else {
-      channel.measured(measured, cursor.held().*part);
+      axis.measure(measured);
     }
   }
 
@@ -139,10 +152,11 @@ class ChainWalk {
       const Moment then = last ? until : Moment{twist.time(next), kFixed};
       const BodyTwist held = next == 0 ? BodyTwist{} : twist.sample(next - 1);
       const double duration = then.t - now.t;
-      const Row slope = then.slope() - now.slope();
-      DriveStepJacobian jacobian;
-      jacobian << slope, held.v * slope, held.vy * slope, held.omega * slope;
-      record({duration, held.v * duration, held.vy * duration, held.omega * duration}, jacobian, out);
+      out.steps.push_back({duration, held.v * duration, held.vy * duration, held.omega * duration});
+      if constexpr (kSlopes) {
+        const Row slope = slope_between<N>(now, then);
+        out.jacobians.emplace_back() << slope, held.v * slope, held.vy * slope, held.omega * slope;
+      }
       now = then;
     }
   }
@@ -153,9 +167,9 @@ class ChainWalk {
     approach(cursor_omega_, turn_, from, until, std::array{Driven{omega_, &BodyTwist::omega}});
   }
 
-  /// A channel, and the part of the inputs that it follows.
+  /// An axis, and the part of the inputs that it follows.
   struct Driven {
-    DriveChannel& channel;
+    Axis& axis;
     double BodyTwist::* part;
   };
 
@@ -164,19 +178,15 @@ class ChainWalk {
     while (now.t < until.t) {
       cursor.skip_repeats(until.t);
       const Moment next = cursor.next_change() < until.t ? cursor.change_moment() : until;
-      const ChannelDecay decay(response, next.t - now.t);
-      const Row slope = next.slope() - now.slope();
-      for (const auto& [channel, part] : driven) {
-        if (with_slopes_) {
-          channel.follow(cursor.held().*part, decay, slope);
-        } else {
-          channel.step(cursor.held().*part, decay);
-        }
+      const AxisDecay decay(response, next.t - now.t);
+      const Row slope = slope_between<N>(now, next);
+      for (const Driven& its : driven) {
+        its.axis.follow(decay, slope);
       }
       if (cursor.next_change() <= next.t) {
         cursor.advance();
-        for (const auto& [channel, part] : driven) {
-          channel.begin();
+        for (const auto& [axis, part] : driven) {
+          axis.hold(cursor.held().*part);
         }
       }
       now = next;
@@ -205,12 +215,12 @@ class ChainWalk {
     const bool together = chain_.delay_v == 0.0 && chain_.delay_omega == 0.0;
     if (v_changes) {
       cursor_v_.advance();
-      v_.begin();
-      vy_.begin();
+      v_.hold(cursor_v_.held().v);
+      vy_.hold(cursor_v_.held().vy);
     }
     if (omega_changes && (together || !v_changes)) {
       cursor_omega_.advance();
-      omega_.begin();
+      omega_.hold(cursor_omega_.held().omega);
     }
   }
 
@@ -218,58 +228,43 @@ class ChainWalk {
     const bool lagging = speed_.longest_lag() > 0.0 || turn_.longest_lag() > 0.0;
     const int parts = lagging ? lag_parts(to.t - from.t, window_.longest_step) : 1;
     const double duration = (to.t - from.t) / parts;
-    const ChannelDecay decay_v(speed_, duration);
-    const ChannelDecay decay_omega(turn_, duration);
-    if (with_slopes_ && (lagging || from.parameter != to.parameter)) {
-      const Row slope = (to.slope() - from.slope()) * (1.0 / parts);
-      for (int i = 0; i < parts; ++i) {
-        DriveStepJacobian jacobian;
-        const DriveStep step = linearize_step(decay_v, decay_omega, slope, jacobian);
-        record(step, jacobian, out);
-      }
-      return;
-    }
+    const AxisDecay decay_v(speed_, duration);
+    const AxisDecay decay_omega(turn_, duration);
+    const Row slope = slope_between<N>(from, to) * (1.0 / parts);
+    const bool moving = lagging || from.parameter != to.parameter;
     for (int i = 0; i < parts; ++i) {
-      const DriveStep step = next_step(decay_v, decay_omega);
-      record(step, with_slopes_ ? gain_slopes(duration) : DriveStepJacobian(), out);
+      if (kSlopes && moving) {
+        linearized_step(decay_v, decay_omega, slope, out);
+      } else {
+        step(decay_v, decay_omega, out);
+      }
     }
   }
 
-  /// Without lag, and where no duration moves, only the gains tell.
-  DriveStepJacobian gain_slopes(double duration) const {
-    DriveStepJacobian jacobian = DriveStepJacobian::Zero();
-    jacobian(1, kSpeedPlaces.gain) = v_.by_gain(cursor_v_.held().v, duration);
-    jacobian(2, kSpeedPlaces.gain) = vy_.by_gain(cursor_v_.held().vy, duration);
-    jacobian(3, kTurnPlaces.gain) = omega_.by_gain(cursor_omega_.held().omega, duration);
-    return jacobian;
-  }
-
-  void record(const DriveStep& step, const DriveStepJacobian& jacobian, DriveSteps& out) const {
-    out.steps.push_back(step);
-    if (with_slopes_) {
-      out.jacobians.push_back(jacobian);
+  void step(const AxisDecay& decay_v, const AxisDecay& decay_omega, DriveSteps& out) {
+    const double duration = decay_v.fast.duration;
+    out.steps.push_back(
+        {duration, v_.advance_value(decay_v), vy_.advance_value(decay_v), omega_.advance_value(decay_omega)});
+    if constexpr (kSlopes) {  // without lag, and where no duration moves, only the gains tell
+      DriveStepJacobian& jacobian = out.jacobians.emplace_back(DriveStepJacobian::Zero());
+      jacobian(1, kSpeedPlaces.gain) = v_.by_gain(duration);
+      jacobian(2, kSpeedPlaces.gain) = vy_.by_gain(duration);
+      jacobian(3, kTurnPlaces.gain) = omega_.by_gain(duration);
     }
   }
 
-  DriveStep next_step(const ChannelDecay& decay_v, const ChannelDecay& decay_omega) {
-    const BodyTwist linear = cursor_v_.held();
-    return {decay_v.fast.duration, v_.step(linear.v, decay_v), vy_.step(linear.vy, decay_v),
-            omega_.step(cursor_omega_.held().omega, decay_omega)};
-  }
-
-  DriveStep linearize_step(const ChannelDecay& decay_v, const ChannelDecay& decay_omega, const Row& duration_slope,
-                           DriveStepJacobian& jacobian) {
-    const BodyTwist linear = cursor_v_.held();
-    const Value forward = v_.linearize_step(linear.v, decay_v, duration_slope);
-    const Value left = vy_.linearize_step(linear.vy, decay_v, duration_slope);
-    const Value turn = omega_.linearize_step(cursor_omega_.held().omega, decay_omega, duration_slope);
-    jacobian << duration_slope, forward.slope, left.slope, turn.slope;
-    return {decay_v.fast.duration, forward.value, left.value, turn.value};
+  void linearized_step(const AxisDecay& decay_v, const AxisDecay& decay_omega, const Row& slope, DriveSteps& out) {
+    const auto forward = v_.advance(decay_v, slope);
+    const auto left = vy_.advance(decay_v, slope);
+    const auto turn = omega_.advance(decay_omega, slope);
+    out.steps.push_back({decay_v.fast.duration, forward.value, left.value, turn.value});
+    if constexpr (kSlopes) {
+      out.jacobians.emplace_back() << slope, forward.slope, left.slope, turn.slope;
+    }
   }
 
   const CommandChain& chain_;
   const DriveWindow& window_;
-  bool with_slopes_;
   ChannelResponse speed_;
   ChannelResponse turn_;
   Moment start_;
@@ -278,17 +273,17 @@ class ChainWalk {
   double warm_up_;
   DelayedCursor cursor_v_;
   DelayedCursor cursor_omega_;
-  DriveChannel v_, vy_, omega_;
+  Axis v_, vy_, omega_;
 };
 
 }  // namespace
 
 DriveSteps drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
-  return ChainWalk(inputs, chain, window, false).run();
+  return ChainWalk<0>(inputs, chain, window).run();
 }
 
 DriveSteps linearize_drive_steps(const InputTrack& inputs, const CommandChain& chain, const DriveWindow& window) {
-  return ChainWalk(inputs, chain, window, true).run();
+  return ChainWalk<kChainParameters>(inputs, chain, window).run();
 }
 
 }  // namespace slipwise

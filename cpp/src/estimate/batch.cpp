@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levenberg-Marquardt on the robust MAP cost of all segments.
+// Normal equations of the robust MAP cost of all segments.
 #include "slipwise/estimate/batch.hpp"
 
 #include <Eigen/Cholesky>
@@ -17,9 +17,6 @@ namespace slipwise {
 namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
-
-/// Of the information's diagonal: what hardly slows the last steps, what shortens a step at all, and what leaves none.
-constexpr double kLeastDamping = 1e-4, kFelt = 0.1, kMostDamping = 1e12;
 
 struct HuberLoss {
   double cost;
@@ -86,107 +83,75 @@ void check(const MotionModel& model, const Estimate& prior, std::span<const Batc
 
 }  // namespace
 
-BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, BatchSettings settings,
+BatchSearch::BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, const BatchSettings& settings,
                          std::vector<SegmentLinearization> at_start)
     : model_(std::move(model)),
       prior_(std::move(prior)),
       data_(std::move(data)),
-      settings_(std::move(settings)),
-      damping_(kLeastDamping),
-      fit_{prior_, 0.0, 0, Status::NotConverged, {}} {
+      huber_(settings.huber),
+      search_(settings.start.size() > 0 ? settings.start : prior_.mean,
+              {.iterations = settings.iterations, .relative = settings.tolerance}) {
   check_data();
   if (!at_start.empty() && at_start.size() != data_.size()) {
     throw std::invalid_argument("of all data or of none the linearisation at the start must be given");
   }
   prior_information_ = Cholesky(prior_.covariance).inverse();
-  mean_ = candidate_ = settings_.start.size() > 0 ? settings_.start : prior_.mean;
   if (!at_start.empty()) {
-    now_ = normal_equations(std::move(at_start));
-    propose();
+    judge(point(std::move(at_start)));
   }
 }
 
 void BatchSearch::check_data() {
-  check(model_, prior_, data_, settings_.start);
+  check(model_, prior_, data_, search_.candidate());
   errors_ = new_errors(data_);
 }
 
-/// At the candidate.
-NormalEquations BatchSearch::normal_equations(std::vector<SegmentLinearization> data_at) const {
-  const Eigen::VectorXd back = prior_.mean - candidate_;
-  NormalEquations equations{prior_information_, prior_information_ * back, back.dot(prior_information_ * back),
-                            std::move(data_at)};
+/// The candidate, where the data are linearised `at`.
+BatchPoint BatchSearch::point(std::vector<SegmentLinearization> data_at) const {
+  const Eigen::VectorXd back = prior_.mean - search_.candidate();
+  BatchPoint point{
+      {prior_information_, prior_information_ * back}, back.dot(prior_information_ * back), std::move(data_at)};
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   Jacobian by_parameter = Jacobian::Zero(3, model_.size());
   for (std::size_t i = 0; i < data_.size(); ++i) {
-    const SegmentLinearization& at = equations.at[i];
+    const SegmentLinearization& at = point.at[i];
     r = data_[i].segment.measured.vector() - at.predicted.vector() - errors_[i].by_before * r;
     by_parameter = at.by_parameter - errors_[i].by_before * by_parameter;
     const Eigen::LLT<Eigen::Matrix3d>& noise = errors_[i].noise;
-    const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), settings_.huber);
+    const HuberLoss loss = huber_loss(r.dot(noise.solve(r)), huber_);
     const Jacobian weighted = noise.solve(by_parameter) * loss.weight;
-    equations.cost += loss.cost;
-    equations.information.noalias() += by_parameter.transpose() * weighted;
-    equations.gradient.noalias() += weighted.transpose() * r;
+    point.cost += loss.cost;
+    point.equations.information.noalias() += by_parameter.transpose() * weighted;
+    point.equations.gradient.noalias() += weighted.transpose() * r;
   }
-  return equations;
+  return point;
 }
 
-/// The next point to look at, where one is worth a look.
-void BatchSearch::propose() {
-  const NormalEquations& now = present(now_);
-  if (fit_.iterations >= settings_.iterations || fit_.status != Status::NotConverged) {
-    over_ = true;
-    return;
+void BatchSearch::judge(BatchPoint point) {
+  if (search_.judge(point.cost)) {
+    best_ = std::move(point);
   }
-  ++fit_.iterations;
-  Eigen::MatrixXd damped = now.information;
-  damped.diagonal() *= 1.0 + damping_;
-  const Eigen::VectorXd step = Cholesky(damped).solve(now.gradient);
-  predicted_ = step.dot(now.gradient + damping_ * now.information.diagonal().cwiseProduct(step));
-  if (damping_ == kLeastDamping && predicted_ <= settings_.tolerance * now.cost) {
-    fit_.status = Status::Converged;  // not even what a parabola predicts is worth a look
-    over_ = true;
-    return;
-  }
-  candidate_ = mean_ + step;
-}
-
-/// Whether the candidate is better.
-void BatchSearch::judge(NormalEquations next) {
-  if (!now_) {
-    now_ = std::move(next);
-  } else if (!(next.cost <= now_->cost)) {
-    damping_ = std::max(10.0 * damping_, kFelt);
-    fit_.status = damping_ > kMostDamping ? Status::Converged : fit_.status;  // no downhill step at working precision
-  } else {
-    const double gained = now_->cost - next.cost;
-    fit_.status = gained <= settings_.tolerance * now_->cost ? Status::Converged : fit_.status;
-    mean_ = candidate_;
-    now_ = std::move(next);
-    const double ratio = gained / predicted_;
-    damping_ = std::max(damping_ * std::max(0.1, 1.0 - std::pow(2.0 * ratio - 1.0, 3)), kLeastDamping);
-  }
-  propose();
+  search_.propose(present(best_).equations);
 }
 
 bool BatchSearch::advance(std::size_t segments) {
-  for (std::size_t i = 0; i < segments && !over_; ++i) {
+  for (std::size_t i = 0; i < segments && !search_.over(); ++i) {
     const BatchDatum& datum = data_[at_.size()];
-    at_.push_back(linearize_segment(model_, candidate_, datum.inputs, datum.segment));
+    at_.push_back(linearize_segment(model_, search_.candidate(), datum.inputs, datum.segment));
     if (at_.size() == data_.size()) {
-      judge(normal_equations(std::exchange(at_, {})));
+      judge(point(std::exchange(at_, {})));
     }
   }
-  return !over_;
+  return !search_.over();
 }
 
 BatchFit BatchSearch::result() && {
-  NormalEquations& now = present(now_);
-  fit_.cost = now.cost;
-  fit_.at = std::move(now.at);
-  fit_.estimate = {mean_, Cholesky(now.information).inverse()};
-  return std::move(fit_);
+  BatchPoint& best = present(best_);
+  return {.estimate = {search_.best(), Cholesky(best.equations.information).inverse()},
+          .cost = best.cost,
+          .iterations = search_.iterations(),
+          .status = search_.converged() ? Status::Converged : Status::NotConverged,
+          .at = std::move(best.at)};
 }
 
 BatchFit batch_fit(const MotionModel& model, const Estimate& prior, std::vector<BatchDatum> data,

@@ -109,8 +109,8 @@ Eigen::VectorXd ChainChannel::foretell_values(const ChannelWindow& window, const
   value.segment(m, kChannelParameters) = state.head(kChannelParameters);
   for (std::size_t i = 0; i < live_.size(); ++i) {
     const Eigen::Index own = place(i);
-    const LaneState start{.fast = state[own], .slow = state[own + 1]};
-    const Eigen::VectorXd motion = lane_values(window.inputs, lane(state, i), start, window.seen.edges);
+    const AxisState start{.fast = state[own], .slow = state[own + 1]};
+    const Eigen::VectorXd motion = axis_values(window.inputs, lane(state, i), start, window.seen.edges);
     value.segment(static_cast<Eigen::Index>(i) * k, k) = motion.head(k) + noise.by_start.head(k) * state[own + 2];
     value.segment<2>(m + own) = motion.tail<2>();
     value[m + own + 2] = noise.by_start[k] * state[own + 2];

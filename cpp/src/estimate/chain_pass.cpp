@@ -67,7 +67,7 @@ void ChannelWalk::learn(const ChannelWindow& window) {
   if (lanes_.empty()) {
     return;
   }
-  std::vector<LaneMotion> motions;
+  std::vector<AxisMotion> motions;
   std::vector<Learned> learned;
   double nis = 0.0;
   double log_determinant = 0.0;
@@ -110,7 +110,7 @@ void ChannelWalk::begin(const ChannelWindow& window) {
 
 /// The Kalman filter and its derivative, one mean after the other. Its state are the fast and the slow part at the
 /// window's start, from where they were thought to be, and the deviation now.
-ChannelWalk::Learned ChannelWalk::filter(const FollowedLane& lane, const LaneMotion& motion, const WheelMeans& seen,
+ChannelWalk::Learned ChannelWalk::filter(const FollowedLane& lane, const AxisMotion& motion, const WheelMeans& seen,
                                          double size) const {
   Learned learned{.lane = lane};
   auto& [place, mean, covariance, by_chain] = learned.lane;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes over all windows, a window at a time.
+// Walks over all windows, a slice at a time.
 #include "slipwise/estimate/channel_refit.hpp"
 
 #include <algorithm>
@@ -13,12 +13,10 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kSlice = 24;                // windows that are walked over at a time
-SLIPWISE_TUNING(kConverged, 0.1);                 // [standard deviations] a step that is not worth a pass
-constexpr std::array kShortened{1.0, 0.5, 0.25};  // fractions of a step, until one helps
-SLIPWISE_TUNING(kTolerance, 0.1);                 // what a step has to gain of -2 log posterior
-SLIPWISE_TUNING(kMostPasses, 12);                 // with more windows it goes on from there
-SLIPWISE_TUNING(kMostElsewhere, 10);              // the same from a start elsewhere
+constexpr std::size_t kSlice = 24;    // windows that are walked over at a time
+SLIPWISE_TUNING(kTolerance, 0.1);     // what a step has to gain of -2 log posterior
+SLIPWISE_TUNING(kMostPasses, 12);     // with more windows it goes on from there
+SLIPWISE_TUNING(kMostElsewhere, 10);  // the same from a start elsewhere
 constexpr Eigen::Index kLag = 0, kSlowShare = 3, kSlowLag = 4;
 SLIPWISE_TUNING(kApart, 1.4);  // in the logarithm: time constants closer than that may pass for each other
 
@@ -34,55 +32,20 @@ ChannelParameters without_slow_mode(ChannelParameters chain) {
 
 }  // namespace
 
-ChannelFit::ChannelFit(std::shared_ptr<const ChannelModel> model, double size, ChannelParameters start, int most_passes)
+ChannelFit::ChannelFit(std::shared_ptr<const ChannelModel> model, double size, const ChannelParameters& start,
+                       int most_passes)
     : model_(std::move(model)),
       size_(size),
-      left_(most_passes),
-      point_(std::move(start)),
-      full_(ChannelParameters::Zero()) {
-  try_step();
-}
+      search_(start, {.iterations = most_passes - 1, .absolute = kTolerance}),
+      walk_(std::in_place, model_, size_, start) {}
 
-void ChannelFit::try_step() {
-  walk_.emplace(model_, size_, best_ ? point_ + kShortened[shortened_] * full_ : point_);
-  done_ = 0;
-  --left_;
-}
-
-/// A step from the best point, unless there are no passes left or the step is not worth one.
-void ChannelFit::next_step() {
-  walk_.reset();
-  full_ = best().joint.mean.head<kChannelParameters>() - point_;
-  const ChannelParameters std = best().joint.covariance.diagonal().head<kChannelParameters>().cwiseSqrt();
-  shortened_ = 0;
-  if (left_ > 0 && (full_.cwiseAbs() - kConverged * std).maxCoeff() > 0.0) {
-    try_step();
+/// A walk over all windows at the candidate.
+void ChannelFit::judge(const ChannelWalk& walk) {
+  if (search_.judge(walk.cost())) {
+    best_ = walk.result();
+    at_best_ = walk.equations();
   }
-}
-
-void ChannelFit::judge(ChainPass pass) {
-  if (!best_) {
-    best_ = std::move(pass);
-    next_step();
-    return;
-  }
-  const double gained = best_->cost - pass.cost;
-  if (gained > 0.0) {
-    point_ += kShortened[shortened_] * full_;
-    best_ = std::move(pass);
-    if (gained >= kTolerance) {
-      next_step();
-    } else {
-      walk_.reset();
-    }
-    return;
-  }
-  ++shortened_;
-  if (left_ > 0 && shortened_ < kShortened.size()) {
-    try_step();
-  } else {
-    walk_.reset();
-  }
+  search_.propose(at_best_);
 }
 
 bool ChannelFit::advance(std::span<const ChannelWindow> past) {
@@ -93,7 +56,12 @@ bool ChannelFit::advance(std::span<const ChannelWindow> past) {
     present(walk_).learn(past[done_]);
   }
   if (done_ == past.size()) {
-    judge(present(walk_).result());
+    judge(present(walk_));
+    walk_.reset();
+    if (!search_.over()) {
+      walk_.emplace(model_, size_, search_.candidate());
+      done_ = 0;
+    }
   }
   return walk_.has_value();
 }

@@ -18,97 +18,23 @@ namespace {
 
 using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
-SLIPWISE_TUNING(kUnknown, 1.0);           // [ln s]; a time is known at least to a factor of e before any data
-SLIPWISE_TUNING(kStraight, 0.03);         // [ln s], [s] or [-]; over so little of the chain a segment is linear
-constexpr double kNegligibleCost = 1e-9;  // in squared sigmas: the rounding of a perfect fit is no uphill step
+SLIPWISE_TUNING(kUnknown, 1.0);    // [ln s]; a time is known at least to a factor of e before any data
+SLIPWISE_TUNING(kStraight, 0.03);  // [ln s], [s] or [-]; over so little of the chain a segment is linear
 
-/// S = J P J^T + R.
-Eigen::Matrix3d innovation_covariance(const Eigen::MatrixXd& prior, const Jacobian& jacobian,
-                                      const Eigen::Matrix3d& noise) {
-  const Jacobian spread = jacobian * prior;
-  return spread.lazyProduct(jacobian.transpose()) + noise;
-}
+/// A segment's measured chart (x, y, theta) as a measurement of the parameters.
+struct MeasuredSegment {
+  using At = SegmentLinearization;
+  using Innovation = Eigen::Vector3d;
 
-/// A point of the iteration. The mean is kept as prior + P dual, so that the prior's cost needs no inverse of P.
-struct Iterate {
-  Eigen::VectorXd dual;
-  Eigen::VectorXd mean;
-  SegmentLinearization at;
-  Eigen::Vector3d innovation;
-  double cost;
-};
+  const MotionModel& model;
+  const InputTrack& inputs;
+  const Segment& segment;
+  const Eigen::Matrix3d& covariance;
 
-class MapProblem {
- public:
-  MapProblem(const MotionModel& model, const Estimate& prior, const InputTrack& inputs, const Segment& segment,
-             const Eigen::Matrix3d& noise)
-      : model_(model), prior_(prior), inputs_(inputs), segment_(segment), noise_(noise) {}
-
-  /// The prior's mean, where the segment is linearised `at`.
-  Iterate begin(SegmentLinearization at) const {
-    const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
-    return {Eigen::VectorXd::Zero(prior_.mean.size()), prior_.mean, std::move(at), r, normalised_square(r, noise_)};
-  }
-
-  Iterate evaluate(Eigen::VectorXd dual) const {
-    const Eigen::VectorXd away = prior_.covariance * dual;
-    Eigen::VectorXd mean = prior_.mean + away;
-    SegmentLinearization at = linearize_segment(model_, mean, inputs_, segment_);
-    const Eigen::Vector3d r = segment_.measured.vector() - at.predicted.vector();
-    const double cost = dual.dot(away) + normalised_square(r, noise_);
-    return {std::move(dual), std::move(mean), std::move(at), r, cost};
-  }
-
-  /// p_{i+1} = p- + K_i [z - h(p_i) - J_i (p- - p_i)], as a dual vector.
-  Eigen::VectorXd gauss_newton_dual(const Iterate& i) const {
-    const auto& jacobian = i.at.by_parameter;
-    const Eigen::Matrix3d s = innovation_covariance(prior_.covariance, jacobian, noise_);
-    return jacobian.transpose() * solve_innovation(s, i.innovation - jacobian * (prior_.mean - i.mean));
-  }
-
-  /// What a step in dual coordinates lowers the cost by, were the segment linear.
-  double promised(const Iterate& i, const Eigen::VectorXd& step) const {
-    const Eigen::VectorXd moved = prior_.covariance * step;
-    const Eigen::Vector3d seen = i.at.by_parameter * moved;
-    return step.dot(moved) + normalised_square(seen, noise_);
-  }
-
-  /// Goes a step, or half of it and so on while the MAP cost grows. False when nothing helps.
-  bool descend(Iterate& i, const Eigen::VectorXd& full, int halvings) const {
-    for (double share = 1.0; halvings >= 0; --halvings, share /= 2.0) {
-      Iterate next = evaluate(i.dual + share * full);
-      if (std::isfinite(next.cost) && next.cost <= i.cost * (1.0 + 1e-12) + kNegligibleCost) {
-        i = std::move(next);
-        return true;
-      }
-    }
-    return false;
-  }
-
-  /// Gauss-Newton steps until they gain little. False when not even the first one helps.
-  bool minimize(Iterate& i, const IekfSettings& settings) const {
-    for (int steps = 0; steps < settings.iterations; ++steps) {
-      const Eigen::VectorXd full = gauss_newton_dual(i) - i.dual;
-      if (steps > 0 && promised(i, full) < settings.tolerance) {
-        break;
-      }
-      const double cost_before = i.cost;
-      if (!descend(i, full, settings.halvings)) {
-        return steps > 0;
-      }
-      if (cost_before - i.cost < settings.tolerance) {
-        break;
-      }
-    }
-    return true;
-  }
-
- private:
-  const MotionModel& model_;
-  const Estimate& prior_;
-  const InputTrack& inputs_;
-  const Segment& segment_;
-  const Eigen::Matrix3d& noise_;
+  At at(const Eigen::VectorXd& parameters) const { return linearize_segment(model, parameters, inputs, segment); }
+  Innovation innovation(const At& at) const { return segment.measured.vector() - at.predicted.vector(); }
+  static const Jacobian& jacobian(const At& at) { return at.by_parameter; }
+  const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
 };
 
 /// (I - K J) P (I - K J)^T + K R K^T.
@@ -176,14 +102,13 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
                        const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
                        const IekfSettings& settings) {
   check(model, prior, segment, noise);
-  Iterate now = MapProblem(model, prior, inputs, segment, noise).begin(std::move(at_prior));
   IekfUpdate update{.estimate = prior,
-                    .innovation = now.innovation,
-                    .innovation_covariance = innovation_covariance(prior.covariance, now.at.by_parameter, noise),
+                    .innovation = segment.measured.vector() - at_prior.predicted.vector(),
+                    .innovation_covariance = innovation_covariance(prior.covariance, at_prior.by_parameter, noise),
                     .nis = 0.0,
                     .weight = 1.0,
                     .status = Status::Converged,
-                    .at = now.at};
+                    .at = at_prior};
   update.nis = normalised_square(update.innovation, update.innovation_covariance);
   if (!(update.nis <= settings.gate)) {
     update.weight = 0.0;
@@ -195,21 +120,23 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
     update.status = Status::Downweighted;
   }
   const Eigen::Matrix3d weighted_noise = noise / update.weight;
-  const MapProblem problem(model, prior, inputs, segment, weighted_noise);
-  now = problem.begin(std::move(now.at));
-  if (!problem.minimize(now, settings)) {  // nothing was learned: the prior stands
+  const MeasuredSegment measured{model, inputs, segment, weighted_noise};
+  const MapUpdate problem(prior, measured);
+  auto now = problem.begin(std::move(at_prior));
+  if (!problem.minimize(now, settings.map())) {  // nothing was learned: the prior stands
     update.weight = 0.0;
     update.status = Status::NotConverged;
     return update;
   }
-  update.estimate.mean = now.mean;
+  update.estimate.mean = now.state;
   update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);
   if (model.chain_size() > 0) {
     const Eigen::Matrix3d bent = bending(model, update.estimate, inputs, segment, now.at.predicted.vector());
     update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
   }
   const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
-  const Eigen::VectorXd carry = (model.even_slopes(prior.mean).array() / model.even_slopes(now.mean).array()).min(most);
+  const Eigen::VectorXd carry =
+      (model.even_slopes(prior.mean).array() / model.even_slopes(now.state).array()).min(most);
   update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
   update.at = std::move(now.at);
   return update;

@@ -43,12 +43,12 @@ std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Act
   if (!(range > 0.0)) {
     return std::nullopt;
   }
-  const LaneState settled = settled_lane(window.inputs, lane, window.seen.edges.front());
+  const AxisState settled = settled_axis(window.inputs, lane, window.seen.edges.front());
   return FirstLaneState{{settled.fast, settled.slow, 0.0}, {range * range, std::pow(kSlowRange * range, 2), wander}};
 }
 
-LaneMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const LaneState& start) {
-  LaneMotion motion = lane_motion(window.inputs, lane, start, window.seen.edges);
+AxisMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const AxisState& start) {
+  AxisMotion motion = axis_motion(window.inputs, lane, start, window.seen.edges);
   motion.slope.col(0) *= lane.response.lag;
   motion.slope.col(1) *= lane.delay;
   motion.slope.col(4) *= lane.response.slow_lag;
@@ -57,7 +57,7 @@ LaneMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, c
 
 LanePassage lane_passage(const ChannelWindow& window, const ActuatorAxis& lane, const LaneVector& start,
                          const DriveNoiseMeans& noise) {
-  const LaneMotion motion = lane_through(window, lane, {.fast = start[0], .slow = start[1]});
+  const AxisMotion motion = lane_through(window, lane, {.fast = start[0], .slow = start[1]});
   const Eigen::Index rows = motion.value.size() + 1;
   const Eigen::Index k = rows - kLaneStates;
   LanePassage passage{Eigen::VectorXd(rows), Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters>(rows, 5),

@@ -20,9 +20,10 @@ constexpr double kDifference = 1e-2;  // of parameters, for derivatives; the pie
 constexpr double kMostInflation = 100.0;
 constexpr double kSecondsAlike = 1.0;  // residuals further apart are taken as independent
 constexpr int kOutputs = 2;
-constexpr int kAttempts = 6;          // of a step, each shorter
-constexpr double kLongestStep = 0.7;  // of a parameter
-constexpr double kLittle = 0.1;       // of -2 log likelihood; a step that gains less was the last
+constexpr int kAttempts = 6;              // of a step, each shorter, on average
+constexpr double kLeastPrecision = 1e-9;  // of a parameter that nothing tells of
+constexpr double kLongestStep = 0.7;      // of a parameter
+constexpr double kLittle = 0.1;           // of -2 log likelihood; a step that gains less was the last
 
 /// The likeliest scale of Student t residuals.
 double likeliest_scale(const Eigen::Ref<const Eigen::VectorXd>& residual) {
@@ -53,9 +54,7 @@ double inflation_of(const Eigen::ArrayXd& score) {
 
 LimitedAxis lane_of_channel(int c) { return c == 0 ? LimitedAxis::Speed : LimitedAxis::YawRate; }
 
-OutputChannel output_channel(const CommandChain& chain, int c) {
-  return c == 0 ? speed_channel(chain) : turn_channel(chain);
-}
+ActuatorAxis axis_of(const CommandChain& chain, int c) { return c == 0 ? speed_axis(chain) : turn_axis(chain); }
 
 double gain_at_sides(const CommandLimits& limits, int c) { return c == 0 ? limits.gain_v : limits.gain_omega; }
 
@@ -124,8 +123,8 @@ LimitedDrive LimitedDriveFit::start() const {
 }
 
 LimitedDriveFit::ChannelDrive LimitedDriveFit::channel_drive(const LimitedDrive& drive, int c) {
-  const OutputChannel channel = output_channel(drive.chain, c);
-  return {lane_of(drive.limits, lane_of_channel(c)), gain_at_sides(drive.limits, c), channel.lag, channel.delay};
+  const ActuatorAxis axis = axis_of(drive.chain, c);
+  return {lane_of(drive.limits, lane_of_channel(c)), gain_at_sides(drive.limits, c), axis.response.lag, axis.delay};
 }
 
 const std::vector<InputTrack>& LimitedDriveFit::tracks_of(const CommandLimits& limits, int c) const {
@@ -145,18 +144,18 @@ const std::vector<InputTrack>& LimitedDriveFit::tracks_of(const CommandLimits& l
 
 void LimitedDriveFit::put_errors(const LimitedDrive& drive, std::span<const InputTrack> tracks, int c,
                                  Eigen::Ref<Eigen::VectorXd> errors) const {
-  OutputChannel channel = output_channel(drive.chain, c);
+  ActuatorAxis axis = axis_of(drive.chain, c);
   if (!limits_sides(drive.limits)) {
-    channel.gain = gain_at_sides(drive.limits, c);
+    axis.response.gain = gain_at_sides(drive.limits, c);
   }
   std::vector<double> output;
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const DriveRecord& record = records_[k];
     output.resize(record.t.size());
-    channel_output(tracks[k], channel, record.t, record.wheels.front(), output);
+    axis_speeds(tracks[k], axis, {.fast = record.wheels.front().*axis.part, .slow = 0.0}, record.t, output);
     for (std::size_t i = 1; i < record.t.size(); ++i, ++row) {
-      errors[row] = record.wheels[i].*channel.twist - output[i];
+      errors[row] = record.wheels[i].*axis.part - output[i];
     }
   }
 }
@@ -233,60 +232,47 @@ LimitedDriveFit::Slopes LimitedDriveFit::slopes(const FittedDrive& at, const std
   return slopes;
 }
 
-LimitedDriveFit::Normal LimitedDriveFit::normal(const FittedDrive& at, const std::vector<int>& free) const {
+NormalEquations LimitedDriveFit::equations(const FittedDrive& at, const std::vector<int>& free) const {
   const auto size = std::ssize(free);
-  Normal normal{.information = Eigen::MatrixXd::Zero(size, size), .pull = Eigen::VectorXd::Zero(size)};
+  NormalEquations equations{.information = kLeastPrecision * Eigen::MatrixXd::Identity(size, size),
+                            .gradient = Eigen::VectorXd::Zero(size)};
   const Slopes all = slopes(at, free);
   for (std::size_t c = 0; c < all.size(); ++c) {
     const FittedChannel& channel = at.channels.at(c);
     const Eigen::MatrixXd& slope = all.at(c);
     const Eigen::VectorXd weight = channel.weight / (channel.scale * channel.scale);
-    normal.information += slope.transpose() * weight.asDiagonal() * slope;
-    normal.pull += slope.transpose() * weight.cwiseProduct(channel.error);
+    equations.information += slope.transpose() * weight.asDiagonal() * slope;
+    equations.gradient += slope.transpose() * weight.cwiseProduct(channel.error);
   }
   const DriveParameters p = parameters_of(at.drive);
-  for (Eigen::Index k = 0; k < normal.pull.size(); ++k) {
+  for (Eigen::Index k = 0; k < equations.gradient.size(); ++k) {
     const PriorPull prior = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_);
-    normal.information(k, k) += prior.precision;
-    normal.pull[k] -= prior.precision * prior.gap;
+    equations.information(k, k) += prior.precision;
+    equations.gradient[k] -= prior.precision * prior.gap;
   }
-  return normal;
+  return equations;
 }
 
-ScoredDrive LimitedDriveFit::refine(const LimitedDrive& drive, int iterations, double wanted) const {
+ScoredDrive LimitedDriveFit::refine(const LimitedDrive& drive, int steps, double wanted) const {
   const std::vector<int> free = free_parameters(drive);
+  DriveParameters p = parameters_of(drive);
+  GaussNewton search(p(free), {.iterations = steps * kAttempts, .absolute = kLittle, .longest_step = kLongestStep});
   FittedDrive best = fitted(drive);
-  double damping = 1e-3;
-  for (int left = iterations - 1; left >= 0; --left) {
-    const double before = best.loss.total;
-    step(best, normal(best, free), free, damping);
-    const double gained = before - best.loss.total;
-    if (gained < kLittle || best.loss.total - left * gained > wanted) {
-      break;
+  search.judge(best.loss.total);
+  NormalEquations at_best = equations(best, free);
+  for (search.propose(at_best); !search.over(); search.propose(at_best)) {
+    p(free) = search.candidate();
+    FittedDrive trial = fitted(with_parameters(best.drive, p));
+    if (search.judge(trial.loss.total)) {
+      const double gained = best.loss.total - trial.loss.total;
+      best = std::move(trial);
+      if (--steps == 0 || best.loss.total - steps * gained > wanted) {
+        break;
+      }
+      at_best = equations(best, free);
     }
   }
   return {best.drive, best.loss};
-}
-
-void LimitedDriveFit::step(FittedDrive& best, const Normal& normal, const std::vector<int>& free,
-                           double& damping) const {
-  const DriveParameters p = parameters_of(best.drive);
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    Eigen::MatrixXd damped = normal.information;
-    damped.diagonal() += damping * normal.information.diagonal() + Eigen::VectorXd::Constant(normal.pull.size(), 1e-9);
-    const Eigen::VectorXd way = solve_symmetric(damped, normal.pull).cwiseMax(-kLongestStep).cwiseMin(kLongestStep);
-    DriveParameters moved = p;
-    for (Eigen::Index k = 0; k < way.size(); ++k) {
-      moved[free[static_cast<std::size_t>(k)]] += way[k];
-    }
-    FittedDrive trial = fitted(with_parameters(best.drive, moved));
-    if (trial.loss.total < best.loss.total) {
-      best = std::move(trial);
-      damping = std::max(damping * 0.2, 1e-6);
-      return;
-    }
-    damping *= 8.0;
-  }
 }
 
 namespace {

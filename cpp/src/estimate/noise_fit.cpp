@@ -62,7 +62,7 @@ std::array<Eigen::MatrixXd, 6> test_matrices(const GroupScatter& group, const Ei
   return tests;
 }
 
-struct NormalEquations {
+struct ScatterEquations {
   Matrix6 matrix = Matrix6::Zero();
   Vector6 vector = Vector6::Zero();
   Matrix6 spread = Matrix6::Zero();  ///< covariance of `vector` under the expected scatter
@@ -72,7 +72,7 @@ double trace_of_product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
   return a.cwiseProduct(b.transpose()).sum();
 }
 
-void add_group(NormalEquations& equations, const GroupScatter& group, const Vector6& noise, NoiseObjective objective) {
+void add_group(ScatterEquations& equations, const GroupScatter& group, const Vector6& noise, NoiseObjective objective) {
   const Eigen::MatrixXd expected = group.expected(noise);
   const auto tests = test_matrices(group, expected, objective);
   const Eigen::MatrixXd unexplained = group.observed - Eigen::MatrixXd(group.known.asDiagonal());
@@ -89,8 +89,9 @@ void add_group(NormalEquations& equations, const GroupScatter& group, const Vect
   }
 }
 
-NormalEquations normal_equations(std::span<const GroupScatter> groups, const Vector6& noise, NoiseObjective objective) {
-  NormalEquations equations;
+ScatterEquations normal_equations(std::span<const GroupScatter> groups, const Vector6& noise,
+                                  NoiseObjective objective) {
+  ScatterEquations equations;
   for (const GroupScatter& group : groups) {
     add_group(equations, group, noise, objective);
   }
@@ -139,7 +140,7 @@ Vector6 first_guess(std::span<const GroupScatter> groups) {
   return guess / static_cast<double>(groups.size());
 }
 
-Matrix6 covariance_of(const NormalEquations& at) {
+Matrix6 covariance_of(const ScatterEquations& at) {
   const Matrix6 inverse = Cholesky(at.matrix).inverse();
   return inverse * at.spread * inverse;  // for Fisher scoring, spread = matrix
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gauss-Newton with the exact Jacobian over all poses of all segments of a group.
+// Least squares with the exact Jacobian over all poses of all segments of a group.
 #include "slipwise/estimate/slip_rate_fit.hpp"
 
 #include <Eigen/Cholesky>
@@ -8,6 +8,7 @@
 #include <string>
 
 #include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/gauss_newton.hpp"
 
 namespace slipwise {
 namespace {
@@ -159,34 +160,23 @@ Eigen::Vector3d first_guess(std::span<const SteadySegment> segments, bool angula
   return {0.0, 0.0, angular ? sum / static_cast<double>(segments.size()) : 0.0};
 }
 
-/// Takes the full step, or the largest half of a half ... of it that lowers the cost; false where none does.
-bool descend(const GroupProblem& problem, const Eigen::Vector3d& step, SlipRateFit& fit) {
-  double share = 1.0;
-  for (int halvings = 0; halvings < 30; ++halvings, share *= 0.5) {
-    const Eigen::Vector3d candidate = fit.slip + share * step;
-    const double cost = problem.cost(candidate);
-    if (cost <= fit.cost) {
-      fit.slip = candidate;
-      fit.cost = cost;
-      return true;
-    }
-  }
-  return false;
-}
-
 SlipRateFit minimise(const GroupProblem& problem, const Eigen::Vector3d& start, const SlipRateSettings& settings) {
-  SlipRateFit fit{start, Eigen::Matrix3d::Zero(), problem.cost(start), Eigen::Vector3d::Zero(), {},
-                  0,     Status::NotConverged};
-  while (fit.iterations < settings.iterations && fit.status == Status::NotConverged) {
-    ++fit.iterations;
-    const auto equations = problem.equations(fit.slip);
-    Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    step.head(problem.unknowns()) = Cholesky(equations.information).solve(equations.gradient);
-    const double before = fit.cost;
-    const bool lower = descend(problem, step, fit);
-    // Where no step is downhill, none is left at working precision.
-    fit.status = !lower || before - fit.cost <= settings.tolerance * before ? Status::Converged : fit.status;
+  SlipRateFit fit{start, Eigen::Matrix3d::Zero(), 0.0, Eigen::Vector3d::Zero(), {}, 0, Status::NotConverged};
+  const Eigen::Index size = problem.unknowns();
+  GaussNewton search(start.head(size), {.iterations = settings.iterations, .relative = settings.tolerance});
+  NormalEquations at_best;
+  while (!search.over()) {
+    fit.slip.head(size) = search.candidate();
+    if (search.judge(problem.cost(fit.slip))) {
+      const auto at = problem.equations(fit.slip);
+      at_best = {at.information, at.gradient};
+    }
+    search.propose(at_best);
   }
+  fit.slip.head(size) = search.best();
+  fit.cost = search.cost();
+  fit.iterations = search.iterations();
+  fit.status = search.converged() ? Status::Converged : fit.status;
   return fit;
 }
 

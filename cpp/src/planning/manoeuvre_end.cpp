@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
-#include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/segment/path_step.hpp"
 
 namespace slipwise {
@@ -21,101 +21,20 @@ using StepJacobian = Eigen::Matrix<double, 4, kManoeuvreParameters>;  // duratio
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = DriveWindow{.start = 0.0, .end = 0.0}.longest_step;  // [s]
 
-/// A speed or a yaw rate, and how it moves with the parameters: `Slopes` is a row, or one number where the length alone
-/// matters.
-template <typename Slopes>
-struct Moving {
-  double value;
-  Slopes by;
-};
-using Speed = Moving<double>;
-using YawRate = Moving<ManoeuvreRow>;
+/// Speeds move with the manoeuvre's length alone, the yaw rate with all parameters.
+using SpeedAxis = AxisStepper<1>;
+using YawRateAxis = AxisStepper<kManoeuvreParameters>;
 
-bool is_zero(double by) { return by == 0.0; }
-bool is_zero(const ManoeuvreRow& by) { return by.isZero(0.0); }
-
-void add_by_length(double& by, double slope) { by += slope; }
-void add_by_length(ManoeuvreRow& by, double slope) { by[kLength] += slope; }
-
-/// Advances a lag over a step of moving duration and under a moving input; returns the integral.
-template <typename Slopes>
-Moving<Slopes> advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDecay& decay,
-                       double duration_by_length) {
-  const auto step = linearize_lag_step(output.value, told.value, decay);
-  // The lag is linear with a gain of one: what it does not keep of its output it takes from its input.
-  Moving<Slopes> integral{step.value.integral,
-                          step.by_output.integral * output.by + (decay.duration - step.by_output.integral) * told.by};
-  add_by_length(integral.by, step.by_duration.integral * duration_by_length);
-  output.by = step.by_output.output * output.by + (1.0 - step.by_output.output) * told.by;
-  add_by_length(output.by, step.by_duration.output * duration_by_length);
-  output.value = step.value.output;
-  return integral;
+/// An axis that is at `drive` while `told` acts. What the fast mode does not explain is the slow mode's; where the fast
+/// one is not known, it is settled.
+template <int N>
+AxisStepper<N> started(const ChannelResponse& response, double drive, double told, std::optional<double> known_fast) {
+  AxisStepper<N> axis(response);
+  const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told) : drive;
+  axis.start({.value = fast}, {.value = drive - fast});
+  axis.hold(Sensitive<N>{.value = told});
+  return axis;
 }
-
-template <typename Slopes>
-double advance(Moving<Slopes>& output, const Moving<Slopes>& told, const LagDecay& decay) {
-  const LagStep step = linearize_lag_step(output.value, told.value, decay).value;
-  output.value = step.output;
-  return step.integral;
-}
-
-/// One channel of the drive.
-template <typename Slopes>
-class Channel {
- public:
-  /// What the fast part does not explain is the slow part's; where it is not known, it is settled.
-  Channel(const ChannelResponse& response, double drive, const Moving<Slopes>& told, std::optional<double> known_fast)
-      : response_(response), told_(told) {
-    const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told.value) : drive;
-    fast_ = {fast, told.by};
-    slow_ = {drive - fast, told.by};
-    moves_ = fast != 0.0 || drive != 0.0;
-    tell(told);
-  }
-
-  void tell(const Moving<Slopes>& told) {
-    told_ = told;
-    moves_ = moves_ || told.value != 0.0 || !is_zero(told.by);
-  }
-  double value() const { return fast_.value + slow_.value; }
-  double fast() const { return fast_.value; }
-
-  Moving<Slopes> linearize_step(double duration, double duration_by_length) {
-    if (!moves_) {
-      return told_;
-    }
-    Moving<Slopes> integral =
-        advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration), duration_by_length);
-    if (response_.has_slow_part()) {
-      const Moving<Slopes> slow =
-          advance(slow_, part(response_.share()), LagDecay(response_.slow_lag, duration), duration_by_length);
-      integral = {integral.value + slow.value, integral.by + slow.by};
-    }
-    return integral;
-  }
-
-  double step(double duration) {
-    if (!moves_) {
-      return 0.0;
-    }
-    double integral = advance(fast_, part(1.0 - response_.share()), LagDecay(response_.lag, duration));
-    if (response_.has_slow_part()) {
-      integral += advance(slow_, part(response_.share()), LagDecay(response_.slow_lag, duration));
-    }
-    return integral;
-  }
-
- private:
-  Moving<Slopes> part(double share) const {
-    return {share * response_.gain * told_.value, share * response_.gain * told_.by};
-  }
-
-  ChannelResponse response_;
-  Moving<Slopes> told_;
-  Moving<Slopes> fast_{}, slow_{};
-  /// Most robots never drive sideways. What has not moved, and is not told to, has no slopes either.
-  bool moves_ = false;
-};
 
 /// The pose as it grows, and the sums that give its derivative.
 class GrowingEnd {
@@ -186,8 +105,8 @@ class ManoeuvreWalk {
     path.poses.push_back(end_.pose());
   }
 
-  BodyTwist drive() const { return {.v = v_.value(), .vy = vy_.value(), .omega = omega_.value()}; }
-  BodyTwist fast() const { return {.v = v_.fast(), .vy = vy_.fast(), .omega = omega_.fast()}; }
+  BodyTwist drive() const { return {.v = v_.whole().value, .vy = vy_.whole().value, .omega = omega_.whole().value}; }
+  BodyTwist fast() const { return {.v = v_.fast().value, .vy = vy_.fast().value, .omega = omega_.fast().value}; }
   Pose2 pose() const { return end_.pose(); }
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
@@ -196,10 +115,10 @@ class ManoeuvreWalk {
   ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, const BodyTwist& told)
       : chain_(model.chain()),
         held_(std::move(held)),
-        v_(speed_response(model.chain()), start.drive.v, {told.v, 0.0}, fast_of(start, &BodyTwist::v)),
-        vy_(speed_response(model.chain()), start.drive.vy, {told.vy, 0.0}, fast_of(start, &BodyTwist::vy)),
-        omega_(turn_response(model.chain()), start.drive.omega, {told.omega, ManoeuvreRow::Zero()},
-               fast_of(start, &BodyTwist::omega)),
+        v_(started<1>(speed_response(model.chain()), start.drive.v, told.v, fast_of(start, &BodyTwist::v))),
+        vy_(started<1>(speed_response(model.chain()), start.drive.vy, told.vy, fast_of(start, &BodyTwist::vy))),
+        omega_(started<kManoeuvreParameters>(turn_response(model.chain()), start.drive.omega, told.omega,
+                                             fast_of(start, &BodyTwist::omega))),
         end_(model) {}
 
   static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
@@ -222,13 +141,13 @@ class ManoeuvreWalk {
 
   void tell_speed() {
     const HeldCommand& command = held_.commands[next_v_++];
-    v_.tell({command.v, command.v_by_length});
-    vy_.tell({0.0, 0.0});
+    v_.hold({command.v, SpeedAxis::Row(command.v_by_length)});
+    vy_.hold(0.0);
   }
 
   void tell_yaw_rate() {
     const HeldCommand& command = held_.commands[next_omega_++];
-    omega_.tell({command.omega, command.omega_by});
+    omega_.hold({command.omega, command.omega_by});
   }
 
   template <bool kSlopes>
@@ -236,18 +155,20 @@ class ManoeuvreWalk {
     const bool lagging = speed_response(chain_).longest_lag() > 0.0 || turn_response(chain_).longest_lag() > 0.0;
     const int parts = lagging ? lag_parts(to.t - from.t, kLongestStep) : 1;
     const double duration = (to.t - from.t) / parts;
+    const AxisDecay decay_v(speed_response(chain_), duration), decay_omega(turn_response(chain_), duration);
     for (int i = 0; i < parts; ++i) {
       if constexpr (kSlopes) {
         const double slope = (to.slope - from.slope) / parts;
-        const Speed forward = v_.linearize_step(duration, slope);
-        const Speed left = vy_.linearize_step(duration, slope);
-        const YawRate turn = omega_.linearize_step(duration, slope);
+        const auto forward = v_.advance(decay_v, SpeedAxis::Row(slope));
+        const auto left = vy_.advance(decay_v, SpeedAxis::Row(slope));
+        const auto turn = omega_.advance(decay_omega, slope * ManoeuvreRow::Unit(kLength));
         StepJacobian jacobian = StepJacobian::Zero();
-        jacobian.col(kLength).head<3>() << slope, forward.by, left.by;
-        jacobian.row(3) = turn.by;
+        jacobian.col(kLength).head<3>() << slope, forward.slope, left.slope;
+        jacobian.row(3) = turn.slope;
         end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
       } else {
-        end_.drive({duration, v_.step(duration), vy_.step(duration), omega_.step(duration)}, nullptr);
+        end_.drive({duration, v_.advance_value(decay_v), vy_.advance_value(decay_v), omega_.advance_value(decay_omega)},
+                   nullptr);
       }
       if (path_ != nullptr) {
         path_->t.push_back(from.t + (i + 1) * duration);
@@ -258,8 +179,8 @@ class ManoeuvreWalk {
 
   const CommandChain& chain_;
   HeldCommands held_;
-  Channel<double> v_, vy_;
-  Channel<ManoeuvreRow> omega_;
+  SpeedAxis v_, vy_;
+  YawRateAxis omega_;
   std::size_t next_v_ = 0;
   std::size_t next_omega_ = 0;
   GrowingEnd end_;

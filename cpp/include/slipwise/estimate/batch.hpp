@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levenberg-Marquardt MAP over all segments at once, with a Huber loss.
+// The MAP estimate over all segments at once, with a Huber loss.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -12,6 +12,7 @@
 
 #include "slipwise/actuator/input_track.hpp"
 #include "slipwise/estimate/estimate.hpp"
+#include "slipwise/linear/gauss_newton.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
@@ -42,12 +43,17 @@ struct BatchFit {
   std::vector<SegmentLinearization> at;  ///< the data, at the estimate
 };
 
-/// Normal equations of the robust MAP problem at one point.
-struct NormalEquations {
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;  ///< of half the cost, downhill
+/// The robust MAP problem at one point.
+struct BatchPoint {
+  NormalEquations equations;
   double cost;
   std::vector<SegmentLinearization> at;  ///< the data
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.equations.information, self.equations.gradient, self.cost, self.at);
+  }
 };
 
 /// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.
@@ -62,7 +68,7 @@ class BatchSearch {
   BatchSearch() = default;  ///< nothing to do
   /// `at_start` are the data at the search's start, where they were linearised there before.
   /// \throws std::invalid_argument when sizes do not fit or there is no datum.
-  BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, BatchSettings settings,
+  BatchSearch(MotionModel model, Estimate prior, std::vector<BatchDatum> data, const BatchSettings& settings,
               std::vector<SegmentLinearization> at_start = {});
 
   /// Linearises `segments` data at most; whether there is more to do.
@@ -74,9 +80,7 @@ class BatchSearch {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.prior_, self.data_, self.settings_, self.prior_information_, self.mean_, self.candidate_,
-      self.at_);
-    a(self.now_, self.damping_, self.predicted_, self.fit_, self.over_);
+    a(self.model_, self.prior_, self.data_, self.prior_information_, self.search_, self.at_, self.huber_, self.best_);
     if constexpr (!std::is_const_v<Self>) {
       self.check_data();
     }
@@ -86,24 +90,18 @@ class BatchSearch {
   /// Finds what the data share, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
   /// datum, or a noise is none.
   void check_data();
-  NormalEquations normal_equations(std::vector<SegmentLinearization> at) const;
-  void propose();
-  void judge(NormalEquations next);
+  BatchPoint point(std::vector<SegmentLinearization> at) const;
+  void judge(BatchPoint point);
 
   MotionModel model_;
   Estimate prior_;
   std::vector<BatchDatum> data_;
-  BatchSettings settings_;
+  double huber_ = 0.0;
   std::vector<NewError> errors_;
   Eigen::MatrixXd prior_information_;
-  Eigen::VectorXd mean_;                  ///< the best so far
-  Eigen::VectorXd candidate_;             ///< that is being linearised
+  GaussNewton search_;
   std::vector<SegmentLinearization> at_;  ///< the first data, at the candidate
-  std::optional<NormalEquations> now_;    ///< at the mean; nothing before the start is linearised
-  double damping_ = 0.0;
-  double predicted_ = 0.0;  ///< decrease of the cost, of the step to the candidate
-  BatchFit fit_ = {};
-  bool over_ = false;
+  std::optional<BatchPoint> best_;        ///< nothing before the start is linearised
 };
 
 /// The same at once.

@@ -11,6 +11,7 @@
 
 #include "slipwise/estimate/iekf.hpp"
 #include "slipwise/estimate/lane_passage.hpp"
+#include "slipwise/linear/gauss_newton.hpp"
 
 namespace slipwise {
 
@@ -70,6 +71,9 @@ class ChannelWalk {
   /// Learns a window that follows all before it.
   void learn(const ChannelWindow& window);
   ChainPass result() const;
+  /// Of the parameters, at the point.
+  NormalEquations equations() const { return {information_, gradient_}; }
+  double cost() const { return cost_; }  ///< -2 log posterior of the point
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -80,7 +84,7 @@ class ChannelWalk {
  private:
   struct Learned;
   void begin(const ChannelWindow& window);
-  Learned filter(const FollowedLane& lane, const LaneMotion& motion, const WheelMeans& seen, double size) const;
+  Learned filter(const FollowedLane& lane, const AxisMotion& motion, const WheelMeans& seen, double size) const;
 
   std::shared_ptr<const ChannelModel> model_;
   double size_ = 0.0;

@@ -9,16 +9,17 @@
 
 #include "slipwise/estimate/chain_channel.hpp"
 #include "slipwise/estimate/chain_pass.hpp"
+#include "slipwise/linear/gauss_newton.hpp"
 #include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 
-/// From a start to the parameters that all windows lead to together: Gauss-Newton, whose steps are shortened until they
-/// help. Time constant and delay zigzag towards it, and more is gained by the next windows than by the last steps.
+/// From a start to the parameters that all windows lead to together. Time constant and delay zigzag towards it, and
+/// more is gained by the next windows than by the last steps.
 class ChannelFit {
  public:
   ChannelFit() = default;  ///< nothing to do
-  ChannelFit(std::shared_ptr<const ChannelModel> model, double size, ChannelParameters start, int most_passes);
+  ChannelFit(std::shared_ptr<const ChannelModel> model, double size, const ChannelParameters& start, int most_passes);
 
   /// Learns one window of a pass; whether there is more to do.
   bool advance(std::span<const ChannelWindow> past);
@@ -27,24 +28,20 @@ class ChannelFit {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.size_, self.left_, self.point_, self.full_, self.shortened_, self.best_, self.walk_,
+    a(self.model_, self.size_, self.search_, self.at_best_.information, self.at_best_.gradient, self.best_, self.walk_,
       self.done_);
   }
 
  private:
-  void judge(ChainPass pass);
-  void next_step();
-  void try_step();
+  void judge(const ChannelWalk& walk);
 
   std::shared_ptr<const ChannelModel> model_;
   double size_ = 0.0;
-  int left_ = 0;             ///< passes
-  ChannelParameters point_;  ///< of the best pass
-  ChannelParameters full_;   ///< the step from there
-  std::size_t shortened_ = 0;
+  GaussNewton search_;
+  NormalEquations at_best_;
   std::optional<ChainPass> best_;
-  std::optional<ChannelWalk> walk_;
-  std::size_t done_ = 0;  ///< windows of the walk
+  std::optional<ChannelWalk> walk_;  ///< at the candidate
+  std::size_t done_ = 0;             ///< windows of the walk
 };
 
 /// Windows are first learned one by one, linearised where little was known. A refit learns all of them together, then

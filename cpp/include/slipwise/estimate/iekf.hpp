@@ -6,6 +6,7 @@
 
 #include "slipwise/actuator/input_track.hpp"
 #include "slipwise/estimate/estimate.hpp"
+#include "slipwise/estimate/map_update.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
@@ -17,6 +18,8 @@ struct IekfSettings {
   int halvings = 4;         ///< step halvings per iteration before the iteration is given up
   double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
   double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is left out [-]
+
+  MapSettings map() const { return {.iterations = iterations, .tolerance = tolerance, .halvings = halvings}; }
 };
 
 /// One segment's update.

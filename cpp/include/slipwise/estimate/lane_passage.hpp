@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "slipwise/actuator/lane_motion.hpp"
+#include "slipwise/actuator/axis_motion.hpp"
 #include "slipwise/estimate/drive_noise.hpp"
 #include "slipwise/estimate/wheel_means.hpp"
 
@@ -40,7 +40,7 @@ std::optional<FirstLaneState> first_state(const ChannelWindow& window, const Act
 
 /// The lane through the window from the fast and the slow part at its start; derivatives by lags and delay are by their
 /// logarithms, as the channel's parameters are.
-LaneMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const LaneState& start);
+AxisMotion lane_through(const ChannelWindow& window, const ActuatorAxis& lane, const AxisState& start);
 
 /// The K means of the window, and after them the state at its end.
 struct LanePassage {

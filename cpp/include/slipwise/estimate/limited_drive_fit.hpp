@@ -15,6 +15,7 @@
 #include "slipwise/actuator/command_chain.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/estimate/prior.hpp"
+#include "slipwise/linear/gauss_newton.hpp"
 
 namespace slipwise {
 
@@ -76,9 +77,9 @@ class LimitedDriveFit {
   /// No limits, and the chain that is believed in before any data.
   LimitedDrive start() const;
   ScoredDrive scored(const LimitedDrive& drive) const;
-  /// Levenberg-Marquardt over the chain and over the limits that limit anything, dead-bands held. Steps gain less and
-  /// less: it stops where all that are left, if they gained as much as the last, came to no less than `wanted`.
-  ScoredDrive refine(const LimitedDrive& drive, int iterations,
+  /// Over the chain and over the limits that limit anything, dead-bands held. Steps gain less and less: it stops where
+  /// all that are left, if they gained as much as the last, came to no less than `wanted`.
+  ScoredDrive refine(const LimitedDrive& drive, int steps,
                      double wanted = std::numeric_limits<double>::infinity()) const;
   /// Standard deviation of each smooth limit of each lane (top, acceleration, braking), robust against residuals that
   /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
@@ -112,11 +113,6 @@ class LimitedDriveFit {
   };
   /// How fast each channel's errors fall with each free parameter [samples, parameters].
   using Slopes = std::array<Eigen::MatrixXd, 2>;
-  /// The normal equations of a step.
-  struct Normal {
-    Eigen::MatrixXd information;
-    Eigen::VectorXd pull;
-  };
   static ChannelDrive channel_drive(const LimitedDrive& drive, int c);
   /// The commands of each record that channel `c` follows.
   const std::vector<InputTrack>& tracks_of(const CommandLimits& limits, int c) const;
@@ -127,9 +123,7 @@ class LimitedDriveFit {
   FittedDrive fitted(const LimitedDrive& drive) const;
   DriveLoss known_loss(const LimitedDrive& drive, int c) const;
   Slopes slopes(const FittedDrive& at, const std::vector<int>& free) const;
-  Normal normal(const FittedDrive& at, const std::vector<int>& free) const;
-  /// Goes down one step, if there is one.
-  void step(FittedDrive& best, const Normal& normal, const std::vector<int>& free, double& damping) const;
+  NormalEquations equations(const FittedDrive& at, const std::vector<int>& free) const;
   double prior_loss(const LimitedDrive& drive) const;
 
   std::span<const DriveRecord> records_;

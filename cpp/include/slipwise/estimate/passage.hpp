@@ -35,8 +35,8 @@ struct PassagePoint {
 /// S = H P H^T + R of what is measured.
 Eigen::MatrixXd innovation_covariance(const Estimate& prior, const Passage& at);
 
-/// The most probable state at the start, given the prior and what was measured: Gauss-Newton in the dual form of the
-/// IEKF, from `expected`, the passage of the prior's mean. Where not even the first step helps, that mean.
+/// The most probable state at the start, given the prior and what was measured: from `expected`, the passage of the
+/// prior's mean. Where not even the first step helps, that mean.
 PassagePoint settle(const Estimate& prior, Passage expected, const Foretell& foretell, const Eigen::VectorXd& measured,
                     const IekfSettings& settings);
 

@@ -1,16 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-// What filters of measured poses ask of the covariance S of an innovation; compiled once.
+// What filters ask of the covariance S of an innovation: of a measured pose, compiled once, and of any size.
 #pragma once
 
 #include <Eigen/Core>
+
+#include "slipwise/linear/cholesky.hpp"
 
 namespace slipwise {
 
 /// r^T S^-1 r, the normalised innovation squared (NIS).
 double normalised_square(const Eigen::Vector3d& r, const Eigen::Matrix3d& s);
+inline double normalised_square(const Eigen::VectorXd& r, const Eigen::Ref<const Eigen::MatrixXd>& s) {
+  return r.dot(Cholesky(s).solve(r));
+}
 
 /// S^-1 B.
 Eigen::Matrix3Xd solve_innovation(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& b);
+inline Eigen::VectorXd solve_innovation(const Eigen::MatrixXd& s, const Eigen::VectorXd& b) {
+  return Cholesky(s).solve(b);
+}
+
+/// S = H P H^T + R, of as many rows as the Jacobian H has.
+template <class Jacobian, class Noise>
+auto innovation_covariance(const Eigen::MatrixXd& prior, const Eigen::MatrixBase<Jacobian>& jacobian,
+                           const Eigen::MatrixBase<Noise>& noise) {
+  constexpr int kRows = Jacobian::RowsAtCompileTime;
+  const Eigen::Matrix<double, kRows, Eigen::Dynamic> spread = jacobian * prior;
+  Eigen::Matrix<double, kRows, kRows> s = noise;
+  if constexpr (kRows == Eigen::Dynamic) {
+    s.noalias() += spread * jacobian.transpose();
+  } else {
+    s += spread.lazyProduct(jacobian.transpose());
+  }
+  return s;
+}
 
 /// (S^-1 H P)^T, the Kalman gain, of H P.
 inline Eigen::MatrixX3d kalman_gain(const Eigen::Matrix3d& s, const Eigen::Ref<const Eigen::Matrix3Xd>& hp) {

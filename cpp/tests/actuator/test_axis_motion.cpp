@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One lane from a known state: the same as the whole chain's walk, and its exact sensitivities.
-#include "slipwise/actuator/lane_motion.hpp"
+#include "slipwise/actuator/axis_motion.hpp"
 
 #include <doctest/doctest.h>
 
@@ -36,7 +36,7 @@ TEST_CASE("a lane's means sum to what the whole chain drives") {
   const InputTrack inputs = commands();
   const double long_before = -20.0;
   const std::vector<double> all{long_before, 0.45, 0.6, 0.77, 1.25, 1.4};
-  const LaneMotion motion = lane_motion(inputs, lane, settled_lane(inputs, lane, long_before), all);
+  const AxisMotion motion = axis_motion(inputs, lane, settled_axis(inputs, lane, long_before), all);
   for (std::size_t k = 1; k + 1 < all.size(); ++k) {
     double turned = 0.0;
     for (const DriveStep& step : drive_steps(inputs, chain, {.start = all[k], .end = all[k + 1]}).steps) {
@@ -49,20 +49,20 @@ TEST_CASE("a lane's means sum to what the whole chain drives") {
 TEST_CASE("a lane that is followed in two stretches ends as in one") {
   const ActuatorAxis lane{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
   const InputTrack inputs = commands();
-  const LaneMotion whole = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, kEdges);
-  const LaneMotion first = lane_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, std::span(kEdges).first(3));
-  const LaneMotion rest =
-      lane_motion(inputs, lane, {.fast = first.value[2], .slow = first.value[3]}, std::span(kEdges).subspan(2));
+  const AxisMotion whole = axis_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, kEdges);
+  const AxisMotion first = axis_motion(inputs, lane, {.fast = 0.2, .slow = -0.1}, std::span(kEdges).first(3));
+  const AxisMotion rest =
+      axis_motion(inputs, lane, {.fast = first.value[2], .slow = first.value[3]}, std::span(kEdges).subspan(2));
   CHECK((whole.value.tail(4) - rest.value).lpNorm<Eigen::Infinity>() < 1e-14);
   CHECK((whole.value.head(2) - first.value.head(2)).lpNorm<Eigen::Infinity>() < 1e-14);
 }
 
 TEST_CASE("a lane's slopes are its derivatives") {
-  Eigen::VectorXd at(kLaneParameters);
+  Eigen::VectorXd at(kAxisParameters);
   at << 0.3, 0.13, 0.9, 0.3, 0.8, 0.2, -0.1;
   const InputTrack inputs = commands();
   const auto motion = [&](const Eigen::VectorXd& p) {
-    return lane_motion(inputs, lane_of(p), {.fast = p[5], .slow = p[6]}, kEdges);
+    return axis_motion(inputs, lane_of(p), {.fast = p[5], .slow = p[6]}, kEdges);
   };
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd { return motion(p).value; };
   const Eigen::MatrixXd numeric = tests::finite_difference(value, at, 0.01);

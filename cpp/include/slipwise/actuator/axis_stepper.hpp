@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// One actuator axis from step to step: a fast and a slow first-order mode side by side behind a gain, with derivatives
+// by whatever its inputs, its durations and its own parameters move with (derivations.md, section 4).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/actuator/slow_mode.hpp"
+
+namespace slipwise {
+
+/// A value with its derivatives by N parameters; by none, the value alone.
+template <int N>
+struct Sensitive {
+  double value = 0.0;
+  Eigen::Matrix<double, 1, N> slope = Eigen::Matrix<double, 1, N>::Zero();
+};
+
+template <int N>
+double value_of(const Sensitive<N>& number) {
+  return number.value;
+}
+
+template <int N>
+Sensitive<N> operator+(const Sensitive<N>& a, const Sensitive<N>& b) {
+  return {a.value + b.value, a.slope + b.slope};
+}
+
+template <int N>
+Sensitive<N> operator-(double a, const Sensitive<N>& b) {
+  return {a - b.value, -b.slope};
+}
+
+/// Where an axis's parameters stand among the N; kNotAmong where nothing is differentiated by one.
+inline constexpr Eigen::Index kNotAmong = -1;
+struct AxisPlaces {
+  Eigen::Index lag = kNotAmong, delay = kNotAmong, gain = kNotAmong, slow_share = kNotAmong, slow_lag = kNotAmong;
+};
+
+/// How the gaps of an axis's two modes close over a step.
+struct AxisDecay {
+  LagDecay fast, slow;
+
+  AxisDecay(const ChannelResponse& response, double duration)
+      : fast(response.lag, duration), slow(response.slow_lag, duration) {}
+};
+
+/// The axis under an input that is held until the next one.
+template <int N>
+class AxisStepper {
+ public:
+  using Value = Sensitive<N>;
+  using Row = Eigen::Matrix<double, 1, N>;
+
+  explicit AxisStepper(const ChannelResponse& response, const AxisPlaces& places = {})
+      : response_(response), places_(places) {}
+
+  const ChannelResponse& response() const { return response_; }
+  const Value& fast() const { return fast_; }
+  const Value& slow() const { return slow_; }
+  Value whole() const { return fast_ + slow_; }
+
+  /// What its modes hold.
+  void start(const Value& fast, const Value& slow) {
+    fast_ = fast;
+    slow_ = slow;
+    moves_ = fast.value != 0.0 || slow.value != 0.0 || !fast.slope.isZero(0.0) || !slow.slope.isZero(0.0);
+  }
+
+  /// An input that was held for long.
+  void settle(double input) {
+    moves_ = false;
+    hold(input);
+    fast_ = towards_fast_;
+    slow_ = towards_slow_;
+  }
+
+  /// An input that moves with no parameter.
+  void hold(double input) {
+    towards_fast_ = part(input, false);
+    if (response_.has_slow_part()) {
+      towards_slow_ = part(input, true);
+    }
+    moves_ = moves_ || input != 0.0;
+  }
+
+  /// An input that moves with some of the N, which are none of the axis's own.
+  void hold(const Value& input) {
+    const double fast = response_.fast_share(), slow = response_.share() * response_.gain;
+    towards_fast_ = {fast * input.value, fast * input.slope};
+    towards_slow_ = {slow * input.value, slow * input.slope};
+    moves_ = moves_ || input.value != 0.0 || !input.slope.isZero(0.0);
+  }
+
+  /// The whole was measured while the held input acts.
+  void measure(double value) {
+    moves_ = moves_ || value != 0.0;
+    if (!response_.has_slow_part()) {
+      fast_ = {.value = value};
+      return;
+    }
+    slow_ = slow_mode<Value>(
+        {.left = value - fast_, .modelled = slow_, .settled = towards_slow_, .carried = value - towards_fast_});
+    fast_ = value - slow_;
+  }
+
+  /// It was measured before any input acts: what it does is held.
+  void keep(double value) {
+    moves_ = value != 0.0;
+    fast_ = {.value = (1.0 - response_.share()) * value};
+    slow_ = {.value = response_.share() * value};
+    if constexpr (N > 0) {
+      if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
+        fast_.slope[places_.slow_share] = -value;
+        slow_.slope[places_.slow_share] = value;
+      }
+    }
+    towards_fast_ = fast_;
+    towards_slow_ = slow_;
+  }
+
+  /// Advances over a step; returns the integral [m or rad].
+  double advance_value(const AxisDecay& decay) {
+    if (!moves_) {
+      return 0.0;
+    }
+    double integral = advance_value(fast_, towards_fast_, decay.fast);
+    if (response_.has_slow_part()) {
+      integral += advance_value(slow_, towards_slow_, decay.slow);
+    }
+    return integral;
+  }
+
+  /// The same with derivatives; the step's duration may move with the parameters too.
+  Value advance(const AxisDecay& decay, const Row& duration_slope) {
+    if (!moves_) {
+      return {};
+    }
+    const Value fast = advance(fast_, towards_fast_, decay.fast, places_.lag, duration_slope);
+    return response_.has_slow_part()
+               ? fast + advance(slow_, towards_slow_, decay.slow, places_.slow_lag, duration_slope)
+               : fast;
+  }
+
+  /// Goes on for a while whose integral nobody asks for.
+  void follow(const AxisDecay& decay, const Row& duration_slope) {
+    if (!moves_) {
+      return;
+    }
+    follow(fast_, towards_fast_, linearize_lag_step(fast_.value, towards_fast_.value, decay.fast), places_.lag,
+           duration_slope);
+    if (response_.has_slow_part()) {
+      follow(slow_, towards_slow_, linearize_lag_step(slow_.value, towards_slow_.value, decay.slow), places_.slow_lag,
+             duration_slope);
+    }
+  }
+
+  /// Without lag, the derivative of a step's integral by the gain.
+  double by_gain(double duration) const { return towards_fast_.slope[places_.gain] * duration; }
+
+ private:
+  /// Of an input, what one of the modes goes towards: its share of gain * input.
+  Value part(double input, bool slow) const {
+    const double share = slow ? response_.share() : 1.0 - response_.share();
+    Value part{.value = share * response_.gain * input};
+    if constexpr (N > 0) {
+      if (places_.gain != kNotAmong) {
+        part.slope[places_.gain] = share * input;
+      }
+      if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
+        part.slope[places_.slow_share] = (slow ? 1.0 : -1.0) * response_.gain * input;
+      }
+    }
+    return part;
+  }
+
+  static double advance_value(Value& mode, const Value& towards, const LagDecay& decay) {
+    const LagStep step = linearize_lag_step(mode.value, towards.value, decay).value;
+    mode.value = step.output;
+    return step.integral;
+  }
+
+  static void follow(Value& mode, const Value& towards, const LagStepLinearization& step, Eigen::Index time_constant,
+                     const Row& duration_slope) {
+    if constexpr (N > 0) {
+      mode.slope = (step.by_duration.output * duration_slope + step.by_output.output * mode.slope +
+                    step.by_input.output * towards.slope)
+                       .eval();
+      if (time_constant != kNotAmong) {
+        mode.slope[time_constant] += step.by_time_constant.output;
+      }
+    }
+    mode.value = step.value.output;
+  }
+
+  static Value advance(Value& mode, const Value& towards, const LagDecay& decay, Eigen::Index time_constant,
+                       const Row& duration_slope) {
+    const auto step = linearize_lag_step(mode.value, towards.value, decay);
+    Value integral{.value = step.value.integral};
+    if constexpr (N > 0) {
+      integral.slope = step.by_duration.integral * duration_slope + step.by_output.integral * mode.slope +
+                       step.by_input.integral * towards.slope;
+      if (time_constant != kNotAmong) {
+        integral.slope[time_constant] += step.by_time_constant.integral;
+      }
+    }
+    follow(mode, towards, step, time_constant, duration_slope);
+    return integral;
+  }
+
+  ChannelResponse response_;
+  AxisPlaces places_;
+  Value fast_, slow_, towards_fast_, towards_slow_;
+  /// Most robots never drive sideways. What has not moved, and is not commanded to, has no derivatives either.
+  bool moves_ = false;
+};
+
+}  // namespace slipwise
