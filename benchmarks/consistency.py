@@ -7,7 +7,7 @@ the same filter is fed 20 times a second with overlapping 5 s windows, as the th
 
 A second table has every estimator on shorter drives, with windows that share poses as in a real log, once
 with the noise above and once with poses so noisy that they outweigh the slip noise. The experiment itself is
-`slipwise.reproduction.monte_carlo`.
+`slipwise.thesis.monte_carlo`.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from slipwise import _core
-from slipwise.reproduction.monte_carlo import (
+from slipwise.thesis.monte_carlo import (
     ESTIMATORS,
     NOISE,
     POSE_NOISE,
@@ -29,7 +29,7 @@ from slipwise.reproduction.monte_carlo import (
     Feeding,
     RunResult,
     judged,
-    known_drive,
+    known_run,
     learned,
     nees_band,
     summary,
@@ -49,14 +49,14 @@ NOISES = {"slip and poses": NOISE, "mostly poses": POSE_NOISE}
 def one_run(job: tuple[str, int, Feeding]) -> RunResult:
     """Simulate and learn one seed."""
     name, seed, feeding = job
-    drive = known_drive(name, seed, minutes=MINUTES)
+    drive = known_run(name, seed, minutes=MINUTES)
     return judged(learned(feeding, drive), drive)
 
 
 def estimators_on_one_drive(job: tuple[str, int]) -> list[RunResult]:
     """Learn one seed with every estimator, in the order of `ESTIMATORS`."""
     noise, seed = job
-    drive = known_drive(TRUTHS[0], seed, NOISES[noise], minutes=ESTIMATOR_MINUTES)
+    drive = known_run(TRUTHS[0], seed, NOISES[noise], minutes=ESTIMATOR_MINUTES)
     return [judged(learned(feeding, drive), drive) for feeding in ESTIMATORS]
 
 

@@ -12,10 +12,10 @@ from data_sets import data_folder, data_sets
 from numpy.typing import NDArray
 
 from slipwise.calibration import Settings, calibrate
-from slipwise.calibration.drive import collect_windows, prepare_drive
-from slipwise.calibration.forecast import forecast
-from slipwise.calibration.plain import model_forecaster
+from slipwise.calibration.plain import model_predictor
 from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.predictors import predictions_of
+from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.errors import SlipwiseError
 from slipwise.logs import Inputs, Log, Poses, Run, open_log
 from slipwise.models import Model
@@ -76,10 +76,10 @@ def _cut(part: PartT, begin: float, end: float) -> PartT:
 
 def coverage(model: Model, log: Log) -> list[Coverage]:
     """Return how the second half lies in the ellipsoids that the file states, tails of the file included."""
-    drive = prepare_drive(log, model.content.input)
-    forecaster = model_forecaster(model, drive)
+    drive = prepare_run(log, model.content.input)
+    predictor = model_predictor(model, drive)
     sets = [collect_windows(drive, horizon, Settings().rules()) for horizon in HORIZONS]
-    judged = [forecast(forecaster, targets, targets) for targets in sets if len(targets) >= FEWEST]
+    judged = [predictions_of(predictor, targets, targets) for targets in sets if len(targets) >= FEWEST]
     return [_coverage(model, predictions) for predictions in judged]
 
 

@@ -21,7 +21,7 @@ from numpy_filter import Floats, Noise, Window
 from simulated_log import BASIS, simulated_log
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
+from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log, save_log
 
@@ -58,7 +58,7 @@ class Job:
 
 def make_job(log: Log, length: float) -> Job:
     """Cut the log into windows of `length` [s]; the noise is Gaussian, so nothing is left out."""
-    windows = collect_windows(prepare_drive(log, "wheel"), length, Settings().rules())
+    windows = collect_windows(prepare_run(log, "wheel"), length, Settings().rules())
     model = _core.MotionModel(_core.named_basis(BASIS), False, False)
     settings = _core.IekfSettings()
     settings.iterations, settings.tolerance, settings.huber, settings.gate = ITERATIONS, 0.0, 1e9, 1e18
@@ -83,7 +83,7 @@ def make_job(log: Log, length: float) -> Job:
 def core_average(log: Log, length: float) -> Callable[[], None]:
     """Return the pass that `slipwise calibrate` makes: adapting priors and noise, one basis."""
     settings = Settings(basis=BASIS, learn_clock_offset=False)
-    windows = collect_windows(prepare_drive(log, "wheel"), length, settings.rules())
+    windows = collect_windows(prepare_run(log, "wheel"), length, settings.rules())
     filters = (settings.filter_settings(), settings.average_settings())
 
     def work() -> None:

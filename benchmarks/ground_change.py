@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """How soon a change of ground is found, and how often one is found where there is none.
 
-False alarms are counted on simulated drives over one ground, with white, heavy-tailed and coloured slip
+False alarms are counted on simulated drives over one ground, with white, heavy-tailed and coloured
 noise. Steps (yaw slip times 1.5 and times 1.25) are simulated with rigid-body physics; they can show only
 while the robot turns, so that windows are counted from the first that turns by at least 0.2 rad/s. From
-commands the chain is learned along with the slip, without the wheel speeds that the log has beside them.
+commands the actuator is learned along with the slip, without the wheel speeds that the log has beside them.
 The real logs, where there are any, are counted too.
 """
 
@@ -25,15 +25,15 @@ from simulated_log import RATE, simulated_log
 import slipwise
 from slipwise import _core
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import WindowSet, prepare_drive
 from slipwise.calibration.estimators import learned_parts
+from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
 from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
 
 Floats = NDArray[np.float64]
 
-SLIP_STD = np.array([0.03, 0.03, 0.04])  # m/s, m/s, rad/s, of heavy-tailed and coloured slip
+SLIP_STD = np.array([0.03, 0.03, 0.04])  # m/s, m/s, rad/s, of heavy-tailed and the slip disturbance
 SLIP_PSD = np.array([4e-4, 4e-4, 1e-4])  # m^2/s, m^2/s, rad^2/s, of white slip
 COLOUR_SECONDS, DRAW_SECONDS, DEGREES = 3.0, 1.0, 3
 OTHER_GROUNDS = {  # yaw slip over that of the first ground, -0.37
@@ -79,7 +79,7 @@ NOISES = {"white": white, "heavy-tailed": heavy_tailed, "coloured": coloured}
 
 def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTest]]:
     """Learn a log causally by `auto`; return its windows and their tests for a change."""
-    windows = learning_windows(prepare_drive(log, input_name), input_name, Settings())
+    windows = learning_windows(prepare_run(log, input_name), input_name, Settings())
     settings, tests = Settings(), []
     dynamics, offset = learned_parts(settings, input_name)
     filters = (settings.filter_settings(), settings.average_settings())

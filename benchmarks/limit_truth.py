@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How true the limits found in wheel speeds are: simulated drives of known limits, and dull ones.
 
-Steps of speed and yaw rate through a chain of known dead-band, top speed, acceleration and braking, of the
+Steps of speed and yaw rate through a actuator of known dead-band, top speed, acceleration and braking, of the
 sides or of speed and yaw rate, with white noise on the wheel speeds. Counted is how often each limit is
 found, how often the truth lies within 3 of its stated standard deviations, and how often a limit is found
 that is not there.
@@ -27,7 +27,7 @@ from slipwise.calibration.limit_words import limits_advice
 from slipwise.simulation import dull_drive, steps_drive
 
 SECONDS = 120.0
-FAR = _core.LaneLimits(0.0, 4.0, 30.0, 30.0)  # beyond what a dull drive shows
+FAR = _core.AxisLimits(0.0, 4.0, 30.0, 30.0)  # beyond what a dull drive shows
 CASES = {
     "sides": (SIDES, steps_drive),
     "channels": (CHANNELS, steps_drive),
@@ -61,7 +61,7 @@ def one(case: str, seed: int) -> Drive:
     limits, commands = CASES[case]
     result = search(limits, commands(seed, SECONDS), seed)
     found = [
-        Found(f"{f.lane.name} {f.kind.name}", f.value, f.std, true_value(limits, f)) for f in result.found
+        Found(f"{f.axis.name} {f.kind.name}", f.value, f.std, true_value(limits, f)) for f in result.found
     ]
     return Drive(case, seed, found, limits_advice(result))
 

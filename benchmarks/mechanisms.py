@@ -48,60 +48,68 @@ def _without(structure: str) -> dict[str, object]:
 
 _AVERAGE, _FILTER = "hypotheses.average.", "hypotheses.filter."
 _BANK = "hypotheses/motion_hypotheses"
-_ACTUATOR = tuple(
-    f"estimate/{name}"
-    for name in (
-        "chain_learner",
-        "chain_channel",
-        "chain_pass",
-        "passage",
-        "lane_passage",
-        "drive_noise",
-        "wheel_means",
-    )
+_ACTUATOR = (
+    "filter/window_model",
+    *(
+        f"identify/{name}"
+        for name in (
+            "actuator_filter",
+            "actuator_channel",
+            "channel_run",
+            "axis_window",
+            "actuator_noise",
+            "wheel_means",
+        )
+    ),
 )
 _ONE = "odd-even-10"  # of all bases, it is best most often
 
 MECHANISMS = (
     Mechanism(
         Variant("cascaded structure", settings=_without("cascaded")),
-        ("hypotheses/cascaded_model", "estimate/channel_refit", *_ACTUATOR),
+        ("hypotheses/cascaded_model", "identify/channel_refit", *_ACTUATOR),
         ((_BANK, "[cC]ascade"),),
     ),
     Mechanism(Variant("direct structure", settings=_without("direct")), named=((_BANK, "[dD]irect"),)),
     Mechanism(Variant("baseline structure", settings=_without("baseline")), named=((_BANK, "[bB]aseline"),)),
     Mechanism(
         Variant("all structures but joint", settings={"auto": {"structures": ["joint"]}}),
-        ("hypotheses/cascaded_model", "estimate/channel_refit", _BANK, *_ACTUATOR),
+        ("hypotheses/cascaded_model", "identify/channel_refit", _BANK, *_ACTUATOR),
     ),
     Mechanism(
         Variant(f"average of bases: {_ONE} alone", settings={"auto": {"bases": [_ONE]}}),
-        ("estimate/model_average", "estimate/weighing"),
+        ("hypotheses/model_average", "filter/weighting"),
     ),
     Mechanism(
         Variant(f"both: joint {_ONE} alone", settings={"auto": {"bases": [_ONE], "structures": ["joint"]}}),
     ),
     Mechanism(
         Variant("change detector", settings={"change": {"detect": False}}),
-        ("estimate/change_detector",),
-        (("estimate/model_average", r"change|[dD]oubt|settle|trial|before_|kChanged"),),
+        ("hypotheses/change_detector",),
+        (("hypotheses/model_average", r"change|[dD]oubt|settle|trial|before_|kChanged"),),
     ),
     Mechanism(
         Variant("slip disturbance", settings={"slip_disturbance": {"learn": False}}),
-        ("estimate/coloured_slip", "estimate/slip_deviation", "motion/slip_wander", "online/recent_slip"),
+        (
+            "disturbance/slip_disturbance",
+            "disturbance/slip_deviation",
+            "motion/disturbance_model",
+            "online/recent_slip",
+        ),
         (("online/motion_learner", r"disturbance|recent"),),
     ),
     Mechanism(
         Variant("refits of filters", constants={"causal_filter.kFirst": NEVER}),
-        ("estimate/filter_refit", "estimate/batch"),
-        (("estimate/causal_filter", r"[rR]efit|kept_|full_|before_"),),
+        ("filter/filter_refit", "filter/batch"),
+        (("filter/causal_filter", r"[rR]efit|kept_|full_|before_"),),
     ),
     Mechanism(
         Variant(
-            "refits of the actuator", constants={"chain_learner.kFirst": NEVER, "chain_learner.kLast": NEVER}
+            "refits of the actuator",
+            constants={"actuator_filter.kFirst": NEVER, "actuator_filter.kLast": NEVER},
         ),
-        ("estimate/channel_refit", "estimate/chain_pass"),
-        (("estimate/chain_learner", r"[rR]efit|past_"),),
+        ("identify/channel_refit", "identify/channel_run"),
+        (("identify/actuator_filter", r"[rR]efit|past_"),),
     ),
     Mechanism(Variant("slow mode of the actuator", numbers={f"{_FILTER}prior.slow_share_std": ALMOST_NONE})),
     Mechanism(Variant("gain of the actuator", numbers={f"{_FILTER}prior.gain_std": ALMOST_NONE})),
@@ -109,38 +117,38 @@ MECHANISMS = (
         Variant("clock offset", settings={"learn_clock_offset": False}),
         named=((_BANK, "clock"), ("motion/motion_model", "[cC]lock")),
     ),
-    Mechanism(Variant("fixed-share of bases", numbers={f"{_AVERAGE}weighing.share": ALMOST_NONE})),
-    Mechanism(Variant("prior weight of the largest basis", numbers={f"{_AVERAGE}richest": 0.5 / 1.2})),
+    Mechanism(Variant("fixed-share of bases", numbers={f"{_AVERAGE}weighting.share": ALMOST_NONE})),
+    Mechanism(Variant("prior weight of the largest basis", numbers={f"{_AVERAGE}largest_basis": 0.5 / 1.2})),
     Mechanism(
         Variant("Huber weights", settings={"filter": {"huber": 1e6}}),
-        named=(("estimate/iekf", "[hH]uber"), ("estimate/batch", "[hH]uber")),
+        named=(("filter/iekf", "[hH]uber"), ("filter/batch", "[hH]uber")),
     ),
     Mechanism(
         Variant("gate of outliers", numbers={f"{_FILTER}iekf.gate": NEVER}),
-        named=(("estimate/iekf", r"\bgate"),),
+        named=(("filter/iekf", r"\bgate"),),
     ),
     Mechanism(
         Variant("learning of noise", settings={"noise": {"adapt": False}}),
-        ("estimate/noise_scale",),
-        (("estimate/causal_filter", "noise_scale"),),
+        ("filter/noise_scale",),
+        (("filter/causal_filter", "noise_scale"),),
     ),
     Mechanism(
         Variant(
             "correlated scores",
             constants={"score_covariance.kModelSegments": NEVER, "score_covariance.kKernelTime": ALMOST_NONE},
         ),
-        ("estimate/score_covariance",),
-        (("estimate/causal_filter", "stated|scores"),),
+        ("filter/score_covariance",),
+        (("filter/causal_filter", "stated|scores"),),
     ),
 )
-CALIBRATION = Mechanism(Variant(), ("identify/student_calibration", "identify/student_t"))
+CALIBRATION = Mechanism(Variant(), ("online/student_calibration", "online/student_t"))
 LIMITS = Mechanism(
     Variant("default, then limits", limits=True),
     (
         "online/actuator_limits",
-        "estimate/limit_search",
-        "estimate/limited_drive_fit",
-        "estimate/limited_drive_parameters",
-        "estimate/dead_band_search",
+        "identify/limit_search",
+        "identify/limited_actuator_fit",
+        "identify/limited_actuator_parameters",
+        "identify/dead_band_search",
     ),
 )

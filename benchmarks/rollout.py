@@ -31,7 +31,7 @@ from slipwise.planning import Start, command_buffer, rollout, sample_futures
 
 ROLLOUTS, PERIODS, DT = 2048, 100, 0.05
 PROGRAMS = ("time_rollout", "time_mppi_motion")
-SPEEDS = re.compile(r"thesis-15, no chain\s+(\w+)\s+([\d.]+)")
+SPEEDS = re.compile(r"thesis-15, no actuator\s+(\w+)\s+([\d.]+)")
 LONGEST_CALL = 1.3  # from Python, in times of C++
 GPU_PROGRAM = "time_gpu"
 #: Whole MPPI iterations (sampling, rollouts of a drive without slip, costs) on an RTX 4090, as published by
@@ -59,7 +59,7 @@ def commands() -> NDArray[np.float32]:
 
 
 def learned() -> Model:
-    """Learn the thesis's 15 parameters from a simulated log of wheel speeds, without a chain."""
+    """Learn the thesis's 15 parameters from a simulated log of wheel speeds, without a actuator."""
     settings = make_settings({"basis": "thesis-15", "learn_clock_offset": False})
     return calibrate(simulated_log(3.0, seed=1), input="wheel", settings=settings).model
 

@@ -38,7 +38,7 @@ BENCHMARKS = (
     Benchmark("rollout", "Rollouts for planners, beside rivals", quick=("--quick",)),
     Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
     Benchmark(
-        "chain_truth",
+        "actuator_truth",
         "Is the truth found, and its uncertainty true?",
         quick=("--runs", "10", "--physics", "1"),
         has_figures=False,
@@ -58,7 +58,7 @@ BENCHMARKS = (
     Benchmark(
         "sensitivity",
         "How much each constant matters",
-        quick=("--only", "f1tenth/DS4", "--constant", "weighing"),
+        quick=("--only", "f1tenth/DS4", "--constant", "weighting"),
         needs_data=True,
     ),
     Benchmark(

@@ -8,7 +8,7 @@ and heading errors, largest first. What changes neither by 0.2 % either way coul
 
 By default the logs are a few of every data set; --all takes every log.
 
-    python benchmarks/sensitivity.py --only f1tenth/DS4 --constant weighing --json sensitivity.json
+    python benchmarks/sensitivity.py --only f1tenth/DS4 --constant weighting --json sensitivity.json
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ NEGLIGIBLE, NEGLIGIBLE_COVERAGE = 0.2, 0.5  # %, points of %
 FRACTIONS = frozenset(
     {
         "disturbance.white",
-        "hypotheses.average.richest",
+        "hypotheses.average.largest_basis",
         "driven_speeds.kReferenceShare",
         "model_average.kChanged",
         "score_covariance.kMostTaken",

@@ -19,9 +19,10 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("vehicle", "slip", "actuator"),
     ("motion",),
     ("segment", "rollout"),
-    ("estimate", "planning"),
-    ("identify", "hypotheses"),
-    ("online",),
+    ("filter", "planning"),
+    ("disturbance", "identify"),
+    ("hypotheses",),
+    ("online", "thesis"),
 )
 LEVEL = {folder: level for level, row in enumerate(LAYERS) for folder in row}
 

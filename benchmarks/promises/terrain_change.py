@@ -25,8 +25,8 @@ if __name__ == "__main__":  # run by its path as well as imported from the root
 import numpy as np
 from benchmarks.promises.disturbed_robot import Disturbance, Robot, TerrainChange, disturbed_run
 
-from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
 
@@ -96,7 +96,7 @@ def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> LearnedLo
     log = disturbed_run(robot, MINUTES, seed=job.seed, change=change).log
     if job.input == "command":
         log = Log(tuple(replace(part, wheels=None) for part in log.runs))
-    return learn_log(prepare_drive(log, job.input), settings, (HORIZON,), keep=Keep(settings.vehicle.track))
+    return learn_log(prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.vehicle.track))
 
 
 def _alarms(learned: LearnedLog) -> np.ndarray:

@@ -12,7 +12,7 @@ namespace slipwise::tests {
 
 /// Ridders' method for one direction: differences at shrinking steps, extrapolated to a step of zero.
 template <std::invocable<double> F>
-Eigen::VectorXd ridders_slope(F f, double step) {
+Eigen::VectorXd ridders_derivative(F f, double step) {
   constexpr std::size_t kRounds = 6;
   constexpr double kShrink = 1.6;
   std::array<std::array<Eigen::VectorXd, kRounds>, kRounds> table;
@@ -44,7 +44,7 @@ Eigen::MatrixXd finite_difference(F f, const Eigen::VectorXd& at, double step) {
       point[j] += h;
       return f(point);
     };
-    const Eigen::VectorXd column = ridders_slope(along, step);
+    const Eigen::VectorXd column = ridders_derivative(along, step);
     jacobian.conservativeResize(column.size(), at.size());
     jacobian.col(j) = column;
   }

@@ -74,16 +74,16 @@ inline SimulatedDrive simulate_drive(const MotionModel& model, const Eigen::Vect
   const double length = settings.window * static_cast<double>(settings.windows);
   SimulatedDrive drive{random_inputs(random, length + 1.0, settings.period), {}};
   Pose2 pose;
-  Pose2 seen = measured_pose(pose, settings.noise, random);
+  Pose2 observed = measured_pose(pose, settings.noise, random);
   for (std::size_t i = 0; i < settings.windows; ++i) {
     const double start = 0.5 + settings.window * static_cast<double>(i);
     Segment segment{.start = start, .end = start + settings.window};
     const SegmentPath path = integrate_segment(model, truth, drive.inputs, segment);
     pose = compose(pose, disturbed_motion(path, settings.noise, random));
     const Pose2 seen_at_end = measured_pose(pose, settings.noise, random);
-    segment.measured = between(seen, seen_at_end);
+    segment.measured = between(observed, seen_at_end);
     drive.segments.push_back(segment);
-    seen = settings.shared_poses ? seen_at_end : measured_pose(pose, settings.noise, random);
+    observed = settings.shared_poses ? seen_at_end : measured_pose(pose, settings.noise, random);
   }
   return drive;
 }

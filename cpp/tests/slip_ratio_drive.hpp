@@ -3,7 +3,7 @@
 #pragma once
 
 #include "simulated_drive.hpp"
-#include "slipwise/estimate/slip_ratio_filter.hpp"
+#include "slipwise/thesis/slip_ratio_filter.hpp"
 
 namespace slipwise::tests {
 

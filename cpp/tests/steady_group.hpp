@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "slipwise/segment/steady_segment.hpp"
+#include "slipwise/thesis/steady_segment.hpp"
 
 namespace slipwise::tests {
 
@@ -21,7 +21,7 @@ struct SteadyScript {
   std::uint64_t seed = 1;
 };
 
-/// Integrated in fine steps of noisy twists; the start's error is drawn and seen in all later poses.
+/// Integrated in fine steps of noisy twists; the start's error is drawn and observed in all later poses.
 inline std::vector<SteadySegment> simulate_group(const SteadyScript& script) {
   constexpr int kSteps = 10;
   std::mt19937_64 random(script.seed);

@@ -15,11 +15,11 @@
 /// The model as the library has it.
 slipwise::MotionModel learned_model() {
   const std::vector<std::string> lon{SLIPWISE_TERMS_LON}, lat{SLIPWISE_TERMS_LAT}, ang{SLIPWISE_TERMS_ANG};
-  const slipwise::ChainParameters chain{.dynamics = SLIPWISE_HAS_DYNAMICS,
-                                        .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
-                                        .response = SLIPWISE_HAS_RESPONSE,
-                                        .delays = SLIPWISE_HAS_DELAYS};
-  return {{"learned", lon, lat, ang}, chain};
+  const slipwise::ActuatorParameters actuator{.dynamics = SLIPWISE_HAS_DYNAMICS,
+                                              .clock_offset = SLIPWISE_HAS_CLOCK_OFFSET,
+                                              .response = SLIPWISE_HAS_RESPONSE,
+                                              .delays = SLIPWISE_HAS_DELAYS};
+  return {{"learned", lon, lat, ang}, actuator};
 }
 
 /// The drive's learned limits; without any, commands pass as they are.
@@ -40,7 +40,7 @@ int main() {
 
   double best_rate = 0.0, least = INFINITY, apart = 0.0;
   for (const double rate : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
-    // What the robot was told before still acts, because of lag and delay; each command is held until the next.
+    // What the robot was commanded before still acts, because of lag and delay; each command is held until the next.
     const std::array<double, 2> t{0.0, now}, v{0.3, 1.0}, vy{0.0, 0.0}, omega{0.0, rate};
     const slipwise::InputTrack commands = slipwise::limited_track({t, v, vy, omega}, learned_limits());
     const auto at = slipwise::linearize_segment(model, parameters, commands, {.start = now, .end = now + ahead});

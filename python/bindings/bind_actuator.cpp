@@ -5,8 +5,8 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "slipwise/actuator/chain_output.hpp"
-#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/actuator_model.hpp"
+#include "slipwise/actuator/actuator_output.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/actuator/input_track.hpp"
@@ -40,45 +40,45 @@ void bind_actuator(nb::module_& m) {
             return rows;
           },
           "All samples, [N, 4]: t [s], v [m/s], vy [m/s], omega [rad/s].");
-  nb::class_<CommandChain>(m, "CommandChain", "Gain, delay, lags [s] per channel, and clock offset [s].")
+  nb::class_<ActuatorModel>(m, "ActuatorModel", "Gain, delay, lags [s] per channel, and clock offset [s].")
       .def(
           "__init__",
-          [](CommandChain* self, double lag_v, double lag_omega, double delay_v, double delay_omega,
+          [](ActuatorModel* self, double lag_v, double lag_omega, double delay_v, double delay_omega,
              double clock_offset) {
-            new (self) CommandChain{.lag_v = lag_v,
-                                    .lag_omega = lag_omega,
-                                    .delay_v = delay_v,
-                                    .delay_omega = delay_omega,
-                                    .clock_offset = clock_offset};
+            new (self) ActuatorModel{.lag_v = lag_v,
+                                     .lag_omega = lag_omega,
+                                     .delay_v = delay_v,
+                                     .delay_omega = delay_omega,
+                                     .clock_offset = clock_offset};
           },
           "lag_v"_a, "lag_omega"_a, "delay_v"_a, "delay_omega"_a, "clock_offset"_a)
-      .def_ro("lag_v", &CommandChain::lag_v)
-      .def_ro("lag_omega", &CommandChain::lag_omega)
-      .def_ro("delay_v", &CommandChain::delay_v)
-      .def_ro("delay_omega", &CommandChain::delay_omega)
-      .def_ro("clock_offset", &CommandChain::clock_offset)
-      .def_ro("gain_v", &CommandChain::gain_v)
-      .def_ro("gain_omega", &CommandChain::gain_omega)
-      .def_ro("slow_share_v", &CommandChain::slow_share_v)
-      .def_ro("slow_share_omega", &CommandChain::slow_share_omega)
-      .def_ro("slow_lag_v", &CommandChain::slow_lag_v)
-      .def_ro("slow_lag_omega", &CommandChain::slow_lag_omega);
-  nb::class_<LaneLimits>(m, "LaneLimits", "Dead-band, top, acceleration and braking of one lane of the drive.")
+      .def_ro("lag_v", &ActuatorModel::lag_v)
+      .def_ro("lag_omega", &ActuatorModel::lag_omega)
+      .def_ro("delay_v", &ActuatorModel::delay_v)
+      .def_ro("delay_omega", &ActuatorModel::delay_omega)
+      .def_ro("clock_offset", &ActuatorModel::clock_offset)
+      .def_ro("gain_v", &ActuatorModel::gain_v)
+      .def_ro("gain_omega", &ActuatorModel::gain_omega)
+      .def_ro("slow_share_v", &ActuatorModel::slow_share_v)
+      .def_ro("slow_share_omega", &ActuatorModel::slow_share_omega)
+      .def_ro("slow_lag_v", &ActuatorModel::slow_lag_v)
+      .def_ro("slow_lag_omega", &ActuatorModel::slow_lag_omega);
+  nb::class_<AxisLimits>(m, "AxisLimits", "Dead-band, top, acceleration and braking of one axis of the drive.")
       .def(
           "__init__",
-          [](LaneLimits* self, double dead_band, double top, double acceleration, double braking) {
-            new (self) LaneLimits{dead_band, top, acceleration, braking};
+          [](AxisLimits* self, double dead_band, double top, double acceleration, double braking) {
+            new (self) AxisLimits{dead_band, top, acceleration, braking};
           },
-          "dead_band"_a = LaneLimits{}.dead_band, "top"_a = LaneLimits{}.top,
-          "acceleration"_a = LaneLimits{}.acceleration, "braking"_a = LaneLimits{}.braking)
-      .def_ro("dead_band", &LaneLimits::dead_band)
-      .def_ro("top", &LaneLimits::top)
-      .def_ro("acceleration", &LaneLimits::acceleration)
-      .def_ro("braking", &LaneLimits::braking);
+          "dead_band"_a = AxisLimits{}.dead_band, "top"_a = AxisLimits{}.top,
+          "acceleration"_a = AxisLimits{}.acceleration, "braking"_a = AxisLimits{}.braking)
+      .def_ro("dead_band", &AxisLimits::dead_band)
+      .def_ro("top", &AxisLimits::top)
+      .def_ro("acceleration", &AxisLimits::acceleration)
+      .def_ro("braking", &AxisLimits::braking);
   nb::class_<CommandLimits>(m, "CommandLimits", "Limits of the commands, and then of the sides `track` [m] apart.")
       .def(
           "__init__",
-          [](CommandLimits* self, const LaneLimits& speed, const LaneLimits& yaw_rate, const LaneLimits& side,
+          [](CommandLimits* self, const AxisLimits& speed, const AxisLimits& yaw_rate, const AxisLimits& side,
              double track, double gain_v,
              double gain_omega) { new (self) CommandLimits{speed, yaw_rate, side, track, gain_v, gain_omega}; },
           "speed"_a, "yaw_rate"_a, "side"_a, "track"_a, "gain_v"_a, "gain_omega"_a)
@@ -96,25 +96,25 @@ void bind_actuator(nb::module_& m) {
         "The held commands after dead-band, saturation and rate limits; ramps become short held pieces [s].");
   m.def(
       "limited_track_from",
-      [](const InputTrack& commands, const CommandLimits& limits, const CommandChain& chain, double time,
+      [](const InputTrack& commands, const CommandLimits& limits, const ActuatorModel& actuator, double time,
          const BodyTwist& measured) {
-        return limited_track(commands, limits, measured_start(chain, time, measured), kRampPiece);
+        return limited_track(commands, limits, measured_start(actuator, time, measured), kRampPiece);
       },
-      "commands"_a, "limits"_a, "chain"_a, "time"_a, "measured"_a,
+      "commands"_a, "limits"_a, "actuator"_a, "time"_a, "measured"_a,
       "The same where the drive did `measured` at `time` [s], in the stamps of the commands.");
   m.attr("RAMP_PIECE") = kRampPiece;
   m.def(
-      "chain_output",
-      [](const InputTrack& inputs, const CommandChain& chain, Array times, const BodyTwist& initial) {
-        const ChainOutput output =
-            chain_output(inputs, chain, std::span<const double>(times.data(), times.size()), initial);
+      "actuator_output",
+      [](const InputTrack& inputs, const ActuatorModel& actuator, Array times, const BodyTwist& initial) {
+        const ActuatorOutput output =
+            actuator_output(inputs, actuator, std::span<const double>(times.data(), times.size()), initial);
         Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor> rows(times.size(), 2);
         for (std::size_t i = 0; i < times.size(); ++i) {
           rows.row(static_cast<Eigen::Index>(i)) << output.v[i], output.omega[i];
         }
         return rows;
       },
-      "inputs"_a, "chain"_a, "times"_a, "initial"_a, "The drive's speed and yaw rate at the times, [N, 2].");
+      "inputs"_a, "actuator"_a, "times"_a, "initial"_a, "The drive's speed and yaw rate at the times, [N, 2].");
 }
 
 }  // namespace slipwise::bindings

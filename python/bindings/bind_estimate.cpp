@@ -9,17 +9,17 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/estimate/batch.hpp"
-#include "slipwise/estimate/causal_filter.hpp"
-#include "slipwise/estimate/iekf.hpp"
-#include "slipwise/estimate/model_average.hpp"
-#include "slipwise/estimate/noise_fit.hpp"
-#include "slipwise/estimate/observability.hpp"
-#include "slipwise/estimate/predictive_score.hpp"
-#include "slipwise/estimate/sliding_mode_observer.hpp"
-#include "slipwise/estimate/slip_rate_fit.hpp"
-#include "slipwise/estimate/slip_ratio_filter.hpp"
-#include "slipwise/estimate/weighing.hpp"
+#include "slipwise/filter/batch.hpp"
+#include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/filter/iekf.hpp"
+#include "slipwise/filter/observability.hpp"
+#include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/filter/weighting.hpp"
+#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/thesis/noise_fit.hpp"
+#include "slipwise/thesis/sliding_mode_observer.hpp"
+#include "slipwise/thesis/slip_rate_fit.hpp"
+#include "slipwise/thesis/slip_ratio_filter.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -72,14 +72,14 @@ void bind_settings(nb::module_& m) {
       .def_rw("trial", &ChangeSettings::trial)
       .def_rw("warm_up", &ChangeSettings::warm_up)
       .def_rw("memory", &ChangeSettings::memory);
-  nb::class_<WeighingSettings>(m, "WeighingSettings")
+  nb::class_<WeightingSettings>(m, "WeightingSettings")
       .def(nb::init<>())
-      .def_rw("learning_rate", &WeighingSettings::learning_rate)
-      .def_rw("share", &WeighingSettings::share);
+      .def_rw("learning_rate", &WeightingSettings::learning_rate)
+      .def_rw("share", &WeightingSettings::share);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
       .def(nb::init<>())
-      .def_rw("weighing", &ModelAverageSettings::weighing)
-      .def_rw("richest", &ModelAverageSettings::richest)
+      .def_rw("weighting", &ModelAverageSettings::weighting)
+      .def_rw("largest_basis", &ModelAverageSettings::largest_basis)
       .def_rw("change", &ModelAverageSettings::change);
   nb::class_<BatchSettings>(m, "BatchSettings")
       .def(nb::init<>())
@@ -89,7 +89,7 @@ void bind_settings(nb::module_& m) {
 }
 
 void bind_results(nb::module_& m) {
-  nb::class_<Estimate>(m, "Estimate", "Gaussian belief about a parameter vector.")
+  nb::class_<Estimate>(m, "Estimate", "Gaussian posterior about a parameter vector.")
       .def(
           "__init__",
           [](Estimate* self, Eigen::VectorXd mean, Eigen::MatrixXd covariance) {
@@ -131,7 +131,7 @@ void bind_results(nb::module_& m) {
 
 void bind_slip_ratios(nb::module_& m) {
   m.attr("NOMINAL_TRACK") = kNominalTrack;
-  m.def("slip_ratio_model", &slip_ratio_model, "full-linear-6 behind an identity chain.");
+  m.def("slip_ratio_model", &slip_ratio_model, "full-linear-6 behind an identity actuator.");
   nb::class_<SlipRatioFilterSettings>(m, "SlipRatioFilterSettings")
       .def(nb::init<>())
       .def_rw("track", &SlipRatioFilterSettings::track)
@@ -254,7 +254,7 @@ void bind_estimate(nb::module_& m) {
         return prior_estimate(model, {v, omega}, settings);
       },
       "model"_a, "v"_a, "omega"_a, "settings"_a,
-      "The belief before any data, at reference speeds v [m/s], omega [rad/s].");
+      "The posterior before any data, at reference speeds v [m/s], omega [rad/s].");
   m.def(
       "prediction_covariance",
       [](const SegmentLinearization& at, const Eigen::MatrixXd& parameters, const MotionNoise& shape,
@@ -284,10 +284,10 @@ void bind_estimate(nb::module_& m) {
       .def_ro("segments", &ChangeTest::segments)
       .def_ro("alarm", &ChangeTest::alarm);
   m.def(
-      "reweighed",
+      "updated_weights",
       [](const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores, const Eigen::VectorXd& prior,
-         const WeighingSettings& settings,
-         std::size_t seen) { return reweighed(weights, log_scores, prior, settings, seen); },
+         const WeightingSettings& settings,
+         std::size_t observed) { return updated_weights(weights, log_scores, prior, settings, observed); },
       "weights"_a, "log_scores"_a, "prior"_a, "settings"_a, "seen"_a,
       "The weights after models predicted with these log scores, [M], `seen` segments having spoken before; `prior` "
       "are "
@@ -316,7 +316,7 @@ void bind_estimate(nb::module_& m) {
           },
           "model"_a, "estimate"_a, "inputs"_a, "segment"_a)
       .def_prop_ro("noise_scale", &PredictiveScore::noise_scale);
-  nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighed by how well they predict.")
+  nb::class_<ModelAverage>(m, "ModelAverage", "Causal filters of several bases, weighted by how well they predict.")
       .def(
           "__init__",
           [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,

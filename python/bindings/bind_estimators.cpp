@@ -9,10 +9,10 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/estimate/chain_learner.hpp"
-#include "slipwise/estimate/estimator.hpp"
-#include "slipwise/estimate/following_estimator.hpp"
-#include "slipwise/estimate/rts_smoother.hpp"
+#include "slipwise/filter/rts_smoother.hpp"
+#include "slipwise/identify/actuator_filter.hpp"
+#include "slipwise/thesis/estimator.hpp"
+#include "slipwise/thesis/following_estimator.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -99,13 +99,13 @@ void bind_estimators(nb::module_& m) {
       .def_prop_ro("noise_scale", &FollowingEstimator::noise_scale);
   nb::class_<ChainUpdate>(m, "ChainUpdate", "How a window of wheel speeds was foretold.")
       .def_ro("nis", &ChainUpdate::nis);
-  nb::class_<ChainLearner>(m, "ChainLearner", "The chain, learned from commands and wheel speeds.")
+  nb::class_<ActuatorFilter>(m, "ActuatorFilter", "The actuator, learned from commands and wheel speeds.")
       .def(nb::init<const CausalFilterSettings&>(), "settings"_a)
-      .def("learn", &ChainLearner::learn, "inputs"_a, "wheels"_a, "start"_a, "end"_a,
+      .def("learn", &ActuatorFilter::learn, "inputs"_a, "wheels"_a, "start"_a, "end"_a,
            "Learns the wheel speeds from start to end [s], in input stamps.")
-      .def("estimate", &ChainLearner::estimate)
-      .def_prop_ro("model", &ChainLearner::model)
-      .def_prop_ro("prior_std", &ChainLearner::prior_std);
+      .def("estimate", &ActuatorFilter::estimate)
+      .def_prop_ro("model", &ActuatorFilter::model)
+      .def_prop_ro("prior_std", &ActuatorFilter::prior_std);
   m.def(
       "segment_jacobian",
       [](SegmentJacobian kind, const MotionModel& model, const SegmentLinearization& at,

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "bindings.hpp"
-#include "slipwise/estimate/limit_search.hpp"
+#include "slipwise/identify/limit_search.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -17,11 +17,11 @@ namespace slipwise::bindings {
 
 void bind_limits(nb::module_& m) {
   using Rows = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-  nb::class_<DriveRecord>(m, "DriveRecord", "Commands without a gap, and wheel twists beside them.")
+  nb::class_<WheelRecord>(m, "WheelRecord", "Commands without a gap, and wheel twists beside them.")
       .def(
           "__init__",
-          [](DriveRecord* self, const InputTrack& commands, Rows wheels) {
-            DriveRecord record{.commands = commands, .t = {}, .wheels = {}};
+          [](WheelRecord* self, const InputTrack& commands, Rows wheels) {
+            WheelRecord record{.commands = commands, .t = {}, .wheels = {}};
             for (std::size_t i = 0; i < wheels.shape(0); ++i) {
               const double* row = wheels.data() + 3 * i;
               record.t.push_back(row[0]);
@@ -30,7 +30,7 @@ void bind_limits(nb::module_& m) {
             if (record.t.empty()) {
               throw std::invalid_argument("a record has no wheel twists; leave it out");
             }
-            new (self) DriveRecord(std::move(record));
+            new (self) WheelRecord(std::move(record));
           },
           "commands"_a, "wheels"_a, "`wheels` are rows of t [s], v [m/s], omega [rad/s].");
   nb::enum_<LimitKind>(m, "LimitKind")
@@ -43,26 +43,26 @@ void bind_limits(nb::module_& m) {
       .value("YawRate", LimitedAxis::YawRate)
       .value("Side", LimitedAxis::Side);
   nb::class_<FoundLimit>(m, "FoundLimit", "A limit that the data show, with its standard deviation.")
-      .def_ro("lane", &FoundLimit::lane)
+      .def_ro("axis", &FoundLimit::axis)
       .def_ro("kind", &FoundLimit::kind)
       .def_ro("value", &FoundLimit::value)
       .def_ro("std", &FoundLimit::std)
       .def_ro("gain", &FoundLimit::gain);
-  nb::class_<LaneReach>(m, "LaneReach", "What the commands reached in a lane.")
-      .def_ro("slowest", &LaneReach::slowest)
-      .def_ro("fastest", &LaneReach::fastest)
-      .def_ro("step", &LaneReach::step);
+  nb::class_<AxisReach>(m, "AxisReach", "What the commands reached in a axis.")
+      .def_ro("slowest", &AxisReach::slowest)
+      .def_ro("fastest", &AxisReach::fastest)
+      .def_ro("step", &AxisReach::step);
   nb::class_<LimitSearch>(m, "LimitSearch", "What a search for limits found.")
       .def_prop_ro("limits", [](const LimitSearch& search) { return search.drive.limits; })
-      .def_prop_ro("chain", [](const LimitSearch& search) { return search.drive.chain; })
+      .def_prop_ro("actuator", [](const LimitSearch& search) { return search.drive.actuator; })
       .def_ro("found", &LimitSearch::found)
       .def_ro("track_std", &LimitSearch::track_std)
       .def_ro("reach", &LimitSearch::reach);
   m.def(
       "find_limits",
-      [](const std::vector<DriveRecord>& records, const PriorSettings& prior, double track, double least_gain,
+      [](const std::vector<WheelRecord>& records, const PriorSettings& prior, double track, double least_gain,
          const LimitSearch* before) {
-        const auto start = before == nullptr ? std::nullopt : std::optional<LimitedDrive>(before->drive);
+        const auto start = before == nullptr ? std::nullopt : std::optional<LimitedActuator>(before->drive);
         return find_limits(records, prior, track, {.least_gain = least_gain}, start);
       },
       "records"_a, "prior"_a, "track"_a, "least_gain"_a, "before"_a.none(),

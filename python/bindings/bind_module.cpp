@@ -17,7 +17,7 @@ NB_MODULE(_core, m) {
   bind_rollout(m);
   bind_planning(m);
   bind_estimate(m);
-  bind_coloured_slip(m);
+  bind_slip_disturbance(m);
   bind_regression(m);
   bind_estimators(m);
   bind_limits(m);

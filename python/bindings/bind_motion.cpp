@@ -6,8 +6,8 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/motion/motion_model.hpp"
-#include "slipwise/motion/slip_wander.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -19,7 +19,7 @@ void bind_motion(nb::module_& m) {
       .def_ro("name", &ParameterInfo::name)
       .def_ro("unit", &ParameterInfo::unit)
       .def_ro("description", &ParameterInfo::description);
-  nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind a command chain.")
+  nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind a actuator model.")
       .def(
           "__init__",
           [](MotionModel* self, const Basis& basis, bool dynamics, bool clock_offset) {
@@ -38,7 +38,7 @@ void bind_motion(nb::module_& m) {
       .def(
           "with_mount",
           [](const MotionModel& model, bool mount) {
-            ChainParameters learned = model.learned();
+            ActuatorParameters learned = model.learned();
             learned.mount = mount;
             return MotionModel(model.basis(), learned);
           },
@@ -51,51 +51,53 @@ void bind_motion(nb::module_& m) {
       .def_prop_ro("mount", [](const MotionModel& model) { return model.learned().mount; })
       .def_prop_ro("size", &MotionModel::size)
       .def_prop_ro("slip_size", &MotionModel::slip_size)
-      .def_prop_ro("chain_size", &MotionModel::chain_size)
+      .def_prop_ro("actuator_size", &MotionModel::actuator_size)
       .def_prop_ro("parameters", &MotionModel::parameters)
       .def(
-          "chain",
+          "actuator",
           [](const MotionModel& model, const Eigen::VectorXd& parameters) {
             model.check(parameters);
-            return model.chain(parameters);
+            return model.actuator(parameters);
           },
           "parameters"_a);
-  nb::class_<SlipWander>(m, "SlipWander", "One guess of how slip wanders: Gauss-Markov processes of one time constant.")
+  nb::class_<SlipDisturbance>(m, "SlipDisturbance",
+                              "One guess of the slip disturbance: Gauss-Markov processes of one time constant.")
       .def(
           "__init__",
-          [](SlipWander* self, double drift, double turn, double time_constant) {
-            new (self) SlipWander{drift, turn, time_constant};
+          [](SlipDisturbance* self, double drift, double turn, double time_constant) {
+            new (self) SlipDisturbance{drift, turn, time_constant};
           },
           "drift"_a, "turn"_a, "time_constant"_a)
-      .def_ro("drift", &SlipWander::drift)
-      .def_ro("turn", &SlipWander::turn)
-      .def_ro("time_constant", &SlipWander::time_constant);
-  nb::class_<WanderLaw>(m, "WanderLaw", "How slip wanders: guesses and how likely each is.")
+      .def_ro("drift", &SlipDisturbance::drift)
+      .def_ro("turn", &SlipDisturbance::turn)
+      .def_ro("time_constant", &SlipDisturbance::time_constant);
+  nb::class_<DisturbanceModel>(m, "DisturbanceModel", "The slip disturbance: guesses and how likely each is.")
       .def(
           "__init__",
-          [](WanderLaw* self, const std::vector<SlipWander>& candidates, const Eigen::VectorXd& weights) {
-            new (self) WanderLaw{candidates, weights};
-            check_wander(*self);
+          [](DisturbanceModel* self, const std::vector<SlipDisturbance>& candidates, const Eigen::VectorXd& weights) {
+            new (self) DisturbanceModel{candidates, weights};
+            check_disturbance(*self);
           },
           "candidates"_a, "weights"_a)
-      .def_ro("candidates", &WanderLaw::candidates)
-      .def_ro("weights", &WanderLaw::weights);
-  nb::class_<WanderingTerms>(m, "WanderingTerms", "The slip parameters that may wander.")
-      .def_ro("places", &WanderingTerms::places)
-      .def("variances", &WanderingTerms::variances, "wander"_a, "Under one guess, before anything recent is known.");
+      .def_ro("candidates", &DisturbanceModel::candidates)
+      .def_ro("weights", &DisturbanceModel::weights);
+  nb::class_<DisturbedTerms>(m, "DisturbedTerms", "The slip parameters that may disturbance.")
+      .def_ro("places", &DisturbedTerms::places)
+      .def("variances", &DisturbedTerms::variances, "disturbance"_a,
+           "Under one guess, before anything recent is known.");
   m.def(
-      "wandering_terms",
-      [](const MotionModel& model, const Eigen::VectorXd& prior_std) { return wandering_terms(model, prior_std); },
+      "disturbed_terms",
+      [](const MotionModel& model, const Eigen::VectorXd& prior_std) { return disturbed_terms(model, prior_std); },
       "model"_a, "prior_std"_a);
   m.def(
       "covariance_over",
-      [](const MotionModel& model, const Eigen::MatrixXd& learned, const WanderLaw& law,
+      [](const MotionModel& model, const Eigen::MatrixXd& learned, const DisturbanceModel& law,
          const Eigen::VectorXd& prior_std, double seconds) {
         check_square(learned, model.size(), "the covariance of a model");
         return covariance_over(model, learned, law, prior_std, seconds);
       },
       "model"_a, "learned"_a, "law"_a, "prior_std"_a, "seconds"_a,
-      "Covariance of the parameters' mean over some time, in which slip wanders about them.");
+      "Covariance of the parameters' mean over some time, in which slip is disturbed about them.");
 }
 
 }  // namespace slipwise::bindings

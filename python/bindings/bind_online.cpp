@@ -9,9 +9,9 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "slipwise/identify/student_t.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
+#include "slipwise/online/student_t.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -35,7 +35,7 @@ void bind_settings(nb::module_& m) {
   nb::class_<DriveLimits>(m, "DriveLimits", "Limits of the commands [m/s, rad/s, 1/m, m/s^2].")
       .def(nb::init<double, double, double, double>(), "speed"_a, "yaw_rate"_a, "curvature"_a, "acceleration"_a)
       .def("check", &DriveLimits::check);
-  nb::class_<DriveStart>(m, "DriveStart", "What the drive does and was told last when a plan begins.")
+  nb::class_<ActuatorState>(m, "ActuatorState", "What the drive does and was told last when a plan begins.")
       .def(nb::init<BodyTwist, BodyTwist, std::optional<BodyTwist>>(), "drive"_a, "told"_a, "fast"_a.none());
   nb::class_<TrajectorySettings>(m, "TrajectorySettings", "How trajectories are shaped.")
       .def(nb::init<>())
@@ -79,7 +79,7 @@ void bind_trajectory(nb::module_& m) {
       .def(
           "__init__",
           [](TrajectoryPlanner* self, const MotionModel& model, const Eigen::VectorXd& parameters,
-             const DriveLimits& limits, const TrajectorySettings& settings, const DriveStart& start,
+             const DriveLimits& limits, const TrajectorySettings& settings, const ActuatorState& start,
              const CommandLimits* of_drive) {
             const CommandLimits learned = of_drive == nullptr ? CommandLimits{} : *of_drive;
             new (self) TrajectoryPlanner({model, parameters, learned}, limits, settings, start);

@@ -7,10 +7,10 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/estimate/bayesian_regression.hpp"
-#include "slipwise/estimate/least_squares_surface.hpp"
-#include "slipwise/estimate/prior.hpp"
+#include "slipwise/filter/bayesian_regression.hpp"
+#include "slipwise/filter/prior.hpp"
 #include "slipwise/slip/basis.hpp"
+#include "slipwise/thesis/least_squares_surface.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

@@ -121,7 +121,7 @@ void bind_uncertain(nb::module_& m) {
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             const WanderLaw& wander, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
+             const DisturbanceModel& wander, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
              const CommandLimits* limits) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
@@ -131,7 +131,7 @@ void bind_uncertain(nb::module_& m) {
                                       {covariance, noise, scale, growth, wander, prior_std},
                                       setting(period, gx, gy, limits)};
           },
-          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "wander"_a, "prior_std"_a,
+          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "disturbance"_a, "prior_std"_a,
           "period"_a, "gx"_a, "gy"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",

@@ -11,7 +11,7 @@
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
-#include "slipwise/segment/steady_segment.hpp"
+#include "slipwise/thesis/steady_segment.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -88,7 +88,7 @@ void bind_segment(nb::module_& m) {
           [](const Segment& segment, std::shared_ptr<const InputTrack> twist, double until, const BodyTwist& initial) {
             Segment known = segment;
             known.initial = initial;
-            known.known = KnownDrive{std::move(twist), until};
+            known.known = MeasuredActuator{std::move(twist), until};
             return known;
           },
           "twist"_a, "until"_a, "initial"_a,
@@ -97,9 +97,9 @@ void bind_segment(nb::module_& m) {
       .def(
           "with_sensor",
           [](const Segment& segment, const Pose2& sensor) {
-            Segment seen = segment;
-            seen.sensor = sensor;
-            return seen;
+            Segment observed = segment;
+            observed.sensor = sensor;
+            return observed;
           },
           "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
       .def_ro("start", &Segment::start)
@@ -121,11 +121,11 @@ void bind_segment(nb::module_& m) {
       .def_prop_ro(
           "sensor_poses",
           [](const SegmentPath& p) {
-            std::vector<Pose2> seen;
+            std::vector<Pose2> observed;
             for (const Pose2& pose : p.poses) {
-              seen.push_back(sensor_motion(pose, p.sensor));
+              observed.push_back(sensor_motion(pose, p.sensor));
             }
-            return pose_matrix(seen);
+            return pose_matrix(observed);
           },
           "The path of the sensor that measures it, seen from its start.")
       .def("robot_motion", &SegmentPath::robot_motion, "measured"_a,

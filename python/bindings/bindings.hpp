@@ -17,7 +17,7 @@ void bind_segment(nanobind::module_& m);
 void bind_planning(nanobind::module_& m);
 void bind_rollout(nanobind::module_& m);
 void bind_estimate(nanobind::module_& m);
-void bind_coloured_slip(nanobind::module_& m);
+void bind_slip_disturbance(nanobind::module_& m);
 void bind_limits(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
 void bind_estimators(nanobind::module_& m);

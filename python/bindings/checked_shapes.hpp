@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "slipwise/actuator/input_track.hpp"
-#include "slipwise/estimate/estimate.hpp"
+#include "slipwise/filter/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise::bindings {

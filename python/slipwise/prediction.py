@@ -38,7 +38,9 @@ class Path:
 
     t: Floats  # s, in the time of the inputs
     poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
-    covariance: Floats  # [N, 3, 3] parameters, slip that wanders, slip noise, and two measured poses' noise
+    covariance: (
+        Floats  # [N, 3, 3] parameters, the slip disturbance, slip noise, and two measured poses' noise
+    )
     dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
 
     def __repr__(self) -> str:
@@ -81,8 +83,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         start: when the prediction starts [s]; by default at the first command.
         initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the
             commands, before the first of which the robot is at rest.
-        slip_now: where slip that wanders is at the start, as `slip_seen` says; by default nothing recent is
-            known of it.
+        slip_now: where the slip disturbance is at the start, as `slip_seen` says; by default nothing recent
+            is known of it.
 
     Raises:
         SettingsError: the horizon is not positive or longer than an hour, the start lies before the first
@@ -107,15 +109,15 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     given = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
     known = _known_drive(begin, initial)
     track = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
-    coloured = _core.ColouredSlip(model.wander)
-    now = coloured.now(model.belief, track, []) if slip_now is None else slip_now
+    disturbance = _core.DisturbanceFilter(model.disturbance)
+    now = disturbance.now(model.posterior, track, []) if slip_now is None else slip_now
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
         if known is not None:
             segment = segment.with_known_drive(*known)
-        expected = coloured.predict(model.belief, track, now, segment)
+        expected = disturbance.predict(model.posterior, track, now, segment)
         poses.append(expected.pose)
         covariance.append(expected.covariance * tail_at(model, seconds).growth)
     dof = np.array([tail_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
@@ -132,7 +134,7 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
             from (`coloured.window` of the model file). Those of the last 30 s tell all there is to tell.
     """
     track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
-    return _core.ColouredSlip(model.wander).now(model.belief, track, list(windows))
+    return _core.DisturbanceFilter(model.disturbance).now(model.posterior, track, list(windows))
 
 
 def _known_drive(

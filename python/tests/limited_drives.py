@@ -9,12 +9,12 @@ from slipwise import _core
 from slipwise.logs.log import Inputs
 
 TRACK = 1.3  # m
-CHAIN = _core.CommandChain(0.4, 0.25, 0.16, 0.1, 0.0)
+CHAIN = _core.ActuatorModel(0.4, 0.25, 0.16, 0.1, 0.0)
 NOISE = (0.02, 0.03)  # m/s, rad/s of wheel speeds
-FREE = _core.LaneLimits()
-SIDES = _core.CommandLimits(FREE, FREE, _core.LaneLimits(0.12, 1.5, 1.2, 2.0), TRACK, 1.0, 1.0)
+FREE = _core.AxisLimits()
+SIDES = _core.CommandLimits(FREE, FREE, _core.AxisLimits(0.12, 1.5, 1.2, 2.0), TRACK, 1.0, 1.0)
 CHANNELS = _core.CommandLimits(
-    _core.LaneLimits(0.1, 1.4, 1.0, 1.8), _core.LaneLimits(0.08, 1.0, 2.0, 3.0), FREE, TRACK, 1.0, 1.0
+    _core.AxisLimits(0.1, 1.4, 1.0, 1.8), _core.AxisLimits(0.08, 1.0, 2.0, 3.0), FREE, TRACK, 1.0, 1.0
 )
 
 
@@ -26,7 +26,7 @@ def track_of(commands: Inputs) -> _core.InputTrack:
 def wheels_behind(limits: _core.CommandLimits, commands: Inputs, seed: int) -> Inputs:
     """What wheel speeds say at the stamps of the commands."""
     limited = _core.limited_track(track_of(commands), limits, _core.RAMP_PIECE)
-    drive = _core.chain_output(limited, CHAIN, commands.t, _core.BodyTwist(0.0, 0.0, 0.0))
+    drive = _core.actuator_output(limited, CHAIN, commands.t, _core.BodyTwist(0.0, 0.0, 0.0))
     noise = np.random.Generator(np.random.PCG64(seed)).normal(size=drive.shape) * NOISE
     v, omega = np.ascontiguousarray((drive + noise).T)
     return Inputs(t=commands.t, v=v, vy=np.zeros_like(v), omega=omega)
@@ -36,19 +36,19 @@ def search(limits: _core.CommandLimits, commands: Inputs, seed: int) -> _core.Li
     """Look for the limits of such a drive."""
     wheels = wheels_behind(limits, commands, seed)
     rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
-    record = _core.DriveRecord(track_of(commands), np.ascontiguousarray(rows))
+    record = _core.WheelRecord(track_of(commands), np.ascontiguousarray(rows))
     return _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
 
 
 def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:
     """The truth of a limit that was found."""
-    lane = {_core.LimitedAxis.Speed: limits.speed, _core.LimitedAxis.YawRate: limits.yaw_rate}.get(
-        found.lane, limits.side
+    axis = {_core.LimitedAxis.Speed: limits.speed, _core.LimitedAxis.YawRate: limits.yaw_rate}.get(
+        found.axis, limits.side
     )
     kinds = _core.LimitKind
     return {
-        kinds.DeadBand: lane.dead_band,
-        kinds.Top: lane.top,
-        kinds.Acceleration: lane.acceleration,
-        kinds.Braking: lane.braking,
+        kinds.DeadBand: axis.dead_band,
+        kinds.Top: axis.top,
+        kinds.Acceleration: axis.acceleration,
+        kinds.Braking: axis.braking,
     }[found.kind]

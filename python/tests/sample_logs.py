@@ -34,7 +34,9 @@ class Drive:
     hold: tuple[int, int] = (10, 50)  # steps between new commands
     pose_std: tuple[float, float] = (0.005, 0.002)  # m, rad
     slip_psd: tuple[float, float, float] = (1e-5, 1e-5, 1e-5)  # m^2/s, m^2/s, rad^2/s
-    wander: tuple[float, float] | None = None  # std of each of alpha about itself, and its time constant [s]
+    disturbance: tuple[float, float] | None = (
+        None  # std of each of alpha about itself, and its time constant [s]
+    )
     name: str = "drive"
 
 
@@ -50,11 +52,11 @@ def simulated_run(drive: Drive) -> Run:
     (wheel_v, actual_v), (wheel_omega, actual_omega) = _through_chain(v, drive), _through_chain(omega, drive)
     spread = np.sqrt(np.array(drive.slip_psd) * STEP)
     alpha = np.array(drive.alpha, dtype=np.float64)
-    wandering = _wandering(drive, len(t))
+    disturbed = _disturbed(drive, len(t))
     pose, path = _core.Pose2(0.3, -0.2, 0.4), np.empty((len(t), 3))
     for i, (speed, rate) in enumerate(zip(actual_v.tolist(), actual_omega.tolist(), strict=True)):
         path[i] = pose.vector()
-        slip = _core.slip_rate(drive.basis, alpha + wandering[i], _core.SlipState(speed, rate, 0.0, 0.0))
+        slip = _core.slip_rate(drive.basis, alpha + disturbed[i], _core.SlipState(speed, rate, 0.0, 0.0))
         twist = np.array([speed, 0.0, rate]) + slip
         pose = _core.compose(pose, _core.exp(twist * STEP + spread * rng.standard_normal(3)))
     path += rng.standard_normal(path.shape) * np.array(
@@ -69,12 +71,12 @@ def simulated_run(drive: Drive) -> Run:
     )
 
 
-def _wandering(drive: Drive, count: int) -> Floats:
+def _disturbed(drive: Drive, count: int) -> Floats:
     """Deviations of alpha, first-order Gauss-Markov processes, [count, alpha]."""
     deviations = np.zeros((count, len(drive.alpha)))
-    if drive.wander is None:
+    if drive.disturbance is None:
         return deviations
-    std, time_constant = drive.wander
+    std, time_constant = drive.disturbance
     rng = np.random.default_rng([drive.seed, 1])
     kept = np.exp(-STEP / time_constant)
     now = rng.standard_normal(len(drive.alpha))

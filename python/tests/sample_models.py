@@ -26,13 +26,13 @@ class Made:
     response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
     delays: tuple[float, float] | None = None  # s, from commands without an actuator model
     clock_offset: float | None = None
-    limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by lane
+    limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by axis
     mount: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
     psd_time: float = 0.0
-    wander: tuple[float, float, float] | None = (
-        None  # drift, turn [-] and time constant [s] of wandering slip
+    disturbance: tuple[float, float, float] | None = (
+        None  # drift, turn [-] and time constant [s] of disturbed slip
     )
     growth: Mapping[float, float] = field(default_factory=dict)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
@@ -56,16 +56,16 @@ LIMITS: Mapping[str, Mapping[str, float]] = {
 }
 
 
-def _limits(lanes: Mapping[str, Mapping[str, float]]) -> dict[str, object]:
+def _limits(axes: Mapping[str, Mapping[str, float]]) -> dict[str, object]:
     learned = {
-        lane: {kind: {"value": value, "std": 0.01} for kind, value in lanes.get(lane, {}).items()}
-        for lane in ("speed", "yaw_rate", "side")
+        axis: {kind: {"value": value, "std": 0.01} for kind, value in axes.get(axis, {}).items()}
+        for axis in ("speed", "yaw_rate", "side")
     }
     return {**learned, "track": 0.6, "track_std": 0.01, "gain_v": 1.1, "gain_omega": 0.9}
 
 
 def _coloured(drift: float, turn: float, time_constant: float) -> dict[str, object]:
-    """The named guess, a slower one, and that slip does not wander."""
+    """The named guess, a slower one, and that there is none."""
     guesses = ((0.0, 0.0, 1.0, 0.2), (drift, turn, time_constant, 0.5), (0.0, turn, 4.0 * time_constant, 0.3))
     names = ("drift", "turn", "time_constant", "weight")
     return {"window": 1.0, "candidates": [dict(zip(names, guess, strict=True)) for guess in guesses]}
@@ -132,7 +132,7 @@ def make_model(made: Made) -> Model:
             "scale": list(made.scale),
             "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
         },
-        "coloured": None if made.wander is None else _coloured(*made.wander),
+        "coloured": None if made.disturbance is None else _coloured(*made.disturbance),
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {
             "slipwise_version": "0.1.0",

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.steady import DrawRules, GroupRules, SteadyGroup, SteadyPath, draw_paths, group_paths
+from slipwise.thesis.steady import DrawRules, GroupRules, SteadyGroup, SteadyPath, draw_paths, group_paths
 
 SLIP = np.array([-0.02, 0.01, -0.08])
 PSD = np.array([4e-4, 2e-4, 3e-4])

@@ -13,7 +13,7 @@ from sample_models import make_model, named
 
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
-from slipwise.calibration.plain import plain_forecaster, vendor_forecaster
+from slipwise.calibration.plain import baseline_predictor, vendor_predictor
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
@@ -66,9 +66,9 @@ def test_prediction_is_the_cores_linearised_segment(model: Model) -> None:
 
 def test_slip_that_wanders_is_part_of_the_covariance_and_of_a_prediction_that_has_seen_it() -> None:
     made = replace(
-        named("edd-2", lon__V=-0.05, ang__w=-0.3), wander=(0.2, 0.3, 20.0), fraction=0.0, psd_motion=1e-4
+        named("edd-2", lon__V=-0.05, ang__w=-0.3), disturbance=(0.2, 0.3, 20.0), fraction=0.0, psd_motion=1e-4
     )
-    model, without = make_model(made), make_model(replace(made, wander=None))
+    model, without = make_model(made), make_model(replace(made, disturbance=None))
     inputs = held(np.arange(0.0, 20.0, 0.5), 1.0, 0.5)
     moved = replace(made, values={"lon.V": -0.05, "ang.w": -0.15})
     seen = windows_of(make_model(moved), inputs, 12)
@@ -172,11 +172,13 @@ def test_initial_speed_must_be_finite(model: Model) -> None:
 def test_plain_model_and_vendor_multiplier_are_their_formulas(v: float, omega: float) -> None:
     track = _core.InputTrack(np.zeros(1), np.array([v]), np.zeros(1), np.array([omega]))
     segment = _core.Segment(0.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    for forecaster, rate in (
-        (plain_forecaster(Settings()), omega),
-        (vendor_forecaster(1.875, Settings()), omega / 1.875),
+    for predictor, rate in (
+        (baseline_predictor(Settings()), omega),
+        (vendor_predictor(1.875, Settings()), omega / 1.875),
     ):
-        at = _core.linearize_segment(forecaster.belief(0).motion, forecaster.belief(0).mean, track, segment)
+        at = _core.linearize_segment(
+            predictor.posterior(0).motion, predictor.posterior(0).mean, track, segment
+        )
         expected = _core.exp(np.array([v, 0.0, rate]) * 3.0).vector()
         assert at.predicted.vector() == pytest.approx(expected, abs=1e-12)
 

@@ -59,9 +59,9 @@ int main() {
   std::printf("MPPI, one iteration of 2048 x 56 on one core, %s\n",
               std::string(name_of(best_instruction_level())).c_str());
   std::printf("%-46s %8s %8s %8s\n", "costs", "best ms", "median", "95 %");
-  for (const Case& chosen : {Case{"slip, path", false, false, 1}, Case{"slip and chain, path", true, false, 1},
-                             Case{"slip and chain, path and costmap", true, true, 1},
-                             Case{"slip and chain, path and costmap, 4 models", true, true, 4}}) {
+  for (const Case& chosen : {Case{"slip, path", false, false, 1}, Case{"slip and actuator, path", true, false, 1},
+                             Case{"slip and actuator, path and costmap", true, true, 1},
+                             Case{"slip and actuator, path and costmap, 4 models", true, true, 4}}) {
     median_milliseconds(chosen);
   }
   return 0;

@@ -72,9 +72,9 @@ Pose2 foreign_goal(const PlanningModel& model, const ReachProblem& problem, std:
     vy.push_back(0.0);
     omega.push_back(bend * speed);
   }
-  const DriveWindow window{.start = 0.0, .end = kCommands * period + problem.frame.settling, .initial = BodyTwist{}};
+  const ActuatorSpan window{.start = 0.0, .end = kCommands * period + problem.frame.settling, .initial = BodyTwist{}};
   Pose2 pose;
-  for (const DriveStep& step : drive_steps(InputTrack(t, v, vy, omega), model.chain(), window).steps) {
+  for (const ActuatorStep& step : actuator_steps(InputTrack(t, v, vy, omega), model.actuator(), window).steps) {
     const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
     const SlipState state{.v = step.forward * rate, .omega = step.turn * rate};
     const Eigen::Vector3d slip = slip_rate(model.basis(), model.alpha(), state);
@@ -101,7 +101,7 @@ double report(const Case& chosen, bool foreign, int count) {
   const auto begin = std::chrono::steady_clock::now();
   const TrajectoryPlanner planner(model, limits, settings);
   const double table = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const ReachProblem problem = planner.problem(DriveStart{}, settings.cruise);
+  const ReachProblem problem = planner.problem(ActuatorState{}, settings.cruise);
   std::mt19937_64 random(kSeed);
   std::vector<double> times;
   double linearizations = 0.0;
@@ -109,7 +109,7 @@ double report(const Case& chosen, bool foreign, int count) {
   for (int i = 0; i < count; ++i) {
     const Pose2 goal = foreign ? foreign_goal(model, problem, random) : own_goal(model, problem, random);
     const auto start = std::chrono::steady_clock::now();
-    const Trajectory trajectory = planner.to(goal, DriveStart{});
+    const Trajectory trajectory = planner.to(goal, ActuatorState{});
     times.push_back(std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
     reached += trajectory.status == TrajectoryStatus::Reached ? 1 : 0;
     linearizations += trajectory.linearizations;
@@ -133,8 +133,8 @@ int main(int argc, char** argv) {
   for (const Case& chosen :
        {make_case("edd-2, passing", "edd-2", false, 0.6), make_case("odd-even-10, passing", "odd-even-10", false, 0.6),
         make_case("thesis-15, passing", "thesis-15", false, 0.6),
-        make_case("odd-even-10 with chain, passing", "odd-even-10", true, 0.6),
-        make_case("odd-even-10 with chain, at rest", "odd-even-10", true, 0.0)}) {
+        make_case("odd-even-10 with actuator, passing", "odd-even-10", true, 0.6),
+        make_case("odd-even-10 with actuator, at rest", "odd-even-10", true, 0.0)}) {
     report(chosen, false, count);
     report(chosen, true, count);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times rollouts per instruction level, basis and command chain, beside a roofline of counted operations and measured
-// peak.
+// Times rollouts per instruction level, basis and command actuator, beside a roofline of counted operations and
+// measured peak.
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
@@ -36,7 +36,7 @@ double best_seconds(int runs, F work) {
 // What the processor can do at most: independent chains of fused multiply-adds, lanes per second. A macro, since a
 // vector must be met first in a function that is compiled for its processor.
 #pragma GCC optimize("fp-contract=fast")
-#define CHAIN(i) chain##i = chain##i * factor + summand;
+#define CHAIN(i) actuator##i = actuator##i * factor + summand;
 #define PEAK(bytes)                                                                                           \
   typedef float Vector __attribute__((vector_size(bytes)));                                                   \
   const Vector factor = Vector{} + 0.999F;                                                                    \
@@ -75,12 +75,12 @@ double peak(InstructionLevel level) {
   return done / seconds;
 }
 
-/// A model to time: its basis and its chain.
+/// A model to time: its basis and its actuator.
 struct Case {
   const char* words;
   const char* basis;
-  ChainParameters learned;
-  std::vector<double> chain;
+  ActuatorParameters learned;
+  std::vector<double> actuator;
   double operations;  ///< per period in float, as docs/derivations.md counts them; 0: not counted
   CommandLimits limits = {};
 };
@@ -90,39 +90,43 @@ std::vector<Case> cases() {
   const double delay = std::log(0.13);
   const double other = std::log(0.07);
   const double slow = std::log(1.5);
-  const LaneLimits ramp{.acceleration = 1.0, .braking = 1.5};
-  return {
-      {"thesis-15, no chain", "thesis-15", {}, {}, 34.0},
-      {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
-      {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
-      {"thesis-15, gains and slow parts",
-       "thesis-15",
-       {.dynamics = true, .response = true},
-       {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
-       48.0},
-      {"thesis-15, no chain, top speeds", "thesis-15", {}, {}, 0.0, {.speed = {.top = 1.2}, .yaw_rate = {.top = 0.4}}},
-      {"thesis-15, no chain, ramps", "thesis-15", {}, {}, 0.0, {.speed = ramp, .yaw_rate = ramp}},
-      {"thesis-15, one delay, ramps",
-       "thesis-15",
-       {.dynamics = true},
-       {lag, lag, delay, delay},
-       0.0,
-       {.speed = ramp, .yaw_rate = ramp}},
-      {"thesis-15, two delays, ramps",
-       "thesis-15",
-       {.dynamics = true},
-       {lag, lag, delay, other},
-       0.0,
-       {.speed = ramp, .yaw_rate = ramp}},
-      {"thesis-15, two delays, all ramps",
-       "thesis-15",
-       {.dynamics = true},
-       {lag, lag, delay, other},
-       0.0,
-       {.speed = ramp, .yaw_rate = ramp, .side = ramp}},
-      {"odd-even-10, no chain", "odd-even-10", {}, {}, 0.0},
-      {"odd-even-10, lag and two delays", "odd-even-10", {.dynamics = true}, {lag, lag, delay, other}, 0.0},
-      {"edd-2, no chain", "edd-2", {}, {}, 0.0}};
+  const AxisLimits ramp{.acceleration = 1.0, .braking = 1.5};
+  return {{"thesis-15, no actuator", "thesis-15", {}, {}, 34.0},
+          {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
+          {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
+          {"thesis-15, gains and slow parts",
+           "thesis-15",
+           {.dynamics = true, .response = true},
+           {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
+           48.0},
+          {"thesis-15, no actuator, top speeds",
+           "thesis-15",
+           {},
+           {},
+           0.0,
+           {.speed = {.top = 1.2}, .yaw_rate = {.top = 0.4}}},
+          {"thesis-15, no actuator, ramps", "thesis-15", {}, {}, 0.0, {.speed = ramp, .yaw_rate = ramp}},
+          {"thesis-15, one delay, ramps",
+           "thesis-15",
+           {.dynamics = true},
+           {lag, lag, delay, delay},
+           0.0,
+           {.speed = ramp, .yaw_rate = ramp}},
+          {"thesis-15, two delays, ramps",
+           "thesis-15",
+           {.dynamics = true},
+           {lag, lag, delay, other},
+           0.0,
+           {.speed = ramp, .yaw_rate = ramp}},
+          {"thesis-15, two delays, all ramps",
+           "thesis-15",
+           {.dynamics = true},
+           {lag, lag, delay, other},
+           0.0,
+           {.speed = ramp, .yaw_rate = ramp, .side = ramp}},
+          {"odd-even-10, no actuator", "odd-even-10", {}, {}, 0.0},
+          {"odd-even-10, lag and two delays", "odd-even-10", {.dynamics = true}, {lag, lag, delay, other}, 0.0},
+          {"edd-2, no actuator", "edd-2", {}, {}, 0.0}};
 }
 
 template <typename Scalar>
@@ -156,8 +160,8 @@ struct Job {
 RolloutProgram program_of(const Case& kind) {
   const MotionModel model(named_basis(kind.basis), kind.learned);
   Eigen::VectorXd parameters = Eigen::VectorXd::Constant(model.size(), -0.02);
-  for (std::size_t i = 0; i < kind.chain.size(); ++i) {
-    parameters[model.slip_size() + static_cast<Eigen::Index>(i)] = kind.chain[i];
+  for (std::size_t i = 0; i < kind.actuator.size(); ++i) {
+    parameters[model.slip_size() + static_cast<Eigen::Index>(i)] = kind.actuator[i];
   }
   return {model, parameters, {.period = kPeriod, .limits = kind.limits}};
 }

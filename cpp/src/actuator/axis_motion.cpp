@@ -11,7 +11,7 @@ constexpr AxisPlaces kPlaces{.lag = 0, .delay = 1, .gain = 2, .slow_share = 3, .
 constexpr Eigen::Index kFast = 5;
 constexpr Eigen::Index kSlow = 6;
 
-/// With slopes by N parameters: all, or none.
+/// With derivatives by N parameters: all, or none.
 template <int N>
 class AxisWalk {
  public:
@@ -26,8 +26,8 @@ class AxisWalk {
         next_(inputs.count_until(time - axis.delay)) {
     Value fast{.value = start.fast}, slow{.value = start.slow};
     if constexpr (N > 0) {
-      fast.slope[kFast] = 1.0;
-      slow.slope[kSlow] = 1.0;
+      fast.derivative[kFast] = 1.0;
+      slow.derivative[kSlow] = 1.0;
     }
     stepper_.start(fast, slow);
     hold(next_ == 0 ? 0.0 : inputs_.sample(next_ - 1).*axis_.part);
@@ -37,16 +37,17 @@ class AxisWalk {
   Value mean_until(double time) {
     const double begun = now_;
     Value integral;
-    walk_until(time, [&](const AxisDecay& decay, const Row& duration_slope) {
-      integral = integral + stepper_.advance(decay, duration_slope);
+    walk_until(time, [&](const AxisDecay& decay, const Row& duration_derivative) {
+      integral = integral + stepper_.advance(decay, duration_derivative);
     });
-    return {integral.value / (time - begun), integral.slope / (time - begun)};
+    return {integral.value / (time - begun), integral.derivative / (time - begun)};
   }
 
   /// Goes on to `time`, whatever happens on the way.
   void follow_until(double time) {
-    walk_until(time,
-               [&](const AxisDecay& decay, const Row& duration_slope) { stepper_.follow(decay, duration_slope); });
+    walk_until(time, [&](const AxisDecay& decay, const Row& duration_derivative) {
+      stepper_.follow(decay, duration_derivative);
+    });
   }
 
   const AxisStepper<N>& stepper() const { return stepper_; }
@@ -120,7 +121,7 @@ AxisMotion axis_motion(const InputTrack& inputs, const ActuatorAxis& axis, const
                     Eigen::Matrix<double, Eigen::Dynamic, kAxisParameters>(rows, kAxisParameters)};
   walk_axis<kAxisParameters>(inputs, axis, start, edges, [&motion](Eigen::Index row, const auto& value) {
     motion.value[row] = value.value;
-    motion.slope.row(row) = value.slope;
+    motion.derivative.row(row) = value.derivative;
   });
   return motion;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ramps of the four lanes of a drive.
+// Ramps of the four axes of a drive.
 #include "slipwise/actuator/command_limiter.hpp"
 
 #include <algorithm>

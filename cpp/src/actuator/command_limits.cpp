@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/actuator/measured_start.hpp"
@@ -21,9 +21,9 @@ constexpr double kNoTime = 1e-6;      // [s]; stamps that count from 1970 are no
 constexpr int kMostPieces = 2000;     // of one ramp, however slow
 constexpr double kLongestRamp = 1e6;  // [s]; nobody waits longer
 
-void check(const LaneLimits& limits, const char* lane) {
+void check(const AxisLimits& limits, const char* axis) {
   const auto refuse = [&](const char* name, double value, const char* wanted) {
-    throw std::invalid_argument("the " + std::string(lane) + " lane's " + name + " is " + std::to_string(value) +
+    throw std::invalid_argument("the " + std::string(axis) + " axis's " + name + " is " + std::to_string(value) +
                                 "; give " + wanted + ", or leave it out");
   };
   if (std::isnan(limits.dead_band) || limits.dead_band < 0.0 || std::isinf(limits.dead_band)) {
@@ -57,13 +57,13 @@ void check(const CommandLimits& limits) {
   need_positive("the gain of the yaw rate", limits.gain_omega);
 }
 
-bool limits_sides(const CommandLimits& limits) { return limits.side != LaneLimits{}; }
+bool limits_sides(const CommandLimits& limits) { return limits.side != AxisLimits{}; }
 
 bool unlimited(const CommandLimits& limits) {
-  return limits.speed == LaneLimits{} && limits.yaw_rate == LaneLimits{} && !limits_sides(limits);
+  return limits.speed == AxisLimits{} && limits.yaw_rate == AxisLimits{} && !limits_sides(limits);
 }
 
-bool limits_rates(const LaneLimits& limits) {
+bool limits_rates(const AxisLimits& limits) {
   return std::isfinite(limits.acceleration) || std::isfinite(limits.braking);
 }
 bool limits_rates(const CommandLimits& limits) {
@@ -127,12 +127,12 @@ InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits
                            : limited_pieces(commands, at_rest, longest_piece, [](CommandLimiter&, double) {});
 }
 
-MeasuredStart measured_start(const CommandChain& chain, double time, const BodyTwist& measured) {
-  const ChannelResponse speed = speed_response(chain), turn = turn_response(chain);
+MeasuredStart measured_start(const ActuatorModel& actuator, double time, const BodyTwist& measured) {
+  const AxisResponse speed = speed_response(actuator), turn = yaw_rate_response(actuator);
   return {.keeping = {speed.keeping_input(measured.v), speed.keeping_input(measured.vy),
                       turn.keeping_input(measured.omega)},
-          .v_until = time - chain.delay_v,
-          .omega_until = time - chain.delay_omega};
+          .v_until = time - actuator.delay_v,
+          .omega_until = time - actuator.delay_omega};
 }
 
 InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, const MeasuredStart& start,

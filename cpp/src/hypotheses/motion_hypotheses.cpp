@@ -80,7 +80,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
     direct_.emplace("auto", chosen(settings.bases, direct_bases_),
-                    ChainParameters{.mount = settings.mount, .delays = true}, settings.filter, settings.average);
+                    ActuatorParameters{.mount = settings.mount, .delays = true}, settings.filter, settings.average);
   }
   if (settings.cascaded && settings.dynamics) {
     cascaded_.emplace(
@@ -233,9 +233,9 @@ void MotionHypotheses::update_weights() {
     covariances.push_back(predicted_[place].innovation_covariance);
   }
   const Eigen::VectorXd scores = common_log_scores(full / full.sum(), innovations, covariances);
-  WeighingSettings weighting = settings_.average.weighing;
+  WeightingSettings weighting = settings_.average.weighting;
   weighting.learning_rate *= kPatience;
-  const Eigen::VectorXd updated = reweighed(weights, scores, prior / prior.sum(), weighting, count_);
+  const Eigen::VectorXd updated = updated_weights(weights, scores, prior / prior.sum(), weighting, count_);
   for (Eigen::Index i = 0; i < count; ++i) {
     const std::size_t structure = index(to_predict_[static_cast<std::size_t>(i)]);
     weights_[structure] = updated[i];

@@ -23,64 +23,64 @@ ParameterInfo slip_info(const Basis& basis, std::size_t i) {
           "share of " + basis.terms()[i].text() + " in the " + std::string(kSlipRateWords[c]) + " slip rate"};
 }
 
-/// One of the chain's parameters: where it stands, and whether its logarithm is what is learned.
+/// One of the actuator's parameters: where it stands, and whether its logarithm is what is learned.
 struct ChainParameter {
-  double CommandChain::* value;
+  double ActuatorModel::* value;
   bool logarithm;
   const char* name;
   const char* unit;
   const char* description;
 };
 
-constexpr Eigen::Index kDelayV = kChainParameters;  // row of the first delay in seconds
+constexpr Eigen::Index kDelayV = kActuatorParameters;  // row of the first delay in seconds
 
-/// In CommandChain's order, then the delays once more: in seconds, not as logarithms.
-constexpr std::array<ChainParameter, kChainParameters + 2> kChain{{
-    {&CommandChain::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
-    {&CommandChain::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
-    {&CommandChain::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
-    {&CommandChain::delay_omega, true, "log_delay_omega", "ln s", "transport delay of the yaw rate"},
-    {&CommandChain::clock_offset, false, "clock_offset", "s", "lateness of the pose stamps against the input stamps"},
-    {&CommandChain::gain_v, false, "gain_v", "-", "drive over input, of the speed"},
-    {&CommandChain::gain_omega, false, "gain_omega", "-", "drive over input, of the yaw rate"},
-    {&CommandChain::slow_share_v, false, "slow_share_v", "-", "share of the speed that follows slowly"},
-    {&CommandChain::slow_share_omega, false, "slow_share_omega", "-", "share of the yaw rate that follows slowly"},
-    {&CommandChain::slow_lag_v, true, "log_slow_lag_v", "ln s", "slow time constant of the speed"},
-    {&CommandChain::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
-    {&CommandChain::delay_v, false, "delay_v", "s", "how much later than its command the speed is there"},
-    {&CommandChain::delay_omega, false, "delay_omega", "s", "how much later than its command the yaw rate is there"},
+/// In ActuatorModel's order, then the delays once more: in seconds, not as logarithms.
+constexpr std::array<ChainParameter, kActuatorParameters + 2> kActuator{{
+    {&ActuatorModel::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
+    {&ActuatorModel::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
+    {&ActuatorModel::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
+    {&ActuatorModel::delay_omega, true, "log_delay_omega", "ln s", "transport delay of the yaw rate"},
+    {&ActuatorModel::clock_offset, false, "clock_offset", "s", "lateness of the pose stamps against the input stamps"},
+    {&ActuatorModel::gain_v, false, "gain_v", "-", "drive over input, of the speed"},
+    {&ActuatorModel::gain_omega, false, "gain_omega", "-", "drive over input, of the yaw rate"},
+    {&ActuatorModel::slow_share_v, false, "slow_share_v", "-", "share of the speed that follows slowly"},
+    {&ActuatorModel::slow_share_omega, false, "slow_share_omega", "-", "share of the yaw rate that follows slowly"},
+    {&ActuatorModel::slow_lag_v, true, "log_slow_lag_v", "ln s", "slow time constant of the speed"},
+    {&ActuatorModel::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
+    {&ActuatorModel::delay_v, false, "delay_v", "s", "how much later than its command the speed is there"},
+    {&ActuatorModel::delay_omega, false, "delay_omega", "s", "how much later than its command the yaw rate is there"},
 }};
 
-SLIPWISE_TUNING(kUsualResponse, 0.3);   // [s]
-SLIPWISE_TUNING(kShortResponse, 0.03);  // [s]; that much shorter times can hardly be told apart
+SLIPWISE_TUNING(kNominalResponse, 0.3);  // [s]
+SLIPWISE_TUNING(kShortResponse, 0.03);   // [s]; that much shorter times can hardly be distinguished
 
-const ChainParameter& chain_parameter(Eigen::Index row) { return kChain[static_cast<std::size_t>(row)]; }
+const ChainParameter& chain_parameter(Eigen::Index row) { return kActuator[static_cast<std::size_t>(row)]; }
 
 Eigen::Index place_of(Eigen::Index row) {
-  constexpr Eigen::Index kFirstDelay = 2;  // in CommandChain's order
+  constexpr Eigen::Index kFirstDelay = 2;  // in ActuatorModel's order
   return row < kDelayV ? row : kFirstDelay + row - kDelayV;
 }
 
 }  // namespace
 
-double even_slope(double seconds) { return (seconds + kShortResponse) / (seconds + kUsualResponse); }
+double log_time_derivative(double seconds) { return (seconds + kShortResponse) / (seconds + kNominalResponse); }
 
 MotionModel::MotionModel() : MotionModel({"none", {}, {}, {}}, {}) {}
 
-MotionModel::MotionModel(Basis basis, ChainParameters learned) : basis_(std::move(basis)), learned_(learned) {
+MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::move(basis)), learned_(learned) {
   if (learned_.delays && (learned_.dynamics || learned_.response)) {
     throw std::invalid_argument("a motion model has delays alone, or lags and delays, not both");
   }
   const auto add = [this](bool wanted, std::initializer_list<Eigen::Index> rows) {
     if (wanted) {
-      chain_rows_.insert(chain_rows_.end(), rows);
+      actuator_rows_.insert(actuator_rows_.end(), rows);
     }
   };
   add(learned_.dynamics, {0, 1, 2, 3});
   add(learned_.delays, {kDelayV, kDelayV + 1});
   add(learned_.response, {5, 6, 7, 8, 9, 10});
   add(learned_.clock_offset, {4});
-  std::ranges::transform(chain_rows_, std::back_inserter(chain_places_), place_of);
+  std::ranges::transform(actuator_rows_, std::back_inserter(chain_places_), place_of);
 }
 
 std::vector<ParameterInfo> MotionModel::parameters() const {
@@ -88,7 +88,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
   for (std::size_t i = 0; i < basis_.size(); ++i) {
     infos.push_back(slip_info(basis_, i));
   }
-  for (const Eigen::Index row : chain_rows_) {
+  for (const Eigen::Index row : actuator_rows_) {
     const ChainParameter& parameter = chain_parameter(row);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
@@ -100,41 +100,41 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
   return infos;
 }
 
-CommandChain MotionModel::chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
-  CommandChain chain;
+ActuatorModel MotionModel::actuator(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  ActuatorModel actuator;
   Eigen::Index at = slip_size();
-  for (const Eigen::Index row : chain_rows_) {
+  for (const Eigen::Index row : actuator_rows_) {
     const ChainParameter& parameter = chain_parameter(row);
-    chain.*parameter.value = parameter.logarithm ? std::exp(parameters[at]) : parameters[at];
+    actuator.*parameter.value = parameter.logarithm ? std::exp(parameters[at]) : parameters[at];
     ++at;
   }
-  return chain;
+  return actuator;
 }
 
 Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
   return learned_.mount ? Pose2::from_vector(parameters.tail<kMountParameters>()) : Pose2{};
 }
 
-Eigen::VectorXd MotionModel::chain_scales(const CommandChain& chain) const {
-  Eigen::VectorXd scales(chain_size());
+Eigen::VectorXd MotionModel::chain_scales(const ActuatorModel& actuator) const {
+  Eigen::VectorXd scales(actuator_size());
   Eigen::Index at = 0;
-  for (const Eigen::Index row : chain_rows_) {
+  for (const Eigen::Index row : actuator_rows_) {
     const ChainParameter& parameter = chain_parameter(row);
-    scales[at++] = parameter.logarithm ? chain.*parameter.value : 1.0;
+    scales[at++] = parameter.logarithm ? actuator.*parameter.value : 1.0;
   }
   return scales;
 }
 
-Eigen::VectorXd MotionModel::even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
-  Eigen::VectorXd slopes = Eigen::VectorXd::Ones(size());
+Eigen::VectorXd MotionModel::log_time_derivatives(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  Eigen::VectorXd derivatives = Eigen::VectorXd::Ones(size());
   Eigen::Index at = slip_size();
-  for (const Eigen::Index row : chain_rows_) {
+  for (const Eigen::Index row : actuator_rows_) {
     if (chain_parameter(row).logarithm) {
-      slopes[at] = even_slope(std::exp(parameters[at]));
+      derivatives[at] = log_time_derivative(std::exp(parameters[at]));
     }
     ++at;
   }
-  return slopes;
+  return derivatives;
 }
 
 void MotionModel::check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "slipwise/actuator/command_limits.hpp"
-#include "slipwise/estimate/chain_learner.hpp"
-#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/identify/actuator_filter.hpp"
 #include "slipwise/online/behind_limits.hpp"
 
 namespace slipwise {
@@ -41,11 +41,11 @@ class Stretch {
     }
     end_ = segment.end;
   }
-  std::optional<DriveRecord> record() && {
+  std::optional<WheelRecord> record() && {
     if (t_.size() < 2 || command_t_.empty()) {
       return std::nullopt;
     }
-    return DriveRecord{.commands = InputTrack(std::move(command_t_), std::move(commands_)),
+    return WheelRecord{.commands = InputTrack(std::move(command_t_), std::move(commands_)),
                        .t = std::move(t_),
                        .wheels = std::move(wheels_)};
   }
@@ -61,7 +61,7 @@ class Stretch {
 /// The actuator model that segments of wheel speeds lead to, behind limits or not.
 Estimate learned_actuator(std::span<const WheelSegment> wheels, const CausalFilterSettings& filter,
                           const CommandLimits* limits) {
-  ChainLearner learner(filter, wheels.size());
+  ActuatorFilter learner(filter, wheels.size());
   for (const WheelSegment& segment : wheels) {
     const InputTrack commands = limits == nullptr ? segment.commands : limited_track(segment.commands, *limits);
     learner.learn(commands, segment.wheels, segment.start, segment.end);
@@ -83,8 +83,8 @@ MotionPosterior with_actuator(const MotionPosterior& cascaded, const Estimate& a
 
 }  // namespace
 
-std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels) {
-  std::vector<DriveRecord> records;
+std::vector<WheelRecord> drive_records(std::span<const WheelSegment> wheels) {
+  std::vector<WheelRecord> records;
   std::optional<Stretch> stretch;
   const auto close = [&] {
     if (stretch) {
@@ -107,10 +107,10 @@ std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels) {
 
 std::optional<LimitSearch> search_limits(std::span<const WheelSegment> driven, const PriorSettings& prior,
                                          double wheel_separation) {
-  const std::vector<DriveRecord> records = drive_records(driven);
+  const std::vector<WheelRecord> records = drive_records(driven);
   const std::size_t twists =
       std::accumulate(records.begin(), records.end(), std::size_t{0},
-                      [](std::size_t sum, const DriveRecord& record) { return sum + record.t.size(); });
+                      [](std::size_t sum, const WheelRecord& record) { return sum + record.t.size(); });
   if (twists < kFewTwists) {
     return std::nullopt;
   }

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <numbers>
 
-#include "slipwise/estimate/predictive_score.hpp"
-#include "slipwise/estimate/weighing.hpp"
+#include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/filter/weighting.hpp"
 
 namespace slipwise {
 namespace {

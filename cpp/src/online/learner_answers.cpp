@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "slipwise/identify/student_t.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/pose_limits.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
+#include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {

@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "slipwise/identify/student_t.hpp"
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
+#include "slipwise/online/student_t.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
@@ -53,8 +53,8 @@ void keep(std::deque<WheelSegment>& kept, WheelSegment&& segment) {
   }
 }
 
-ColouredSlip disturbance_of(const LearnerSettings& settings) {
-  return settings.learn_disturbance ? ColouredSlip(settings.disturbance) : ColouredSlip(WanderLaw{});
+DisturbanceFilter disturbance_of(const LearnerSettings& settings) {
+  return settings.learn_disturbance ? DisturbanceFilter(settings.disturbance) : DisturbanceFilter(DisturbanceModel{});
 }
 
 }  // namespace
@@ -236,7 +236,7 @@ Knowledge MotionLearner::now_known(double until) const {
   return {.until = until,
           .motion = motion,
           .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
-          .disturbance = std::make_shared<const ColouredSlip>(disturbance_)};
+          .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_)};
 }
 
 void MotionLearner::publish(const DrivenSegment& segment) {

@@ -8,7 +8,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kMemory = 1000;  // poses: a minute of 20 Hz is not yet the usual
+constexpr std::size_t kMemory = 1000;  // poses: a minute of 20 Hz is not yet the nominal
 const double kMostRatio = std::log(1e3);
 
 }  // namespace

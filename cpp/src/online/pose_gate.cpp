@@ -26,7 +26,7 @@ constexpr std::size_t kLongestOutlier = 3;              // poses
 constexpr double kBendOfNoise = 1.652;  // median of |second difference| of noise of 1: 0.6745 sqrt(1 + 4 + 1)
 constexpr double kFirstNoise = 0.5;     // [m] the poses' noise may be, while too few tell it
 constexpr std::size_t kFewBends = 8;
-constexpr double kLeastBend = 1e-3;  // [m] the finest that is told apart
+constexpr double kLeastBend = 1e-3;  // [m] the finest that is distinguished
 
 double distance(const MeasuredPose& from, const MeasuredPose& to) { return std::hypot(to.x - from.x, to.y - from.y); }
 double angle(const MeasuredPose& from, const MeasuredPose& to) { return std::abs(wrap_angle(to.yaw - from.yaw)); }

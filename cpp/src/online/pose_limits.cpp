@@ -33,23 +33,23 @@ HypothesisSettings joint_alone(HypothesisSettings settings) {
 /// front of them, which is the same to another track and other limits: g_v s = g_v v + g_omega omega w' / 2 asks
 /// s = v + omega w / 2 of a side, where w = w' g_omega / g_v.
 LimitSearch with_gain_behind_sides(LimitSearch search) {
-  auto& [limits, chain, edge] = search.drive;
+  auto& [limits, actuator, edge] = search.drive;
   if (!limits_sides(limits)) {
     return search;
   }
-  chain.gain_v = std::min(limits.gain_v, 1.0);
-  chain.gain_omega = std::min(limits.gain_omega, 1.0);
-  limits.gain_v /= chain.gain_v;
-  limits.gain_omega /= chain.gain_omega;
-  limits.track *= chain.gain_omega / chain.gain_v;
-  search.track_std *= chain.gain_omega / chain.gain_v;
+  actuator.gain_v = std::min(limits.gain_v, 1.0);
+  actuator.gain_omega = std::min(limits.gain_omega, 1.0);
+  limits.gain_v /= actuator.gain_v;
+  limits.gain_omega /= actuator.gain_omega;
+  limits.track *= actuator.gain_omega / actuator.gain_v;
+  search.track_std *= actuator.gain_omega / actuator.gain_v;
   for (const LimitKind kind : kLimitKinds) {
-    limit_of(limits.side, kind) /= chain.gain_v;
+    limit_of(limits.side, kind) /= actuator.gain_v;
   }
   for (FoundLimit& found : search.found) {
-    if (found.lane == LimitedAxis::Side) {
-      found.value /= chain.gain_v;
-      found.std /= chain.gain_v;
+    if (found.axis == LimitedAxis::Side) {
+      found.value /= actuator.gain_v;
+      found.std /= actuator.gain_v;
     }
   }
   return search;

@@ -14,8 +14,8 @@ constexpr std::size_t kKept = 8;  // of several horizons, of the prediction to c
 
 }  // namespace
 
-const SlipNow& RecentSlip::after(const ColouredSlip& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
-                                 const SegmentList& segments) {
+const SlipNow& RecentSlip::after(const DisturbanceFilter& disturbance,
+                                 const std::shared_ptr<const MotionPosterior>& motion, const SegmentList& segments) {
   const auto end_of = [](const DrivenSegment* segment) { return segment->segment.end; };
   const auto place = std::ranges::find_if(found_, [&](const Found& each) {
     return each.motion == motion && std::ranges::equal(each.ends, segments, {}, {}, end_of);

@@ -289,7 +289,7 @@ void SegmentStream::set_actuator_state(Segment& segment) const {
   if (segment.initial) {
     InputTrack until_start = wheels_.slice(segment.start - kWheelsBack, segment.start, SliceKind::Wheels);
     segment.known =
-        KnownDrive{.twist = std::make_shared<const InputTrack>(std::move(until_start)), .until = segment.start};
+        MeasuredActuator{.twist = std::make_shared<const InputTrack>(std::move(until_start)), .until = segment.start};
   }
 }
 

@@ -25,10 +25,10 @@ void DriveLimits::check() const {
   need_positive("acceleration", acceleration);
 }
 
-void DriveStart::check() const {
-  for (const BodyTwist& twist : {drive, told, fast.value_or(BodyTwist{})}) {
+void ActuatorState::check() const {
+  for (const BodyTwist& twist : {drive, commanded, fast.value_or(BodyTwist{})}) {
     if (!std::isfinite(twist.v) || !std::isfinite(twist.vy) || !std::isfinite(twist.omega)) {
-      throw std::invalid_argument("the twist at the start is not finite; give what the robot does and was told");
+      throw std::invalid_argument("the twist at the start is not finite; give what the robot does and was commanded");
     }
   }
 }

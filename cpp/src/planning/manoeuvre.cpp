@@ -21,7 +21,7 @@ HeldCommand command(double v, double v_by_length, double fraction, const Manoeuv
 
 constexpr double kLongestRamp = 100.0;  // [s]; nobody waits longer at a goal
 
-bool holds(const LaneLimits& limits, double command) {
+bool holds(const AxisLimits& limits, double command) {
   return std::abs(command) < limits.dead_band || std::abs(command) > limits.top;
 }
 
@@ -42,7 +42,7 @@ HeldCommands held_commands(const ManoeuvreFrame& frame, const ManoeuvreVector& p
   const SpeedProfile profile(frame.speeds, frame.acceleration, parameters[kLength]);
   const double count = frame.commands;
   const ByLength duration = profile.duration();
-  HeldCommands held{.period = {duration.value / count, duration.slope / count},
+  HeldCommands held{.period = {duration.value / count, duration.derivative / count},
                     .commands = {},
                     .end = static_cast<std::size_t>(frame.commands),
                     .settling = frame.settling};
@@ -51,23 +51,25 @@ HeldCommands held_commands(const ManoeuvreFrame& frame, const ManoeuvreVector& p
   for (int k = 0; k < frame.commands; ++k) {
     const ByLength after = profile.distance((k + 1) / count);
     const double speed = (after.value - before.value) / held.period.value;
-    const double slope = (after.slope - before.slope - speed * held.period.slope) / held.period.value;
-    held.commands.push_back(command(frame.direction * speed, frame.direction * slope, (k + 0.5) / count, parameters));
+    const double derivative =
+        (after.derivative - before.derivative - speed * held.period.derivative) / held.period.value;
+    held.commands.push_back(
+        command(frame.direction * speed, frame.direction * derivative, (k + 0.5) / count, parameters));
     before = after;
   }
   held.commands.push_back(command(frame.direction * frame.speeds.end, 0.0, 1.0, parameters));
   return held;
 }
 
-HeldCommands limited_commands(const HeldCommands& held, const CommandLimits& limits, const BodyTwist& told) {
+HeldCommands limited_commands(const HeldCommands& held, const CommandLimits& limits, const BodyTwist& commanded) {
   if (unlimited(limits)) {
     return held;
   }
   CommandLimiter limiter(limits);
-  limiter.settle(told);
+  limiter.settle(commanded);
   const int pieces = limits_rates(limits) ? ramp_pieces(held.period.value) : 1;
   const double piece = held.period.value / pieces;
-  HeldCommands result{.period = {piece, held.period.slope / pieces},
+  HeldCommands result{.period = {piece, held.period.derivative / pieces},
                       .commands = {},
                       .end = held.end * static_cast<std::size_t>(pieces),
                       .settling = held.settling};

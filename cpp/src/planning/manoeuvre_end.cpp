@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One pass over the steps of a manoeuvre: lag by lag, pose by pose, with slopes carried along.
+// One pass over the steps of a manoeuvre: lag by lag, pose by pose, with derivatives carried along.
 #include "slipwise/planning/manoeuvre_end.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/axis_stepper.hpp"
-#include "slipwise/actuator/channel_response.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/segment/path_step.hpp"
 
@@ -19,20 +19,20 @@ namespace {
 
 using StepJacobian = Eigen::Matrix<double, 4, kManoeuvreParameters>;  // duration, forward, left, turn
 constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kLongestStep = DriveWindow{.start = 0.0, .end = 0.0}.longest_step;  // [s]
+constexpr double kLongestStep = ActuatorSpan{.start = 0.0, .end = 0.0}.longest_step;  // [s]
 
 /// Speeds move with the manoeuvre's length alone, the yaw rate with all parameters.
 using SpeedAxis = AxisStepper<1>;
 using YawRateAxis = AxisStepper<kManoeuvreParameters>;
 
-/// An axis that is at `drive` while `told` acts. What the fast mode does not explain is the slow mode's; where the fast
-/// one is not known, it is settled.
+/// An axis that is at `drive` while `commanded` acts. What the fast mode does not explain is the slow mode's; where the
+/// fast one is not known, it is settled.
 template <int N>
-AxisStepper<N> started(const ChannelResponse& response, double drive, double told, std::optional<double> known_fast) {
+AxisStepper<N> started(const AxisResponse& response, double drive, double commanded, std::optional<double> known_fast) {
   AxisStepper<N> axis(response);
-  const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * told) : drive;
+  const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * commanded) : drive;
   axis.start({.value = fast}, {.value = drive - fast});
-  axis.hold(Sensitive<N>{.value = told});
+  axis.hold(Sensitive<N>{.value = commanded});
   return axis;
 }
 
@@ -45,7 +45,7 @@ class GrowingEnd {
         features_(model.basis().size()) {}
 
   /// Drives one step; `jacobian` is null where no derivative is asked for.
-  void drive(const DriveStep& step, const StepJacobian* jacobian) {
+  void drive(const ActuatorStep& step, const StepJacobian* jacobian) {
     model_.basis().features(slip_state(step, BodyGravity{}), features_);
     const Eigen::Vector3d slip = slip_rate(model_.basis(), model_.alpha(), features_);
     const Eigen::Vector3d tangent = tangent_of(step, slip);
@@ -74,20 +74,20 @@ class GrowingEnd {
 /// Walks over the moments at which a delayed command begins to act in one of the channels.
 class ManoeuvreWalk {
  public:
-  ManoeuvreWalk(const PlanningModel& model, const HeldCommands& held, const DriveStart& start)
-      : ManoeuvreWalk(model, limited_commands(held, model.limits(), start.told), start,
-                      settled(model.limits(), start.told)) {}
+  ManoeuvreWalk(const PlanningModel& model, const HeldCommands& held, const ActuatorState& start)
+      : ManoeuvreWalk(model, limited_commands(held, model.limits(), start.commanded), start,
+                      settled(model.limits(), start.commanded)) {}
 
-  template <bool kSlopes>
+  template <bool kDerivatives>
   void run() {
     const auto count = static_cast<double>(held_.end);
-    const Moment end{count * held_.period.value + held_.settling, count * held_.period.slope};
-    Moment now{0.0, 0.0};
+    const Knot end{count * held_.period.value + held_.settling, count * held_.period.derivative};
+    Knot now{0.0, 0.0};
     while (now.t < end.t) {
-      const Moment next_v = acts(next_v_, chain_.delay_v), next_omega = acts(next_omega_, chain_.delay_omega);
-      Moment next = next_v.t <= next_omega.t ? next_v : next_omega;
+      const Knot next_v = acts(next_v_, actuator_.delay_v), next_omega = acts(next_omega_, actuator_.delay_omega);
+      Knot next = next_v.t <= next_omega.t ? next_v : next_omega;
       next = next.t < end.t ? next : end;
-      subdivide<kSlopes>(now, next);
+      subdivide<kDerivatives>(now, next);
       if (next_v.t <= next.t) {
         tell_speed();
       }
@@ -111,32 +111,32 @@ class ManoeuvreWalk {
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
-  /// `told` is what the limits gave before the start.
-  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const DriveStart& start, const BodyTwist& told)
-      : chain_(model.chain()),
+  /// `commanded` is what the limits gave before the start.
+  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const ActuatorState& start, const BodyTwist& commanded)
+      : actuator_(model.actuator()),
         held_(std::move(held)),
-        v_(started<1>(speed_response(model.chain()), start.drive.v, told.v, fast_of(start, &BodyTwist::v))),
-        vy_(started<1>(speed_response(model.chain()), start.drive.vy, told.vy, fast_of(start, &BodyTwist::vy))),
-        omega_(started<kManoeuvreParameters>(turn_response(model.chain()), start.drive.omega, told.omega,
+        v_(started<1>(speed_response(model.actuator()), start.drive.v, commanded.v, fast_of(start, &BodyTwist::v))),
+        vy_(started<1>(speed_response(model.actuator()), start.drive.vy, commanded.vy, fast_of(start, &BodyTwist::vy))),
+        omega_(started<kManoeuvreParameters>(yaw_rate_response(model.actuator()), start.drive.omega, commanded.omega,
                                              fast_of(start, &BodyTwist::omega))),
         end_(model) {}
 
-  static std::optional<double> fast_of(const DriveStart& start, double BodyTwist::* channel) {
+  static std::optional<double> fast_of(const ActuatorState& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
   }
 
   /// A time and its derivative by the manoeuvre's length.
-  struct Moment {
+  struct Knot {
     double t;
-    double slope;
+    double derivative;
   };
 
-  Moment acts(std::size_t command, double delay) const {
+  Knot acts(std::size_t command, double delay) const {
     if (command >= held_.commands.size()) {
       return {kNever, 0.0};
     }
     const auto k = static_cast<double>(command);
-    return {delay + k * held_.period.value, k * held_.period.slope};
+    return {delay + k * held_.period.value, k * held_.period.derivative};
   }
 
   void tell_speed() {
@@ -150,21 +150,22 @@ class ManoeuvreWalk {
     omega_.hold({command.omega, command.omega_by});
   }
 
-  template <bool kSlopes>
-  void subdivide(const Moment& from, const Moment& to) {
-    const bool lagging = speed_response(chain_).longest_lag() > 0.0 || turn_response(chain_).longest_lag() > 0.0;
+  template <bool kDerivatives>
+  void subdivide(const Knot& from, const Knot& to) {
+    const bool lagging =
+        speed_response(actuator_).longest_lag() > 0.0 || yaw_rate_response(actuator_).longest_lag() > 0.0;
     const int parts = lagging ? lag_parts(to.t - from.t, kLongestStep) : 1;
     const double duration = (to.t - from.t) / parts;
-    const AxisDecay decay_v(speed_response(chain_), duration), decay_omega(turn_response(chain_), duration);
+    const AxisDecay decay_v(speed_response(actuator_), duration), decay_omega(yaw_rate_response(actuator_), duration);
     for (int i = 0; i < parts; ++i) {
-      if constexpr (kSlopes) {
-        const double slope = (to.slope - from.slope) / parts;
-        const auto forward = v_.advance(decay_v, SpeedAxis::Row(slope));
-        const auto left = vy_.advance(decay_v, SpeedAxis::Row(slope));
-        const auto turn = omega_.advance(decay_omega, slope * ManoeuvreRow::Unit(kLength));
+      if constexpr (kDerivatives) {
+        const double derivative = (to.derivative - from.derivative) / parts;
+        const auto forward = v_.advance(decay_v, SpeedAxis::Row(derivative));
+        const auto left = vy_.advance(decay_v, SpeedAxis::Row(derivative));
+        const auto turn = omega_.advance(decay_omega, derivative * ManoeuvreRow::Unit(kLength));
         StepJacobian jacobian = StepJacobian::Zero();
-        jacobian.col(kLength).head<3>() << slope, forward.slope, left.slope;
-        jacobian.row(3) = turn.slope;
+        jacobian.col(kLength).head<3>() << derivative, forward.derivative, left.derivative;
+        jacobian.row(3) = turn.derivative;
         end_.drive({duration, forward.value, left.value, turn.value}, &jacobian);
       } else {
         end_.drive({duration, v_.advance_value(decay_v), vy_.advance_value(decay_v), omega_.advance_value(decay_omega)},
@@ -177,7 +178,7 @@ class ManoeuvreWalk {
     }
   }
 
-  const CommandChain& chain_;
+  const ActuatorModel& actuator_;
   HeldCommands held_;
   SpeedAxis v_, vy_;
   YawRateAxis omega_;
@@ -195,21 +196,21 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
   check(limits);
   model.check(parameters);
   alpha_ = parameters.head(model.slip_size());
-  chain_ = model.chain(parameters);
-  chain_.clock_offset = 0.0;
-  chain_.delay_v = std::max(chain_.delay_v, 0.0);  // what is learned as less is an offset of clocks too
-  chain_.delay_omega = std::max(chain_.delay_omega, 0.0);
+  actuator_ = model.actuator(parameters);
+  actuator_.clock_offset = 0.0;
+  actuator_.delay_v = std::max(actuator_.delay_v, 0.0);  // what is learned as less is an offset of clocks too
+  actuator_.delay_omega = std::max(actuator_.delay_omega, 0.0);
 }
 
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
-                     const DriveStart& start) {
+                     const ActuatorState& start) {
   ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.run<false>();
   return walk.pose();
 }
 
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
-                             const DriveStart& start) {
+                             const ActuatorState& start) {
   ManoeuvrePath path;
   ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.record(path);
@@ -220,7 +221,7 @@ ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& f
 }
 
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
-                                 const ManoeuvreVector& parameters, const DriveStart& start) {
+                                 const ManoeuvreVector& parameters, const ActuatorState& start) {
   ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
   walk.run<true>();
   return {walk.pose(), walk.jacobian()};

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/lie/angle.hpp"
 
@@ -33,10 +33,10 @@ void need(bool fine, const char* fault) {
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 
 /// When the last command has come through the delay [s].
-double latest_delay(const CommandChain& chain) { return std::max(chain.delay_v, chain.delay_omega); }
+double latest_delay(const ActuatorModel& actuator) { return std::max(actuator.delay_v, actuator.delay_omega); }
 
 /// How long a channel whose lags hold `fast` and `slow` takes until it is slower than `slowest` for good [s].
-double seconds_to_rest(const ChannelResponse& response, double fast, double slow, double slowest) {
+double seconds_to_rest(const AxisResponse& response, double fast, double slow, double slowest) {
   const auto left = [&](double seconds) {
     return std::abs(lag_output(fast, 0.0, response.lag, seconds)) +
            std::abs(lag_output(slow, 0.0, response.slow_lag, seconds));
@@ -57,12 +57,12 @@ double seconds_to_rest(const ChannelResponse& response, double fast, double slow
 /// How long the last command is held, until what `at` drives with these parameters has come to rest [s].
 double settling_time(const ReachProblem& at, const ManoeuvreVector& parameters, const TrajectorySettings& settings) {
   ReachProblem acts = at;
-  acts.frame.settling = latest_delay(at.model.chain());
+  acts.frame.settling = latest_delay(at.model.actuator());
   const ManoeuvrePath path = manoeuvre_path(acts.model, acts.frame, parameters, acts.start);
-  const auto rest = [&](const ChannelResponse& response, double BodyTwist::* part, double slowest) {
+  const auto rest = [&](const AxisResponse& response, double BodyTwist::* part, double slowest) {
     return seconds_to_rest(response, path.fast.*part, path.drive.*part - path.fast.*part, slowest);
   };
-  const ChannelResponse speed = speed_response(at.model.chain()), turn = turn_response(at.model.chain());
+  const AxisResponse speed = speed_response(at.model.actuator()), turn = yaw_rate_response(at.model.actuator());
   return acts.frame.settling +
          std::max({rest(speed, &BodyTwist::v, settings.rest_speed), rest(speed, &BodyTwist::vy, settings.rest_speed),
                    rest(turn, &BodyTwist::omega, settings.rest_yaw_rate)});
@@ -154,30 +154,30 @@ void TrajectorySettings::check(const DriveLimits& limits) const {
 }
 
 TrajectoryPlanner::TrajectoryPlanner(PlanningModel model, const DriveLimits& limits, const TrajectorySettings& settings,
-                                     const DriveStart& start)
+                                     const ActuatorState& start)
     : model_(std::move(model)),
       limits_(limits),
       settings_(checked(settings, limits)),
       table_(problem(start, settings.cruise), settings.samples) {}
 
-ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) const {
+ReachProblem TrajectoryPlanner::problem(const ActuatorState& start, double cruise) const {
   start.check();
   const double direction = settings_.backwards ? -1.0 : 1.0;
-  const double speed = std::max(0.0, direction * start.told.v);
-  need(speed <= limits_.speed, "the robot is told to drive faster at the start than the limit of speed");
+  const double speed = std::max(0.0, direction * start.commanded.v);
+  need(speed <= limits_.speed, "the robot is commanded to drive faster at the start than the limit of speed");
   const double fastest = std::max({cruise, speed, settings_.end_speed});
   ManoeuvreFrame frame{.speeds = {.start = speed, .cruise = fastest, .end = settings_.end_speed},
                        .acceleration = limits_.acceleration,
                        .direction = direction,
                        .commands = settings_.commands};
-  frame.settling = latest_delay(model_.chain());
+  frame.settling = latest_delay(model_.actuator());
   const double curvature = std::min(limits_.curvature, limits_.yaw_rate / fastest);
   const double shortest = SpeedProfile::shortest(frame.speeds, frame.acceleration) + kShortest;
   ManoeuvreBounds bounds{.low = ManoeuvreVector::Constant(-curvature), .high = ManoeuvreVector::Constant(curvature)};
   bounds.low[kLength] = std::min(shortest, settings_.longest);
   bounds.high[kLength] = settings_.longest;
-  if (speed > kAtRest) {  // a moving robot begins with the curvature that it is told to have
-    bounds.low[0] = bounds.high[0] = std::clamp(start.told.omega / start.told.v, -curvature, curvature);
+  if (speed > kAtRest) {  // a moving robot begins with the curvature that it is commanded to have
+    bounds.low[0] = bounds.high[0] = std::clamp(start.commanded.omega / start.commanded.v, -curvature, curvature);
   }
   if (settings_.straight_end) {
     bounds.low[kCurvaturePoints - 1] = bounds.high[kCurvaturePoints - 1] = 0.0;
@@ -185,7 +185,7 @@ ReachProblem TrajectoryPlanner::problem(const DriveStart& start, double cruise) 
   return {.model = model_, .frame = frame, .start = start, .bounds = bounds};
 }
 
-Trajectory TrajectoryPlanner::to(const Pose2& goal, const DriveStart& start) const {
+Trajectory TrajectoryPlanner::to(const Pose2& goal, const ActuatorState& start) const {
   need(goal.vector().allFinite(), "the goal is not finite; give x and y in metres and the heading in radians");
   Trajectory best{.gap_xy = std::hypot(goal.x, goal.y), .gap_yaw = std::abs(wrap_angle(goal.theta))};
   std::vector<ManoeuvreVector> guesses;

@@ -5,7 +5,7 @@
 namespace slipwise {
 
 void add_pieces(const RolloutProgram& program, const DriveCommand& command, LimitedStart& start) {
-  const double piece = program.chain().period;
+  const double piece = program.actuator().period;
   start.limiter.tell({command.v, 0.0, command.omega});
   for (std::size_t i = 0; i < program.pieces(); ++i) {
     const BodyTwist mean = start.limiter.mean_over(piece, piece);
@@ -14,11 +14,11 @@ void add_pieces(const RolloutProgram& program, const DriveCommand& command, Limi
 }
 
 LimitedStart limited_start(const RolloutProgram& program, std::span<const DriveCommand> past,
-                           const DriveCommand& told) {
+                           const DriveCommand& commanded) {
   LimitedStart start{.limiter = CommandLimiter(program.setting().limits), .given = {}};
   if (past.empty()) {
-    start.limiter.place({told.v, 0.0, told.omega});
-    start.given.push_back(told);
+    start.limiter.place({commanded.v, 0.0, commanded.omega});
+    start.given.push_back(commanded);
     return start;
   }
   start.limiter.settle({past.front().v, 0.0, past.front().omega});

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/rollout/actuator_start.hpp"
 #include "slipwise/rollout/gpu.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/limited_commands.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
-#include "slipwise/rollout/start_drive.hpp"
 #include "slipwise/slip/term.hpp"
 
 namespace slipwise {
@@ -103,12 +103,12 @@ template <typename Scalar>
 LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>& batch,
                        const RolloutOutputs<Scalar>& outputs) {
   const LaneConstants<Scalar>& constants = program.constants<Scalar>();
-  const ChainSchedule& chain = program.chain();
+  const ActuatorSchedule& actuator = program.actuator();
   return {.parts = constants.parts.data(),
           .shares = constants.shares.data(),
-          .cycle = chain.lead_in.size(),
-          .branch = chain.lead_in.size() + chain.branch,
-          .tail = chain.lead_in.size() + chain.cycle.size(),
+          .cycle = actuator.lead_in.size(),
+          .branch = actuator.lead_in.size() + actuator.branch,
+          .tail = actuator.lead_in.size() + actuator.cycle.size(),
           .part_end = constants.parts.size(),
           .products = program.products().data(),
           .product_count = program.products().size(),
@@ -116,10 +116,10 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
           .quadratic = program.quadratic().value_or(LaneQuadratic{}),
           .factors = program.slip().factors,
           .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
-          .shift_v = chain.v.shift,
-          .shift_omega = chain.omega.shift,
-          .lags = chain.lags,
-          .responds = chain.responds,
+          .shift_v = actuator.v.shift,
+          .shift_omega = actuator.omega.shift,
+          .lags = actuator.lags,
+          .responds = actuator.responds,
           .limits = program.limited() ? &constants.limits : nullptr,
           .pieces = program.pieces(),
           .start_row = 0,
@@ -173,12 +173,12 @@ class BlockOfBatch {
   BlockOfBatch(const RolloutProgram& program, const RolloutBatch<Scalar>& batch, const Costmap* map,
                const LaneKernelOfLevel<Scalar>& kernel, const LaneJob<Scalar>& job)
       : program_(program),
-        chain_(program.chain()),
+        actuator_(program.actuator()),
         batch_(batch),
         map_(map),
         lanes_(kernel.lanes),
         many_(batch.starts.size() > 1),
-        each_(many_ || (chain_.responds && std::min(chain_.v.shift, chain_.omega.shift) < 0)),
+        each_(many_ || (actuator_.responds && std::min(actuator_.v.shift, actuator_.omega.shift) < 0)),
         commands_(program, kernel, job) {
     point_to_rows(rows_.data(), kMostLanes, block_);
     block_.past_count = batch.past.size() / batch.starts.size();
@@ -208,7 +208,7 @@ class BlockOfBatch {
 
  private:
   struct Drives {
-    StartDrive v, omega;
+    ActuatorStart v, omega;
   };
 
   std::span<const DriveCommand> past_of(std::size_t rollout) const {
@@ -220,20 +220,21 @@ class BlockOfBatch {
     return SentCommands<Scalar>{batch_, rollout, past_of(rollout), commands, channel}(i);
   }
 
-  /// `command(i, channel)` is what was sent in period i of the chain, from `known_before` periods before the start on.
+  /// `command(i, channel)` is what was sent in period i of the actuator, from `known_before` periods before the start
+  /// on.
   template <typename Command>
   Drives drives_of(std::size_t rollout, std::size_t known_before, const Command& command) const {
     const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
     const auto channel = [&](const ChannelTiming& timing, double DriveCommand::* member) {
-      return start_drive(chain_, timing, now.*member, -static_cast<std::ptrdiff_t>(known_before),
-                         [&](std::ptrdiff_t i) { return command(i, member); });
+      return actuator_start(actuator_, timing, now.*member, -static_cast<std::ptrdiff_t>(known_before),
+                            [&](std::ptrdiff_t i) { return command(i, member); });
     };
-    return {channel(chain_.v, &DriveCommand::v), channel(chain_.omega, &DriveCommand::omega)};
+    return {channel(actuator_.v, &DriveCommand::v), channel(actuator_.omega, &DriveCommand::omega)};
   }
 
   Drives drives_behind_limits(std::size_t rollout, LimitedStart start) const {
     const auto before = static_cast<std::ptrdiff_t>(start.given.size());
-    for (std::ptrdiff_t i = 0; each_ && i <= -std::min(chain_.v.shift, chain_.omega.shift); ++i) {
+    for (std::ptrdiff_t i = 0; each_ && i <= -std::min(actuator_.v.shift, actuator_.omega.shift); ++i) {
       add_pieces(program_, {sent(rollout, i, &DriveCommand::v), sent(rollout, i, &DriveCommand::omega)}, start);
     }
     return drives_of(rollout, block_.past_count * program_.pieces(), [&](std::ptrdiff_t i, auto member) {
@@ -248,7 +249,7 @@ class BlockOfBatch {
       const DriveCommand& now = batch_.starts[many_ ? rollout : 0].drive;
       const LimitedStart start =
           limited_start(program_, past_of(rollout),
-                        {chain_.v.response.keeping_input(now.v), chain_.omega.response.keeping_input(now.omega)});
+                        {actuator_.v.response.keeping_input(now.v), actuator_.omega.response.keeping_input(now.omega)});
       for (std::size_t lane = first; lane < last; ++lane) {
         commands_.set_start(lane, start);
       }
@@ -273,8 +274,8 @@ class BlockOfBatch {
       block_.cell_x[lane] = number((pose.x - map_->origin_x) / map_->resolution);
       block_.cell_y[lane] = number((pose.y - map_->origin_y) / map_->resolution);
     }
-    const auto set_channel = [&](LaneStart<Scalar>& channel, const StartDrive& drive) {
-      channel.told[lane] = number(drive.told);
+    const auto set_channel = [&](LaneStart<Scalar>& channel, const ActuatorStart& drive) {
+      channel.commanded[lane] = number(drive.commanded);
       channel.fast[lane] = number(drive.fast);
       channel.slow[lane] = number(drive.slow);
     };
@@ -284,7 +285,7 @@ class BlockOfBatch {
 
   alignas(64) std::array<Scalar, kStartRows * kMostLanes> rows_{};
   const RolloutProgram& program_;
-  const ChainSchedule& chain_;
+  const ActuatorSchedule& actuator_;
   const RolloutBatch<Scalar>& batch_;
   const Costmap* map_;
   std::size_t lanes_;
@@ -354,9 +355,9 @@ void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& ba
   check(batch);
   const LaneJob<Scalar> job = job_of(program, batch, outputs);
   const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
-  if (out_of_sight && program.chain().responds && std::min(job.shift_v, job.shift_omega) < 0) {
+  if (out_of_sight && program.actuator().responds && std::min(job.shift_v, job.shift_omega) < 0) {
     throw std::invalid_argument(
-        "where a drive with a slow part acts before it is told, its commands must lie in the processor's memory");
+        "where a drive with a slow part acts before it is commanded, its commands must lie in the processor's memory");
   }
   const unsigned faults = options.gpu != nullptr ? roll_on(*options.gpu, program, batch, outputs.map, job)
                                                  : roll_blocks(program, batch, outputs.map, job, options);

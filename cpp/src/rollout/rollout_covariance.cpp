@@ -39,14 +39,14 @@ class ParameterShare {
   }
 
   /// Slip that wanders acts on the pose after some time as its mean over that time does.
-  void add_wander() {
-    const WanderingTerms terms = terms_that_wander(model_);
+  void add_disturbance() {
+    const DisturbedTerms terms = disturbed_terms_of(model_);
     for (Eigen::Index i = 0; i < terms.size(); ++i) {
       const double prior_std = terms.prior_std[i];
       std::vector<double> variances;  // in units of the prior's
       for (std::size_t k = 1; k <= batch_.periods && prior_std > 0.0; ++k) {
         const double seconds = static_cast<double>(k) * model_.setting.period;
-        variances.push_back(usual_variances(model_.uncertainty.wander, terms, seconds)[i] / (prior_std * prior_std));
+        variances.push_back(nominal_variances(model_.uncertainty.wander, terms, seconds)[i] / (prior_std * prior_std));
       }
       if (!variances.empty() && variances.front() > 0.0) {
         const Eigen::Index place = terms.places[static_cast<std::size_t>(i)];
@@ -131,7 +131,7 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>&
   std::ranges::fill(out, 0.0);
   ParameterShare share(model, batch, options, out);
   share.add_learned();
-  share.add_wander();
+  share.add_disturbance();
   const Eigen::Vector3d root = model.uncertainty.scale.cwiseSqrt();
   share_out(batch.rollouts, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {

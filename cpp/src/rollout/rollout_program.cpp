@@ -36,7 +36,7 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program) {
 
 /// With the shares and gains of the two lags. What is left of a lag is rounded first, so that it settles on its input.
 template <typename Scalar>
-LaneLag<Scalar> lane_lag(const ChannelShare& part, const ChannelResponse& response) {
+LaneLag<Scalar> lane_lag(const ChannelShare& part, const AxisResponse& response) {
   const auto number = [](double value) { return static_cast<Scalar>(value); };
   const auto rounded = [](double value) { return static_cast<double>(static_cast<Scalar>(value)); };
   const double fast = response.fast_share();
@@ -59,7 +59,7 @@ std::size_t pieces_of(const RolloutSetting& setting) {
 }
 
 template <typename Scalar>
-RampLimits<Scalar> ramp_limits(const LaneLimits& limits, double piece) {
+RampLimits<Scalar> ramp_limits(const AxisLimits& limits, double piece) {
   const auto number = [](double value) {
     return static_cast<Scalar>(std::min(value, static_cast<double>(std::numeric_limits<Scalar>::max())));
   };
@@ -86,16 +86,17 @@ DriveRamps<Scalar> drive_ramps(const CommandLimits& limits, double piece) {
 }
 
 template <typename Scalar>
-LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ChainSchedule& chain, const CommandLimits& limits) {
-  LaneConstants<Scalar> constants{.parts = {}, .shares = {}, .limits = drive_ramps<Scalar>(limits, chain.period)};
-  std::vector<PeriodPart> parts = chain.lead_in;
-  parts.insert(parts.end(), chain.cycle.begin(), chain.cycle.end());
-  parts.insert(parts.end(), chain.tail.begin(), chain.tail.end());
+LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ActuatorSchedule& actuator,
+                                     const CommandLimits& limits) {
+  LaneConstants<Scalar> constants{.parts = {}, .shares = {}, .limits = drive_ramps<Scalar>(limits, actuator.period)};
+  std::vector<PeriodPart> parts = actuator.lead_in;
+  parts.insert(parts.end(), actuator.cycle.begin(), actuator.cycle.end());
+  parts.insert(parts.end(), actuator.tail.begin(), actuator.tail.end());
   for (const PeriodPart& part : parts) {
     constants.parts.push_back({.first_share = constants.shares.size(),
                                .duration = static_cast<Scalar>(part.duration),
-                               .v = lane_lag<Scalar>(part.v, chain.v.response),
-                               .omega = lane_lag<Scalar>(part.omega, chain.omega.response),
+                               .v = lane_lag<Scalar>(part.v, actuator.v.response),
+                               .omega = lane_lag<Scalar>(part.omega, actuator.omega.response),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
     for (const SlipProduct& product : slip.products) {
@@ -114,10 +115,10 @@ RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const 
     : setting_(setting),
       slip_(slip_of(model, parameters, setting)),
       pieces_(pieces_of(setting)),
-      chain_(schedule_chain(model.chain(parameters), setting.period / static_cast<double>(pieces_))),
+      actuator_(schedule_actuator(model.actuator(parameters), setting.period / static_cast<double>(pieces_))),
       quadratic_(find_quadratic(slip_)),
       products_(lane_products(slip_)),
-      float_(lane_constants<float>(slip_, chain_, setting.limits)),
-      double_(lane_constants<double>(slip_, chain_, setting.limits)) {}
+      float_(lane_constants<float>(slip_, actuator_, setting.limits)),
+      double_(lane_constants<double>(slip_, actuator_, setting.limits)) {}
 
 }  // namespace slipwise

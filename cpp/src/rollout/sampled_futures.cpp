@@ -30,18 +30,18 @@ constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the roll
 /// Drives along a path again, with noise added to the tangent of every period.
 class NoisyPath {
  public:
-  NoisyPath(const UncertainModel& model, const WanderingTerms& terms, std::mt19937_64 random)
+  NoisyPath(const UncertainModel& model, const DisturbedTerms& terms, std::mt19937_64 random)
       : model_(model), terms_(terms), random_(random) {
     for (double& part : constant_) {
       part = normal_(random_);
     }
-    const WanderLaw& law = model.uncertainty.wander;
+    const DisturbanceModel& law = model.uncertainty.wander;
     if (terms.size() > 0) {
       std::discrete_distribution<std::size_t> which(law.weights.begin(), law.weights.end());
-      const SlipWander& wander = law.candidates[which(random_)];
+      const SlipDisturbance& wander = law.candidates[which(random_)];
       kept_ = std::exp(-model.setting.period / wander.time_constant);
-      usual_ = terms.variances(wander).cwiseSqrt();
-      deviation_ = usual_.unaryExpr([&](double std) { return std * normal_(random_); });
+      nominal_ = terms.variances(wander).cwiseSqrt();
+      deviation_ = nominal_.unaryExpr([&](double std) { return std * normal_(random_); });
     }
   }
 
@@ -65,17 +65,17 @@ class NoisyPath {
       const double motion = terms_.of_turn[k] ? drive.z() : drive.x();
       tangent[static_cast<Eigen::Index>(terms_.channels[k])] +=
           std::sqrt(model_.uncertainty.growth) * deviation_[i] * motion;
-      deviation_[i] = kept_ * deviation_[i] + std::sqrt(1.0 - kept_ * kept_) * usual_[i] * normal_(random_);
+      deviation_[i] = kept_ * deviation_[i] + std::sqrt(1.0 - kept_ * kept_) * nominal_[i] * normal_(random_);
     }
   }
 
   const UncertainModel& model_;
-  const WanderingTerms& terms_;
+  const DisturbedTerms& terms_;
   std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
   std::array<double, 3> constant_{};
   double kept_ = 0.0;          ///< of the deviation over a period
-  Eigen::VectorXd usual_;      ///< standard deviations of the terms that wander
+  Eigen::VectorXd nominal_;    ///< standard deviations of the terms that wander
   Eigen::VectorXd deviation_;  ///< of these terms now
 };
 
@@ -107,7 +107,7 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
                                 " numbers in x, y and theta each, got " + std::to_string(outputs.x.size()));
   }
   const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
-  const WanderingTerms terms = terms_that_wander(model);
+  const DisturbedTerms terms = disturbed_terms_of(model);
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {

@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // [s] of stamps
 
-/// One column per learned parameter of the chain.
-using ChainColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kChainParameters>;
-using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kChainParameters>;
+/// One column per learned parameter of the actuator.
+using ChainColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
+using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kActuatorParameters>;
 
-DriveWindow window_of(const Segment& segment) {
+ActuatorSpan window_of(const Segment& segment) {
   return {.start = segment.start, .end = segment.end, .initial = segment.initial, .known = segment.known};
 }
 
@@ -49,7 +49,7 @@ class GrowingPath {
   const Eigen::Matrix2d& heading() const { return heading_; }
   const Pose2& pose() const { return path_.poses.back(); }
 
-  /// `displacement` is the step's motion seen from its start, and `arc` belongs to its turn.
+  /// `displacement` is the step's motion observed from its start, and `arc` belongs to its turn.
   void append(double duration, const Eigen::Vector3d& tangent, const Eigen::Vector2d& displacement,
               const ArcFunctions<double>& arc) {
     const Eigen::Vector2d moved = heading_ * displacement;
@@ -63,7 +63,7 @@ class GrowingPath {
 
   double time() const { return path_.times.back(); }
 
-  SegmentPath finish(std::vector<DriveStep> drive, const Pose2& sensor) && {
+  SegmentPath finish(std::vector<ActuatorStep> drive, const Pose2& sensor) && {
     path_.drive = std::move(drive);
     path_.sensor = sensor;
     return std::move(path_);
@@ -87,11 +87,11 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
 /// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
-  ChainColumns chain;
+  ChainColumns actuator;
 
-  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()), chain(3, model.chain_size()) {
+  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()), actuator(3, model.actuator_size()) {
     slip.setZero();
-    chain.setZero();
+    actuator.setZero();
   }
 
   /// d(tangent) / d(alpha) is the feature times the duration, in the term's own channel.
@@ -115,13 +115,14 @@ struct SensitivitySums {
 
   /// J = Phi(n, 0) times the sums.
   Eigen::Matrix<double, 3, Eigen::Dynamic> at(const SegmentPath& path, const MotionModel& model,
-                                              const CommandChain& at) const {
+                                              const ActuatorModel& at) const {
     const Pose2& end = path.poses.back();
     const Eigen::Matrix3d phi = at_sensor(path);
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
     jacobian.leftCols(model.slip_size()) = phi * slip;
-    if (model.chain_size() > 0) {
-      jacobian.middleCols(model.slip_size(), model.chain_size()) = phi * chain * model.chain_scales(at).asDiagonal();
+    if (model.actuator_size() > 0) {
+      jacobian.middleCols(model.slip_size(), model.actuator_size()) =
+          phi * actuator * model.chain_scales(at).asDiagonal();
     }
     if (model.learned().mount) {
       jacobian.rightCols<kMountParameters>() = sensor_by_mount(end, path.sensor);
@@ -136,17 +137,17 @@ template <bool kAll, class See>
 SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                 const InputTrack& inputs, const Segment& segment, const See& see) {
   model.check(parameters);
-  const CommandChain chain = model.chain(parameters);
-  const bool by_chain = kAll && model.chain_size() > 0;
+  const ActuatorModel actuator = model.actuator(parameters);
+  const bool by_chain = kAll && model.actuator_size() > 0;
   const auto alpha = parameters.head(model.slip_size());
-  DriveSteps drive = by_chain ? linearize_drive_steps(inputs, chain, window_of(segment))
-                              : drive_steps(inputs, chain, window_of(segment));
+  ActuatorSteps drive = by_chain ? linearize_actuator_steps(inputs, actuator, window_of(segment))
+                                 : actuator_steps(inputs, actuator, window_of(segment));
   const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
   std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
-    const DriveStep& step = drive.steps[k];
+    const ActuatorStep& step = drive.steps[k];
     model.basis().features(slip_state(step, gravity_of(segment)), features);
     const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
     const Eigen::Vector3d tangent = tangent_of(step, slip);
@@ -155,7 +156,7 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
     if (by_chain) {
       const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
       if (!learned.isZero(0.0)) {
-        sums.chain += by_tangent * tangent_by(step, learned, along, slip);
+        sums.actuator += by_tangent * tangent_by(step, learned, along, slip);
       }
     }
     if (k + 1 < drive.steps.size()) {
@@ -164,11 +165,12 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   }
   SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
   const Pose2 predicted = finished.sensor_motion();
-  auto by_parameter = kAll ? sums.at(finished, model, chain) : sums.by_slip(finished);
+  auto by_parameter = kAll ? sums.at(finished, model, actuator) : sums.by_slip(finished);
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
 
-void see_nothing(const GrowingPath& /*path*/, std::span<const DriveStep> /*steps*/, const SensitivitySums& /*sums*/) {}
+void see_nothing(const GrowingPath& /*path*/, std::span<const ActuatorStep> /*steps*/,
+                 const SensitivitySums& /*sums*/) {}
 
 }  // namespace
 
@@ -182,10 +184,10 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
                               const InputTrack& inputs, const Segment& segment, Integrator integrator) {
   model.check(parameters);
   const auto alpha = parameters.head(model.slip_size());
-  DriveSteps drive = drive_steps(inputs, model.chain(parameters), window_of(segment));
+  ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
-  for (const DriveStep& step : drive.steps) {
+  for (const ActuatorStep& step : drive.steps) {
     model.basis().features(slip_state(step, gravity_of(segment)), features);
     const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
     const auto arc = arc_functions(tangent.z());
@@ -211,12 +213,12 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                                        const InputTrack& inputs, const Segment& segment,
                                                        std::size_t parts) {
-  const CommandChain chain = model.chain(parameters);
+  const ActuatorModel actuator = model.actuator(parameters);
   const Pose2 sensor = sensor_of(model, parameters, segment);
   const double part = (segment.end - segment.start) / static_cast<double>(parts);
   double next = segment.start + part;
   std::vector<SegmentLinearization> found;
-  const auto see = [&](const GrowingPath& path, std::span<const DriveStep> steps, const SensitivitySums& sums) {
+  const auto see = [&](const GrowingPath& path, std::span<const ActuatorStep> steps, const SensitivitySums& sums) {
     if (path.time() < next - kRounding) {
       return;
     }
@@ -225,7 +227,7 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
     }
     SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
     const Pose2 predicted = so_far.sensor_motion();
-    auto by_parameter = sums.at(so_far, model, chain);
+    auto by_parameter = sums.at(so_far, model, actuator);
     found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
   };
   auto whole = linearized<true>(model, parameters, inputs, segment, see);

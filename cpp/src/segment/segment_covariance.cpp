@@ -30,7 +30,7 @@ Eigen::Matrix3d pose_covariance(const MotionNoise& noise, const PoseStdRatio& ra
   return Eigen::Vector3d(xy * xy, xy * xy, yaw * yaw).asDiagonal();
 }
 
-std::array<double, 3> motion_of(const DriveStep& step) {
+std::array<double, 3> motion_of(const ActuatorStep& step) {
   const double distance = std::hypot(step.forward, step.left);
   const double turn = std::abs(step.turn);
   const double wheels = distance + kTurnRadius * turn;
@@ -54,8 +54,8 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
     }
   }
   covariance += constant * constant.transpose();
-  const Eigen::Matrix3d seen = sensor_by_robot(path.poses.back(), path.sensor);
-  return seen * covariance * seen.transpose();
+  const Eigen::Matrix3d observed = sensor_by_robot(path.poses.back(), path.sensor);
+  return observed * covariance * observed.transpose();
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip rates, their slopes and their covariance at one state.
+// Slip rates, their derivatives and their covariance at one state.
 #include "slipwise/slip/slip_surface.hpp"
 
 #include <vector>
@@ -31,13 +31,13 @@ Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::Vect
 Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                                const SlipState& state) {
   const SlipQuantities quantities(state);
-  Eigen::Matrix<double, 3, 2> slopes = Eigen::Matrix<double, 3, 2>::Zero();
+  Eigen::Matrix<double, 3, 2> derivatives = Eigen::Matrix<double, 3, 2>::Zero();
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const TermValue term = basis.terms()[i].linearize(quantities);
     const Eigen::RowVector2d by_drive(term.by_v, term.by_omega);
-    slopes.row(static_cast<Eigen::Index>(basis.channel(i))) += alpha[static_cast<Eigen::Index>(i)] * by_drive;
+    derivatives.row(static_cast<Eigen::Index>(basis.channel(i))) += alpha[static_cast<Eigen::Index>(i)] * by_drive;
   }
-  return slopes;
+  return derivatives;
 }
 
 SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,

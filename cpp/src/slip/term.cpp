@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip terms: reading them from text, their value and their slopes.
+// Slip terms: reading them from text, their value and their derivatives.
 #include "slipwise/slip/term.hpp"
 
 #include <algorithm>

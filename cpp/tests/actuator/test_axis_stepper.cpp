@@ -17,7 +17,7 @@ constexpr Eigen::Index kFactor = 5;  // of the inputs, which no axis knows of
 constexpr std::array kInputs{1.0, -0.5, 0.8};
 constexpr std::array kDurations{0.3, 0.2, 0.4};
 
-ChannelResponse response_of(const Eigen::VectorXd& at) {
+AxisResponse response_of(const Eigen::VectorXd& at) {
   return {.gain = at[2], .lag = at[0], .slow_share = at[3], .slow_lag = at[4]};
 }
 
@@ -31,7 +31,7 @@ Eigen::Matrix<double, 1, N> longer(std::size_t i) {
   return row;
 }
 
-/// Integral, and both modes at the end, each with its slopes; `hold` gives the stepper an input.
+/// Integral, and both modes at the end, each with its derivatives; `hold` gives the stepper an input.
 template <int N, typename Hold>
 Eigen::Matrix<double, 3, N + 1> driven(const Eigen::VectorXd& at, const AxisPlaces& places, const Hold& hold) {
   AxisStepper<N> axis(response_of(at), places);
@@ -43,7 +43,8 @@ Eigen::Matrix<double, 3, N + 1> driven(const Eigen::VectorXd& at, const AxisPlac
     integral = integral + axis.advance(AxisDecay(axis.response(), duration), longer<N>(i));
   }
   Eigen::Matrix<double, 3, N + 1> result;
-  result << integral.value, integral.slope, axis.fast().value, axis.fast().slope, axis.slow().value, axis.slow().slope;
+  result << integral.value, integral.derivative, axis.fast().value, axis.fast().derivative, axis.slow().value,
+      axis.slow().derivative;
   return result;
 }
 
@@ -54,16 +55,16 @@ Eigen::Matrix<double, 3, N + 1> driven(const Eigen::VectorXd& at) {
 
 Eigen::VectorXd sample() { return (Eigen::VectorXd(kN) << 0.25, 0.05, 0.9, 0.3, 1.4, 1.0).finished(); }
 
-TEST_CASE("integral and modes know their slopes by lag, delay, gain and slow mode") {
+TEST_CASE("integral and modes know their derivatives by lag, delay, gain and slow mode") {
   const auto value = [](const Eigen::VectorXd& at) -> Eigen::VectorXd { return driven<kN>(at).col(0); };
   const Eigen::MatrixXd numeric = tests::finite_difference(value, sample(), 0.02);
   CHECK(tests::jacobian_error(driven<kN>(sample()).rightCols<kN>(), numeric) < tests::kDerivativeTolerance);
 }
 
-TEST_CASE("an input that moves with a parameter hands its slope on") {
+TEST_CASE("an input that moves with a parameter hands its derivative on") {
   const auto run = [](const Eigen::VectorXd& at) {
     return driven<kN>(at, {}, [&](AxisStepper<kN>& axis, double input) {
-      axis.hold({.value = at[kFactor] * input, .slope = input * Eigen::Matrix<double, 1, kN>::Unit(kFactor)});
+      axis.hold({.value = at[kFactor] * input, .derivative = input * Eigen::Matrix<double, 1, kN>::Unit(kFactor)});
     });
   };
   const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd { return run(at).col(0); };
@@ -84,15 +85,15 @@ TEST_CASE("following ends where advancing does") {
   followed.follow(decay, longer<kN>(1));
   advanced.advance(decay, longer<kN>(1));
   CHECK(followed.whole().value == advanced.whole().value);
-  CHECK(followed.whole().slope == advanced.whole().slope);
+  CHECK(followed.whole().derivative == advanced.whole().derivative);
 }
 
 TEST_CASE("fast and slow mode of a settled axis make up the gain") {
   AxisStepper<kN> axis({.gain = 0.7, .lag = 0.1, .slow_share = 0.4, .slow_lag = 2.0}, kPlaces);
   axis.settle(2.0);
   CHECK(axis.whole().value == doctest::Approx(1.4));
-  CHECK(axis.whole().slope[kPlaces.slow_share] == doctest::Approx(0.0));
-  CHECK(axis.whole().slope[kPlaces.gain] == doctest::Approx(2.0));
+  CHECK(axis.whole().derivative[kPlaces.slow_share] == doctest::Approx(0.0));
+  CHECK(axis.whole().derivative[kPlaces.gain] == doctest::Approx(2.0));
 }
 
 TEST_CASE("what was measured before any input is kept") {
@@ -103,10 +104,10 @@ TEST_CASE("what was measured before any input is kept") {
   CHECK(axis.whole().value == doctest::Approx(0.6));
 }
 
-TEST_CASE("an axis that never moved has no slopes") {
+TEST_CASE("an axis that never moved has no derivatives") {
   AxisStepper<kN> axis(response_of(sample()), kPlaces);
   axis.settle(0.0);
-  CHECK(axis.advance(AxisDecay(axis.response(), 1.0), longer<kN>(1)).slope.isZero(0.0));
+  CHECK(axis.advance(AxisDecay(axis.response(), 1.0), longer<kN>(1)).derivative.isZero(0.0));
 }
 
 }  // namespace

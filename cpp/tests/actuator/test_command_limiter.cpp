@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ramp of one lane, and the four lanes of a drive together: how long they take, and what they give meanwhile.
+// The ramp of one axis, and the four axes of a drive together: how long they take, and what they give meanwhile.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -13,19 +13,19 @@ namespace slipwise {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr LaneLimits kLane{.dead_band = 0.1, .top = 2.0, .acceleration = 1.0, .braking = 4.0};
+constexpr AxisLimits kAxis{.dead_band = 0.1, .top = 2.0, .acceleration = 1.0, .braking = 4.0};
 
-LaneRamp ramp_at(const LaneLimits& limits, double state, double command) {
-  LaneRamp ramp(limits);
+AxisRamp ramp_at(const AxisLimits& limits, double state, double command) {
+  AxisRamp ramp(limits);
   ramp.aim(command);
   ramp.place(state);
   return ramp;
 }
 
-TEST_CASE("a lane brakes to zero and then speeds up the other way, each at its own rate") {
-  const LaneRamp ramp = ramp_at(kLane, 1.0, -2.0);
+TEST_CASE("a axis brakes to zero and then speeds up the other way, each at its own rate") {
+  const AxisRamp ramp = ramp_at(kAxis, 1.0, -2.0);
   CHECK(ramp.seconds_to(-2.0) == doctest::Approx(1.0 / 4.0 + 2.0 / 1.0));
-  LaneRamp moving = ramp;
+  AxisRamp moving = ramp;
   // 0.125 m while it brakes, then -0.5 * 0.25^2 m.
   CHECK(moving.mean_over(0.5, 0.5) * 0.5 == doctest::Approx(0.125 - 0.03125));
   CHECK(moving.state() == doctest::Approx(-0.25));
@@ -33,8 +33,8 @@ TEST_CASE("a lane brakes to zero and then speeds up the other way, each at its o
 
 TEST_CASE("the mean over a piece is that of its parts") {
   for (const double command : {2.0, 0.5, 0.05, -2.0}) {
-    LaneRamp whole = ramp_at(kLane, 1.0, command);
-    LaneRamp parts = whole;
+    AxisRamp whole = ramp_at(kAxis, 1.0, command);
+    AxisRamp parts = whole;
     const double distance = whole.mean_over(0.6, 0.6) * 0.6;
     double sum = 0.0;
     for (const double seconds : {0.1, 0.35, 0.15}) {
@@ -45,18 +45,18 @@ TEST_CASE("the mean over a piece is that of its parts") {
   }
 }
 
-TEST_CASE("a piece that is cut short keeps the mean of the whole, and the lane stands where the cut was") {
-  LaneRamp cut = ramp_at(kLane, 0.0, 2.0);
-  LaneRamp whole = cut;
+TEST_CASE("a piece that is cut short keeps the mean of the whole, and the axis stands where the cut was") {
+  AxisRamp cut = ramp_at(kAxis, 0.0, 2.0);
+  AxisRamp whole = cut;
   CHECK(cut.mean_over(0.4, 0.1) == doctest::Approx(whole.mean_over(0.4, 0.4)));
   CHECK(cut.state() == doctest::Approx(0.1));
 }
 
-TEST_CASE("a lane without rates is there at once, and one that only brakes slowly speeds up at once") {
-  LaneRamp free({.top = 2.0});
+TEST_CASE("a axis without rates is there at once, and one that only brakes slowly speeds up at once") {
+  AxisRamp free({.top = 2.0});
   free.aim(5.0);
   CHECK(free.state() == 2.0);
-  LaneRamp coasting({.braking = 0.5});
+  AxisRamp coasting({.braking = 0.5});
   coasting.aim(1.0);
   CHECK(coasting.state() == 1.0);
   CHECK_FALSE(coasting.ramps_to(2.0));

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "slipwise/actuator/chain_output.hpp"
+#include "slipwise/actuator/actuator_output.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 
@@ -81,7 +81,7 @@ TEST_CASE("commands at equal intervals are cut exactly, from the second on") {
   CHECK(reached == doctest::Approx(0.3 * 0.3 - 0.05 * 0.05 + 0.3 * 0.3 - 0.05 * 0.05).epsilon(1e-12));
 }
 
-TEST_CASE("a drive that was told something for long gives what its limits leave of it") {
+TEST_CASE("a drive that was commanded something for long gives what its limits leave of it") {
   const CommandLimits limits{.speed = {.top = 0.5, .acceleration = 1.0}, .side = {.top = 0.6}, .track = 0.5};
   CommandLimiter limiter(limits);
   limiter.settle({.v = 3.0, .vy = 0.0, .omega = 1.0});
@@ -111,10 +111,10 @@ TEST_CASE("what comes out until some moment does not depend on later commands") 
   }
 }
 
-TEST_CASE("limits that make no sense are refused with the lane and what to give") {
+TEST_CASE("limits that make no sense are refused with the axis and what to give") {
   const InputTrack commands = track({0.0}, {1.0}, {0.0});
   CHECK_THROWS_WITH_AS(limited_track(commands, {.yaw_rate = {.top = -1.0}}),
-                       doctest::Contains("yaw rate lane's top speed"), std::invalid_argument);
+                       doctest::Contains("yaw rate axis's top speed"), std::invalid_argument);
   CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(limited_track(commands, {.speed = {.acceleration = 0.0}}), std::invalid_argument);
   CHECK_THROWS_AS(limited_track(commands, {.side = {.braking = std::nan("")}}), std::invalid_argument);
@@ -122,12 +122,12 @@ TEST_CASE("limits that make no sense are refused with the lane and what to give"
   CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = kNone}}), std::invalid_argument);
 }
 
-TEST_CASE("the chain's output is that of its drive steps") {
+TEST_CASE("the actuator's output is that of its drive steps") {
   const InputTrack inputs = track({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
-  const CommandChain chain{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
+  const ActuatorModel actuator{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
   const std::vector<double> times{0.0, 2.0, 2.0005};
-  const ChainOutput output = chain_output(inputs, chain, times, {});
-  const DriveSteps steps = drive_steps(inputs, chain, {.start = 2.0, .end = 2.0005});
+  const ActuatorOutput output = actuator_output(inputs, actuator, times, {});
+  const ActuatorSteps steps = actuator_steps(inputs, actuator, {.start = 2.0, .end = 2.0005});
   CHECK(output.v[1] == doctest::Approx(steps.steps[0].forward / 0.0005).epsilon(1e-3));
   CHECK(output.omega[1] == doctest::Approx(steps.steps[0].turn / 0.0005).epsilon(1e-3));
 }

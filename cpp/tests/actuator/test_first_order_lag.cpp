@@ -39,7 +39,7 @@ TEST_CASE("without a time constant the output is the input at once") {
   CHECK(step.integral == 1.0);
 }
 
-TEST_CASE("a vanishing time constant has the limit of none, and finite slopes") {
+TEST_CASE("a vanishing time constant has the limit of none, and finite derivatives") {
   for (const double time_constant : {1e-3, 1e-100, 1e-310}) {
     CAPTURE(time_constant);
     const auto step = linearize_lag_step(0.4, 2.0, time_constant, 0.5);
@@ -51,7 +51,7 @@ TEST_CASE("a vanishing time constant has the limit of none, and finite slopes") 
   }
 }
 
-TEST_CASE("slopes of a lag step are its derivatives by duration, output and time constant") {
+TEST_CASE("derivatives of a lag step are its derivatives by duration, output and time constant") {
   for (const double time_constant : {0.05, 0.8, 40.0}) {
     for (const double duration : {0.02, 0.3, 1.7}) {
       CAPTURE(time_constant);

@@ -24,7 +24,7 @@ struct Point {
   double command;
 };
 
-CommandChain chain_of(const Point& at) {
+ActuatorModel chain_of(const Point& at) {
   return {.lag_v = at.lag,
           .lag_omega = at.lag,
           .delay_v = at.delay,
@@ -76,8 +76,9 @@ void for_all_points(const Check& check) {
 void check_law(const Point& at, const InputTrack& inputs, double tolerance) {
   const double goal = at.gain * at.command;
   const BodyTwist measured{at.part * goal, 0.0, 0.5 * at.part * goal};
-  const auto drive = drive_steps(inputs, chain_of(at), {.start = at.sent, .end = at.sent + 3.0, .initial = measured});
-  for (const DriveStep& step : drive.steps) {
+  const auto drive =
+      actuator_steps(inputs, chain_of(at), {.start = at.sent, .end = at.sent + 3.0, .initial = measured});
+  for (const ActuatorStep& step : drive.steps) {
     if (step.duration < 1e-9) {
       continue;
     }
@@ -113,15 +114,15 @@ TEST_CASE("a measured speed that the commands explain changes nothing") {
   const InputTrack inputs(std::vector{0.0, 2.0, 3.1, 3.4},
                           std::vector{BodyTwist{1.0, 0.0, 0.4}, BodyTwist{0.0, 0.0, -0.4}, BodyTwist{0.6, 0.0, 0.1},
                                       BodyTwist{0.5, 0.0, 0.2}});
-  const CommandChain chain = chain_of(at);
+  const ActuatorModel actuator = chain_of(at);
   constexpr double kMoment = 1e-6;
   for (const double start : {0.05, 0.9, 2.4, 3.2, 3.8}) {
     CAPTURE(start);
-    const DriveStep moment = drive_steps(inputs, chain, {.start = start - kMoment, .end = start}).steps.back();
+    const ActuatorStep moment = actuator_steps(inputs, actuator, {.start = start - kMoment, .end = start}).steps.back();
     const BodyTwist now{moment.forward / moment.duration, 0.0, moment.turn / moment.duration};
-    const auto sum = [&](const DriveWindow& window) {
+    const auto sum = [&](const ActuatorSpan& window) {
       double forward = 0.0;
-      for (const DriveStep& step : drive_steps(inputs, chain, window).steps) {
+      for (const ActuatorStep& step : actuator_steps(inputs, actuator, window).steps) {
         forward += step.forward;
       }
       return forward;
@@ -133,8 +134,8 @@ TEST_CASE("a measured speed that the commands explain changes nothing") {
 
 TEST_CASE("before the first command the drive is at rest, or goes on as it was measured") {
   const Point at{0.3, 1.5, 0.4, 0.8, 0.4, 0.0, 0.0, 1.0};
-  const auto first = [&](const DriveWindow& window) {
-    return drive_steps(held(at), chain_of(at), window).steps.front();
+  const auto first = [&](const ActuatorSpan& window) {
+    return actuator_steps(held(at), chain_of(at), window).steps.front();
   };
   CHECK(first({.start = 0.0, .end = 1.0}).forward == 0.0);
   CHECK(first({.start = 0.0, .end = 0.4, .initial = BodyTwist{0.3, 0.0, 0.1}}).forward ==

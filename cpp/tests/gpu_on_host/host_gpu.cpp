@@ -28,10 +28,10 @@ struct RunHere {
   const ThreadJob<Scalar>& job;
   unsigned* faults;
 
-  template <Chain kChain, bool kQuadratic, bool kWide>
+  template <Chain kActuator, bool kQuadratic, bool kWide>
   void call() const {
     for (std::size_t rollout = 0; rollout < job.job.rollouts; ++rollout) {
-      *faults |= roll_thread<kChain, kQuadratic, kWide>(job, rollout);
+      *faults |= roll_thread<kActuator, kQuadratic, kWide>(job, rollout);
     }
   }
 };

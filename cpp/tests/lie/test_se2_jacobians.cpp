@@ -31,7 +31,7 @@ TEST_CASE("the chart Jacobian is the derivative of exp") {
   }
 }
 
-TEST_CASE("the right Jacobian is the derivative of exp seen from its end") {
+TEST_CASE("the right Jacobian is the derivative of exp observed from its end") {
   for (const Eigen::Vector3d& tangent : sample_tangents()) {
     CAPTURE(tangent.z());
     const Pose2 back = inverse(exp(tangent));
@@ -41,7 +41,7 @@ TEST_CASE("the right Jacobian is the derivative of exp seen from its end") {
   }
 }
 
-TEST_CASE("the left Jacobian is the derivative of exp seen from its start") {
+TEST_CASE("the left Jacobian is the derivative of exp observed from its start") {
   for (const Eigen::Vector3d& tangent : sample_tangents()) {
     CAPTURE(tangent.z());
     const Pose2 back = inverse(exp(tangent));
@@ -58,10 +58,10 @@ TEST_CASE("the left Jacobian is the adjoint times the right Jacobian") {
   }
 }
 
-TEST_CASE("the adjoint is the derivative of a motion seen from the other frame") {
+TEST_CASE("the adjoint is the derivative of a motion observed from the other frame") {
   const Pose2 pose{1.2, -0.7, 2.1};
-  const auto seen = [&](const Eigen::VectorXd& t) { return log(compose(compose(pose, exp(t)), inverse(pose))); };
-  const auto numeric = finite_difference(seen, Eigen::Vector3d::Zero(), kStep);
+  const auto observed = [&](const Eigen::VectorXd& t) { return log(compose(compose(pose, exp(t)), inverse(pose))); };
+  const auto numeric = finite_difference(observed, Eigen::Vector3d::Zero(), kStep);
   CHECK(jacobian_error(adjoint(pose), numeric) < kDerivativeTolerance);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layout of the parameter vector and the derivative of the chain's parameters.
+// The layout of the parameter vector and the derivative of the actuator's parameters.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -25,16 +25,16 @@ std::vector<std::string> names(const MotionModel& model) {
 TEST_CASE("what is not learned is not a parameter") {
   const Basis basis = named_basis("edd-2");
   using Names = std::vector<std::string>;
-  const Names chain{"log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega"};
+  const Names actuator{"log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega"};
   CHECK(names(MotionModel(basis, {})) == Names{"lon.V", "ang.w"});
   CHECK(names(MotionModel(basis, {.clock_offset = true})) == Names{"lon.V", "ang.w", "clock_offset"});
   CHECK(names(MotionModel(basis, {.dynamics = true})) ==
-        Names{"lon.V", "ang.w", chain[0], chain[1], chain[2], chain[3]});
+        Names{"lon.V", "ang.w", actuator[0], actuator[1], actuator[2], actuator[3]});
   CHECK(names(MotionModel(basis, {.delays = true})) == Names{"lon.V", "ang.w", "delay_v", "delay_omega"});
   CHECK(names(MotionModel(basis, {.clock_offset = true, .mount = true})) ==
         Names{"lon.V", "ang.w", "clock_offset", "sensor_x", "sensor_y", "sensor_yaw"});
   CHECK(MotionModel(basis, {.dynamics = true, .clock_offset = true}).size() == 7);
-  CHECK(MotionModel(basis, {.dynamics = true, .mount = true}).chain_size() == 4);
+  CHECK(MotionModel(basis, {.dynamics = true, .mount = true}).actuator_size() == 4);
 }
 
 TEST_CASE("every parameter says its unit and meaning") {
@@ -48,23 +48,23 @@ TEST_CASE("every parameter says its unit and meaning") {
   }
 }
 
-TEST_CASE("a chain that is not learned is the identity") {
+TEST_CASE("a actuator that is not learned is the identity") {
   const MotionModel model(named_basis("edd-2"), {});
-  const CommandChain chain = model.chain(Eigen::Vector2d(0.1, 0.2));
-  CHECK(chain.lag_v == 0.0);
-  CHECK(chain.delay_omega == 0.0);
-  CHECK(chain.clock_offset == 0.0);
-  CHECK(chain.gain_v == 1.0);
-  CHECK(chain.slow_share_omega == 0.0);
+  const ActuatorModel actuator = model.actuator(Eigen::Vector2d(0.1, 0.2));
+  CHECK(actuator.lag_v == 0.0);
+  CHECK(actuator.delay_omega == 0.0);
+  CHECK(actuator.clock_offset == 0.0);
+  CHECK(actuator.gain_v == 1.0);
+  CHECK(actuator.slow_share_omega == 0.0);
 }
 
 TEST_CASE("delays alone are seconds, none and negative ones too, and nothing lags") {
   const MotionModel model(named_basis("edd-2"), {.delays = true});
-  const CommandChain chain = model.chain(Eigen::Vector4d(0.1, 0.2, 0.0, -0.02));
-  CHECK(chain.delay_v == 0.0);
-  CHECK(chain.delay_omega == -0.02);
-  CHECK(chain.lag_v == 0.0);
-  CHECK(chain.lag_omega == 0.0);
+  const ActuatorModel actuator = model.actuator(Eigen::Vector4d(0.1, 0.2, 0.0, -0.02));
+  CHECK(actuator.delay_v == 0.0);
+  CHECK(actuator.delay_omega == -0.02);
+  CHECK(actuator.lag_v == 0.0);
+  CHECK(actuator.lag_omega == 0.0);
 }
 
 TEST_CASE("delays alone and lags exclude each other") {
@@ -80,23 +80,23 @@ TEST_CASE("a sensor whose place is not learned sits at base_link") {
   CHECK(MotionModel(named_basis("edd-2"), {.mount = true}).mount(all).vector() == Eigen::Vector3d(1.5, -0.2, 0.1));
 }
 
-TEST_CASE("places and scales are the derivative of the chain by the model's parameters") {
-  for (const ChainParameters learned :
-       {ChainParameters{true, true, true}, ChainParameters{true, true}, ChainParameters{true, false},
-        ChainParameters{false, true}, ChainParameters{.delays = true},
-        ChainParameters{.clock_offset = true, .delays = true}, ChainParameters{}}) {
+TEST_CASE("places and scales are the derivative of the actuator by the model's parameters") {
+  for (const ActuatorParameters learned :
+       {ActuatorParameters{true, true, true}, ActuatorParameters{true, true}, ActuatorParameters{true, false},
+        ActuatorParameters{false, true}, ActuatorParameters{.delays = true},
+        ActuatorParameters{.clock_offset = true, .delays = true}, ActuatorParameters{}}) {
     const MotionModel model(named_basis("edd-2"), learned);
     Eigen::VectorXd p = Eigen::VectorXd::LinSpaced(model.size(), -1.5, -0.4);
     const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
-      const CommandChain c = model.chain(at);
-      Eigen::VectorXd all(kChainParameters);
+      const ActuatorModel c = model.actuator(at);
+      Eigen::VectorXd all(kActuatorParameters);
       all << c.lag_v, c.lag_omega, c.delay_v, c.delay_omega, c.clock_offset, c.gain_v, c.gain_omega, c.slow_share_v,
           c.slow_share_omega, c.slow_lag_v, c.slow_lag_omega;
       return all;
     };
     const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);
-    Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kChainParameters, model.chain_size());
-    const Eigen::VectorXd scales = model.chain_scales(model.chain(p));
+    Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kActuatorParameters, model.actuator_size());
+    const Eigen::VectorXd scales = model.chain_scales(model.actuator(p));
     for (Eigen::Index i = 0; i < scales.size(); ++i) {
       analytic(model.chain_places()[static_cast<std::size_t>(i)], i) = scales[i];
     }
@@ -108,13 +108,13 @@ TEST_CASE("short times are even in seconds, long ones in their logarithm") {
   const MotionModel model(named_basis("edd-2"), {.dynamics = true, .clock_offset = true});
   Eigen::VectorXd p(7);
   p << 0.1, 0.2, std::log(0.06), std::log(0.12), std::log(30.0), std::log(1e-6), 0.4;
-  const Eigen::VectorXd slopes = model.even_slopes(p);
-  CHECK(slopes.head<2>() == Eigen::Vector2d::Ones());
-  CHECK(slopes[2] == doctest::Approx(0.25));
-  CHECK(slopes[3] == doctest::Approx(0.15 / 0.42));
-  CHECK(slopes[4] == doctest::Approx(1.0).epsilon(0.01));
-  CHECK(slopes[5] == doctest::Approx(0.1).epsilon(0.01));  // no time is so short that its logarithm does not count
-  CHECK(slopes[6] == 1.0);
+  const Eigen::VectorXd derivatives = model.log_time_derivatives(p);
+  CHECK(derivatives.head<2>() == Eigen::Vector2d::Ones());
+  CHECK(derivatives[2] == doctest::Approx(0.25));
+  CHECK(derivatives[3] == doctest::Approx(0.15 / 0.42));
+  CHECK(derivatives[4] == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(derivatives[5] == doctest::Approx(0.1).epsilon(0.01));  // no time is so short that its logarithm does not count
+  CHECK(derivatives[6] == 1.0);
 }
 
 TEST_CASE("a parameter vector of the wrong size is refused with both sizes") {

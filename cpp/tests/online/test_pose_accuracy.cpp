@@ -17,7 +17,7 @@ TEST_CASE("a standard deviation that never changes says nothing, whatever it is"
   }
 }
 
-TEST_CASE("poses without one count as usual and teach nothing") {
+TEST_CASE("poses without one count as nominal and teach nothing") {
   NominalStd nominal;
   CHECK(nominal.ratio(0.0) == 1.0);
   CHECK(nominal.ratio(0.02) == 1.0);
@@ -26,7 +26,7 @@ TEST_CASE("poses without one count as usual and teach nothing") {
   CHECK(nominal.ratio(0.04) == doctest::Approx(2.0));
 }
 
-TEST_CASE("a poor pose among good ones counts for less, and hardly changes what is usual") {
+TEST_CASE("a poor pose among good ones counts for less, and hardly changes what is nominal") {
   NominalStd nominal;
   for (int i = 0; i < 1000; ++i) {
     nominal.ratio(0.02);
@@ -36,7 +36,7 @@ TEST_CASE("a poor pose among good ones counts for less, and hardly changes what 
   CHECK(nominal.ratio(1e30) == doctest::Approx(1e3));
 }
 
-TEST_CASE("what lasts becomes usual") {
+TEST_CASE("what lasts becomes nominal") {
   NominalStd nominal;
   nominal.ratio(0.02);
   double last = 0.0;

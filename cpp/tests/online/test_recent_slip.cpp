@@ -22,7 +22,7 @@ struct Setting {
                       .prior_std = Eigen::Vector2d(0.3, 0.3),
                       .noise = {.pose_std_xy = 0.02, .pose_std_yaw = 0.02},
                       .noise_scale = Eigen::Vector3d::Ones()});
-  ColouredSlip disturbance{ColouredSlipSettings{}};
+  DisturbanceFilter disturbance{DisturbanceSettings{}};
   std::vector<DrivenSegment> segments;
 
   Setting() {

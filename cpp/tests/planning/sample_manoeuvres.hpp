@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion models and manoeuvres for the tests of planning, over all bases and with all parts of the chain.
+// Motion models and manoeuvres for the tests of planning, over all bases and with all parts of the actuator.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ inline SampleModel sample_model(const Basis& basis, bool dynamics) {
   if (dynamics) {
     parameters.tail(4) << std::log(0.31), std::log(0.22), std::log(0.0827), std::log(0.1133);
   }
-  return {basis.name() + (dynamics ? " with chain" : ""), std::move(motion), std::move(parameters)};
+  return {basis.name() + (dynamics ? " with actuator" : ""), std::move(motion), std::move(parameters)};
 }
 
 /// Curvatures up to 0.8 1/m, lengths from 0.5 m to `longest`.

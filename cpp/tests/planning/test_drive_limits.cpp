@@ -36,11 +36,11 @@ TEST_CASE("the limit that is no positive number is named") {
 }
 
 TEST_CASE("a start whose drive, command or fast part is not finite is refused") {
-  CHECK_NOTHROW(DriveStart{}.check());
-  CHECK_NOTHROW(DriveStart{.drive = {.v = -2.0}, .told = {.v = 1.0}, .fast = BodyTwist{.v = 0.1}}.check());
-  CHECK_THROWS_AS(DriveStart{.drive = {.v = kNan}}.check(), std::invalid_argument);
-  CHECK_THROWS_AS(DriveStart{.told = {.omega = kEndless}}.check(), std::invalid_argument);
-  CHECK_THROWS_AS(DriveStart{.fast = BodyTwist{.vy = kNan}}.check(), std::invalid_argument);
+  CHECK_NOTHROW(ActuatorState{}.check());
+  CHECK_NOTHROW(ActuatorState{.drive = {.v = -2.0}, .commanded = {.v = 1.0}, .fast = BodyTwist{.v = 0.1}}.check());
+  CHECK_THROWS_AS(ActuatorState{.drive = {.v = kNan}}.check(), std::invalid_argument);
+  CHECK_THROWS_AS(ActuatorState{.commanded = {.omega = kEndless}}.check(), std::invalid_argument);
+  CHECK_THROWS_AS(ActuatorState{.fast = BodyTwist{.vy = kNan}}.check(), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The held commands of a manoeuvre: they cover its length, bend as its curvature says, and know their slopes.
+// The held commands of a manoeuvre: they cover its length, bend as its curvature says, and know their derivatives.
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
@@ -44,22 +44,22 @@ TEST_CASE("a constant curvature is kept by every command") {
   }
 }
 
-TEST_CASE("period, speeds and yaw rates know their slopes by the parameters") {
+TEST_CASE("period, speeds and yaw rates know their derivatives by the parameters") {
   const auto value = [](const Eigen::VectorXd& at) -> Eigen::VectorXd {
     const HeldCommands held = held_commands(kFrame, at);
     return Eigen::Vector4d(held.period.value, held.commands[3].v, held.commands[3].omega, held.commands[12].omega);
   };
   const HeldCommands held = held_commands(kFrame, bent());
-  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(4, kManoeuvreParameters);
-  slopes(0, kLength) = held.period.slope;
-  slopes(1, kLength) = held.commands[3].v_by_length;
-  slopes.row(2) = held.commands[3].omega_by;
-  slopes.row(3) = held.commands[12].omega_by;
+  Eigen::MatrixXd derivatives = Eigen::MatrixXd::Zero(4, kManoeuvreParameters);
+  derivatives(0, kLength) = held.period.derivative;
+  derivatives(1, kLength) = held.commands[3].v_by_length;
+  derivatives.row(2) = held.commands[3].omega_by;
+  derivatives.row(3) = held.commands[12].omega_by;
   const Eigen::MatrixXd numeric = tests::finite_difference(value, bent(), 1e-2);
-  CHECK(tests::jacobian_error(slopes, numeric) < tests::kDerivativeTolerance);
+  CHECK(tests::jacobian_error(derivatives, numeric) < tests::kDerivativeTolerance);
 }
 
-TEST_CASE("commands without limits stay as they are; a top holds them and their slopes") {
+TEST_CASE("commands without limits stay as they are; a top holds them and their derivatives") {
   const HeldCommands held = held_commands(kFrame, bent());
   CHECK(limited_commands(held, {}, {}).commands.size() == held.commands.size());
   const HeldCommands cut = limited_commands(held, {.speed = {.top = 0.6}}, {.v = 0.2});

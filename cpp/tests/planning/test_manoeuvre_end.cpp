@@ -14,7 +14,8 @@
 namespace slipwise {
 namespace {
 
-const DriveStart kStart{.drive = {.v = 0.31, .vy = 0.0, .omega = 0.12}, .told = {.v = 0.4, .vy = 0.0, .omega = 0.1}};
+const ActuatorState kStart{.drive = {.v = 0.31, .vy = 0.0, .omega = 0.12},
+                           .commanded = {.v = 0.4, .vy = 0.0, .omega = 0.1}};
 
 ManoeuvreFrame sample_frame(double direction, double end_speed) {
   return {.speeds = {.start = 0.4, .cruise = 1.1, .end = end_speed},
@@ -28,9 +29,9 @@ ManoeuvreVector sample_parameters() {
   return (ManoeuvreVector() << 0.25, 0.4, -0.3, 0.2, 0.35, -0.15, 0.1, 4.3).finished();
 }
 
-/// The commands as the integrator takes them: what was told before the start, then one command after the other.
+/// The commands as the integrator takes them: what was commanded before the start, then one command after the other.
 InputTrack track_of(const HeldCommands& held) {
-  std::vector<double> t{-100.0}, v{kStart.told.v}, vy{0.0}, omega{kStart.told.omega};
+  std::vector<double> t{-100.0}, v{kStart.commanded.v}, vy{0.0}, omega{kStart.commanded.omega};
   for (std::size_t k = 0; k < held.commands.size(); ++k) {
     t.push_back(static_cast<double>(k) * held.period.value);
     v.push_back(held.commands[k].v);
@@ -41,11 +42,11 @@ InputTrack track_of(const HeldCommands& held) {
 }
 
 TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains") {
-  DriveStart sliding = kStart;
+  ActuatorState sliding = kStart;
   sliding.drive.vy = 0.2;
   for (const tests::SampleModel& sample : tests::sample_models()) {
     for (const double direction : {1.0, -1.0}) {
-      for (const DriveStart& start : {kStart, sliding}) {
+      for (const ActuatorState& start : {kStart, sliding}) {
         CAPTURE(sample.name);
         CAPTURE(start.drive.vy);
         const ManoeuvreFrame frame = sample_frame(direction, 0.0);
@@ -65,16 +66,16 @@ TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains
 }
 
 TEST_CASE("behind limits a manoeuvre ends where the integrator says of the limited commands") {
-  const LaneLimits lane{.dead_band = 0.05, .top = 1.0, .acceleration = 0.7, .braking = 0.9};
+  const AxisLimits lane{.dead_band = 0.05, .top = 1.0, .acceleration = 0.7, .braking = 0.9};
   const CommandLimits limits{.speed = lane, .yaw_rate = lane, .side = lane, .track = 0.6};
   for (const tests::SampleModel& sample : tests::sample_models()) {
     CAPTURE(sample.name);
     const ManoeuvreFrame frame = sample_frame(1.0, 0.0);
     const PlanningModel model(sample.motion, sample.parameters, limits);
     const HeldCommands held = held_commands(frame, sample_parameters());
-    const HeldCommands limited = limited_commands(held, limits, kStart.told);
+    const HeldCommands limited = limited_commands(held, limits, kStart.commanded);
     const double period = held.period.value;
-    std::vector<double> t{-100.0, -period}, v(2, kStart.told.v), omega(2, kStart.told.omega);
+    std::vector<double> t{-100.0, -period}, v(2, kStart.commanded.v), omega(2, kStart.commanded.omega);
     for (std::size_t k = 0; k < held.commands.size(); ++k) {
       for (int i = 0; i < ramp_pieces(period); ++i) {  // sent again and again, so that all take the same steps
         t.push_back((static_cast<double>(k) + i / static_cast<double>(ramp_pieces(period))) * period);

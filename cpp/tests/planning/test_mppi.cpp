@@ -61,7 +61,7 @@ Driven closed_loop(Mppi& controller, const tests::SampleModel& sample, double y,
     const double now = (k + 1) * period;
     const Segment segment{.start = 0.0, .end = now, .initial = BodyTwist{}};
     const SegmentPath path = integrate_segment(sample.motion, sample.parameters, track, segment);
-    const DriveStep& last = path.drive.back();
+    const ActuatorStep& last = path.drive.back();
     state.start = {.pose = path.poses.back(),
                    .drive = {.v = last.forward / last.duration, .omega = last.turn / last.duration}};
     driven.poses.push_back(state.start.pose);

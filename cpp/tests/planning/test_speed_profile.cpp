@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trapezoids and triangles of speed: they cover their length, keep their acceleration, and know their slopes.
+// Trapezoids and triangles of speed: they cover their length, keep their acceleration, and know their derivatives.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -46,7 +46,7 @@ TEST_CASE("a speed profile covers its length within the cruise speed and the acc
   }
 }
 
-TEST_CASE("a speed profile's slopes by its length are its derivatives") {
+TEST_CASE("a speed profile's derivatives by its length are its derivatives") {
   for (const Case& c : cases()) {
     for (const double fraction : {0.07, 0.35, 0.5, 0.81, 0.96}) {
       const auto value = [&](const Eigen::VectorXd& length) -> Eigen::VectorXd {
@@ -54,9 +54,10 @@ TEST_CASE("a speed profile's slopes by its length are its derivatives") {
         return Eigen::Vector2d(profile.duration().value, profile.distance(fraction).value);
       };
       const SpeedProfile profile(c.ends, kAcceleration, c.length);
-      const Eigen::MatrixXd slopes = Eigen::Vector2d(profile.duration().slope, profile.distance(fraction).slope);
+      const Eigen::MatrixXd derivatives =
+          Eigen::Vector2d(profile.duration().derivative, profile.distance(fraction).derivative);
       const auto numeric = tests::finite_difference(value, Eigen::VectorXd::Constant(1, c.length), 1e-3);
-      CHECK(tests::jacobian_error(slopes, numeric) < tests::kDerivativeTolerance);
+      CHECK(tests::jacobian_error(derivatives, numeric) < tests::kDerivativeTolerance);
     }
   }
 }

@@ -24,8 +24,8 @@ TrajectorySettings quick_settings(double end_speed) {
 
 tests::SampleModel skidding(bool dynamics) { return tests::sample_model(named_basis("odd-even-10"), dynamics); }
 
-Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const DriveStart& start) {
-  std::vector<double> t{-100.0}, v{start.told.v}, omega{start.told.omega};
+Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const ActuatorState& start) {
+  std::vector<double> t{-100.0}, v{start.commanded.v}, omega{start.commanded.omega};
   t.insert(t.end(), plan.t.begin(), plan.t.end());
   v.insert(v.end(), plan.v.begin(), plan.v.end());
   omega.insert(omega.end(), plan.omega.begin(), plan.omega.end());
@@ -46,7 +46,7 @@ void check_limits(const Trajectory& plan, double start_speed) {
   }
 }
 
-void check_goals(const tests::SampleModel& sample, double end_speed, const DriveStart& start) {
+void check_goals(const tests::SampleModel& sample, double end_speed, const ActuatorState& start) {
   CAPTURE(sample.name);
   const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(end_speed), start);
   const ReachProblem problem = planner.problem(start, planner.settings().cruise);
@@ -65,7 +65,7 @@ void check_goals(const tests::SampleModel& sample, double end_speed, const Drive
     CHECK(std::hypot(end.x - goal.x, end.y - goal.y) < 1.1e-3);
     CHECK(std::abs(wrap_angle(end.theta - goal.theta)) < 1.1e-3);
     CHECK((plan.path.poses.back().vector() - end.vector()).norm() < 1e-9);
-    check_limits(plan, start.told.v);
+    check_limits(plan, start.commanded.v);
   }
   CHECK(reached >= kGoals - 2);
 }
@@ -74,7 +74,7 @@ TEST_CASE("trajectories reach reachable goals within all limits, with and withou
   check_goals(skidding(false), 0.6, {});
   check_goals(skidding(true), 0.0, {});
   const BodyTwist moving{.v = 0.8, .vy = 0.0, .omega = 0.3};
-  check_goals(skidding(true), 0.6, {.drive = moving, .told = moving});
+  check_goals(skidding(true), 0.6, {.drive = moving, .commanded = moving});
 }
 
 TEST_CASE("a trajectory goes on from where another one ended, though commands are still on their way then") {
@@ -82,7 +82,8 @@ TEST_CASE("a trajectory goes on from where another one ended, though commands ar
   const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.6));
   const Trajectory first = planner.to({3.0, 0.6, 0.4}, {});
   REQUIRE(first.status == TrajectoryStatus::Reached);
-  const DriveStart between{.drive = first.path.drive, .told = {.v = first.v.back(), .omega = first.omega.back()}};
+  const ActuatorState between{.drive = first.path.drive,
+                              .commanded = {.v = first.v.back(), .omega = first.omega.back()}};
   const Pose2 leg{2.5, -0.5, -0.3};
   const Trajectory second = planner.to(leg, between);
   REQUIRE(second.status == TrajectoryStatus::Reached);
@@ -144,7 +145,7 @@ TEST_CASE("a planner refuses what makes no sense") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(planner.to({nan, 0.0, 0.0}, {}), std::invalid_argument);
   CHECK_THROWS_AS(planner.to({1.0, 0.0, 0.0}, {.drive = {.v = nan}}), std::invalid_argument);
-  CHECK_THROWS_AS(planner.to({1.0, 0.0, 0.0}, {.told = {.v = 9.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(planner.to({1.0, 0.0, 0.0}, {.commanded = {.v = 9.0}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -93,10 +93,10 @@ SamplePaths<Scalar> roll(const RolloutProgram& program, const RolloutBatch<Scala
   return paths;
 }
 
-/// A chain by name, with parameters for it.
+/// A actuator by name, with parameters for it.
 struct SampleChain {
   const char* name;
-  ChainParameters learned;
+  ActuatorParameters learned;
   std::vector<double> parameters;
 };
 
@@ -117,12 +117,12 @@ inline std::vector<SampleChain> sample_chains() {
           {"delays alone, one of them negative", {.delays = true}, {0.13, -0.02}}};
 }
 
-inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& chain) {
+inline Eigen::VectorXd sample_parameters(const MotionModel& model, const SampleChain& actuator) {
   Eigen::VectorXd parameters(model.size());
   const Eigen::VectorXd slip = sample_slip(model.basis(), 31);
   parameters.head(slip.size()) = slip;
-  for (std::size_t i = 0; i < chain.parameters.size(); ++i) {
-    parameters[slip.size() + static_cast<Eigen::Index>(i)] = chain.parameters[i];
+  for (std::size_t i = 0; i < actuator.parameters.size(); ++i) {
+    parameters[slip.size() + static_cast<Eigen::Index>(i)] = actuator.parameters[i];
   }
   return parameters;
 }

@@ -43,12 +43,12 @@ double apart(const tests::SamplePaths<Scalar>& a, const tests::SamplePaths<doubl
 }
 
 RolloutProgram sample_program(const char* basis, std::size_t chain_at) {
-  const tests::SampleChain chain = tests::sample_chains()[chain_at];
-  const MotionModel model(named_basis(basis), chain.learned);
-  return {model, tests::sample_parameters(model, chain), {kPeriod}};
+  const tests::SampleChain actuator = tests::sample_chains()[chain_at];
+  const MotionModel model(named_basis(basis), actuator.learned);
+  return {model, tests::sample_parameters(model, actuator), {kPeriod}};
 }
 
-TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with every chain") {
+TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with every actuator") {
   if (skipped()) {
     return;
   }
@@ -59,10 +59,10 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
   bases.push_back(union_basis("union", tests::all_bases()));
   for (const Basis& basis : bases) {
     CAPTURE(basis.name());
-    for (const tests::SampleChain& chain : tests::sample_chains()) {
-      CAPTURE(std::string(chain.name));
-      const MotionModel model(basis, chain.learned);
-      const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod, 0.3, -0.2});
+    for (const tests::SampleChain& actuator : tests::sample_chains()) {
+      CAPTURE(std::string(actuator.name));
+      const MotionModel model(basis, actuator.learned);
+      const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod, 0.3, -0.2});
       const auto expected = tests::roll(program, commands.batch(kStart, kPast));
       CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
       // In float, a few are more than 1e-5 m off where a lagging speed passes zero (derivations.md, section 16).
@@ -116,8 +116,8 @@ TEST_CASE("last poses and costs on a GPU are the processor's") {
   }
   const Costmap map{cells, 6, 10, 0.25, 0.0, -2.5, 100.0F};
   const tests::SampleCommands<double> commands(70, 30, kPeriod);
-  for (const std::size_t chain : {std::size_t{0}, std::size_t{3}}) {
-    const RolloutProgram program = sample_program("thesis-15", chain);
+  for (const std::size_t actuator : {std::size_t{0}, std::size_t{3}}) {
+    const RolloutProgram program = sample_program("thesis-15", actuator);
     std::vector<std::vector<double>> found;
     for (Gpu* const where : {static_cast<Gpu*>(nullptr), &gpu}) {
       std::vector<double> all(6 * 70);
@@ -204,14 +204,14 @@ TEST_CASE("what cannot be rolled out on a GPU is refused and named") {
   CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(kStart), {.gpu = &gpu}),
                        doctest::Contains("thousands of times"), std::invalid_argument);
   commands.omega[4] = 0.0;
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("edd-2"), chain.learned);
-  const RolloutProgram slow(model, tests::sample_parameters(model, chain), {20.0});
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("edd-2"), actuator.learned);
+  const RolloutProgram slow(model, tests::sample_parameters(model, actuator), {20.0});
   CHECK_THROWS_WITH_AS(tests::roll(slow, commands.batch(kStart), {.gpu = &gpu}), doctest::Contains("shorter periods"),
                        std::invalid_argument);
   RolloutSetting setting{.period = kPeriod};
   setting.limits.speed.top = 0.5;
-  const RolloutProgram limited(model, tests::sample_parameters(model, chain), setting);
+  const RolloutProgram limited(model, tests::sample_parameters(model, actuator), setting);
   CHECK_THROWS_WITH_AS(tests::roll(limited, commands.batch(kStart), {.gpu = &gpu}),
                        doctest::Contains("on the processor only"), std::invalid_argument);
 }

@@ -40,10 +40,10 @@ TEST_CASE("each command is cut in pieces along whose means its ramp runs") {
   CHECK(start.limiter.state()[0] == doctest::Approx(0.2));  // two periods at 1 m/s^2
   double distance = 0.0;
   for (const DriveCommand& given : start.given) {
-    distance += given.v * program.chain().period;
+    distance += given.v * program.actuator().period;
   }
   CHECK(distance == doctest::Approx(0.5 * 0.2 * 0.2));
-  CHECK(start.at(-1).v == doctest::Approx(0.2 - 0.5 * program.chain().period));
+  CHECK(start.at(-1).v == doctest::Approx(0.2 - 0.5 * program.actuator().period));
 }
 
 TEST_CASE("limits without rates need no pieces") {

@@ -25,9 +25,9 @@ struct SampleLimits {
 };
 
 std::vector<SampleLimits> sample_limits() {
-  const LaneLimits speed{.dead_band = 0.3, .top = 1.1, .acceleration = 0.8, .braking = 1.7};
-  const LaneLimits turn{.dead_band = 0.1, .top = 0.7, .acceleration = 1.3, .braking = 0.9};
-  const LaneLimits side{.dead_band = 0.2, .top = 1.2, .acceleration = 0.6, .braking = 1.1};
+  const AxisLimits speed{.dead_band = 0.3, .top = 1.1, .acceleration = 0.8, .braking = 1.7};
+  const AxisLimits turn{.dead_band = 0.1, .top = 0.7, .acceleration = 1.3, .braking = 0.9};
+  const AxisLimits side{.dead_band = 0.2, .top = 1.2, .acceleration = 0.6, .braking = 1.1};
   return {{"dead-band and top", {.speed = {.dead_band = 0.5, .top = 1.0}, .yaw_rate = {.top = 0.5}}},
           {"acceleration alone", {.speed = {.acceleration = 0.7}}},
           {"speed and yaw rate", {.speed = speed, .yaw_rate = turn}},
@@ -57,9 +57,9 @@ InputTrack repeated(const InputTrack& commands, std::size_t pieces, double later
 /// zero or of 1e-20 m/s, which has a sign.
 std::vector<tests::SampleChain> lagging_chains() {
   std::vector<tests::SampleChain> chains = tests::sample_chains();
-  for (tests::SampleChain& chain : chains) {
-    for (std::size_t i = 0; i < 2 && chain.learned.dynamics; ++i) {
-      chain.parameters[i] = std::max(chain.parameters[i], std::log(0.1));
+  for (tests::SampleChain& actuator : chains) {
+    for (std::size_t i = 0; i < 2 && actuator.learned.dynamics; ++i) {
+      actuator.parameters[i] = std::max(actuator.parameters[i], std::log(0.1));
     }
   }
   return chains;
@@ -102,17 +102,17 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
   return worst;
 }
 
-TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every basis and with every chain") {
+TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every basis and with every actuator") {
   const tests::SampleCommands<double> commands(37, 100, kPeriod);
   const tests::SampleCommands<float> in_float(37, 100, kPeriod);
   for (const SampleLimits& sample : sample_limits()) {
     CAPTURE(std::string(sample.name));
     for (const Basis& basis : tests::all_bases()) {
       CAPTURE(basis.name());
-      for (const tests::SampleChain& chain : lagging_chains()) {
-        CAPTURE(std::string(chain.name));
-        const MotionModel model(basis, chain.learned);
-        const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+      for (const tests::SampleChain& actuator : lagging_chains()) {
+        CAPTURE(std::string(actuator.name));
+        const MotionModel model(basis, actuator.learned);
+        const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
         const RolloutProgram program(model, parameters, {kPeriod, 0.3, -0.2, sample.limits});
         for (const InstructionLevel level : kInstructionLevels) {
           if (has_instruction_level(level)) {
@@ -122,7 +122,7 @@ TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every ba
             CHECK(exact.yaw < 1e-9);
             const Worst coarse = error(program, model, parameters, in_float, level);
             // thesis-15 jumps where a lagging speed passes zero, as test_rollout_batch.cpp says.
-            const double bound = chain.learned.dynamics && basis.name() == "thesis-15" ? 2.5e-5 : 1e-5;
+            const double bound = actuator.learned.dynamics && basis.name() == "thesis-15" ? 2.5e-5 : 1e-5;
             CHECK(coarse.xy < bound);
             CHECK(coarse.yaw < bound);
           }
@@ -133,9 +133,9 @@ TEST_CASE("limited rollouts of 5 s are those of the plain integrator in every ba
 }
 
 TEST_CASE("a limited rollout's bytes depend neither on threads nor on its neighbours nor on how the commands lie") {
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("odd-even-10"), chain.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, chain),
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("odd-even-10"), actuator.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator),
                                {.period = kPeriod, .limits = sample_limits().back().limits});
   const tests::SampleCommands<float> commands(101, 20, kPeriod);
   const auto one = tests::roll(program, commands.batch(kStart, kPast));
@@ -155,7 +155,7 @@ TEST_CASE("the ramp goes on from what the commands before the start had left it 
   const std::vector<double> v(10, 1.0), omega(10, 0.0);
   const std::vector<RolloutStart> start{{{}, {0.6, 0.0}}};
   const CommandView<double> view{v.data(), omega.data(), 1, 1};
-  // Nothing was told before: the drive goes on from what it does. 0.6 m/s to 1 m/s in 0.8 s.
+  // Nothing was commanded before: the drive goes on from what it does. 0.6 m/s to 1 m/s in 0.8 s.
   CHECK(tests::roll(program, RolloutBatch<double>{1, 10, view, start}).x[9] == doctest::Approx(1.0 - 0.5 * 0.4 * 0.8));
   // Told to stand for long, and 1 m/s for the last 0.4 s: 0.2 m/s to 0.7 m/s.
   const std::vector<DriveCommand> past{{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}};

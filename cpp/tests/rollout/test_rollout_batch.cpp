@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rollouts are what integrate_segment says, in every basis, with every chain, at every instruction level.
+// Rollouts are what integrate_segment says, in every basis, with every actuator, at every instruction level.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
   const auto paths = tests::roll(program, commands.batch(kStart, kPast), {.threads = 1, .level = level});
   const BodyTwist drive{kStart[0].drive.v, 0.0, kStart[0].drive.omega};
   // Where commands act early, the integrator of a shorter segment leaves out those that a rollout already knows.
-  const std::size_t fewest = program.chain().v.shift < 0 ? commands.periods : 1;
+  const std::size_t fewest = program.actuator().v.shift < 0 ? commands.periods : 1;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
     const InputTrack track = commands.track(n, kPast);
@@ -49,22 +49,22 @@ std::vector<Basis> bases_and_their_union() {
   return bases;
 }
 
-TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and with every chain") {
+TEST_CASE("rollouts of 5 s are those of the plain integrator in every basis and with every actuator") {
   const tests::SampleCommands<double> commands(37, 100, kPeriod);
   const tests::SampleCommands<float> in_float(37, 100, kPeriod);
   for (const Basis& basis : bases_and_their_union()) {
     CAPTURE(basis.name());
-    for (const tests::SampleChain& chain : tests::sample_chains()) {
-      CAPTURE(std::string(chain.name));
-      const MotionModel model(basis, chain.learned);
-      const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+    for (const tests::SampleChain& actuator : tests::sample_chains()) {
+      CAPTURE(std::string(actuator.name));
+      const MotionModel model(basis, actuator.learned);
+      const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
       for (const InstructionLevel level : kInstructionLevels) {
         if (has_instruction_level(level)) {
           CAPTURE(name_of(level));
           CHECK(error(model, parameters, commands, level) < 1e-9);
           // Where a lagging speed passes zero, the sample of thesis-15 jumps by metres within one period, and by 1e-5 m
           // for a rounding of the speed. Two lags without fused multiply-adds round it more often.
-          const bool coarse = level == InstructionLevel::Portable && chain.learned.response;
+          const bool coarse = level == InstructionLevel::Portable && actuator.learned.response;
           CHECK(error(model, parameters, in_float, level) < (coarse ? 2.5e-5 : 1e-5));
         }
       }
@@ -84,9 +84,9 @@ TEST_CASE("periods so long that a robot turns round within them are exact as wel
 }
 
 TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands lie") {
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("odd-even-10"), chain.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("odd-even-10"), actuator.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
   const tests::SampleCommands<float> commands(101, 20, kPeriod);
   const auto one = tests::roll(program, commands.batch(kStart, kPast));
   for (const unsigned threads : {2U, 3U, 200U}) {
@@ -105,9 +105,9 @@ TEST_CASE("a rollout's bytes depend neither on threads nor on how the commands l
 }
 
 TEST_CASE("every rollout may have a start of its own") {
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("edd-2"), chain.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("edd-2"), actuator.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
   const tests::SampleCommands<double> commands(40, 10, kPeriod);
   std::vector<RolloutStart> starts;
   std::vector<DriveCommand> past;
@@ -131,11 +131,11 @@ TEST_CASE("every rollout may have a start of its own") {
 }
 
 TEST_CASE("without commands before the start a drive with a slow part is taken to be settled") {
-  const tests::SampleChain chain = tests::sample_chains()[6];
-  const MotionModel model(Basis("none", {}, {}, {}), chain.learned);
-  const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+  const tests::SampleChain actuator = tests::sample_chains()[6];
+  const MotionModel model(Basis("none", {}, {}, {}), actuator.learned);
+  const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
   const RolloutProgram program(model, parameters, {kPeriod});
-  const double gain = model.chain(parameters).gain_v;
+  const double gain = model.actuator(parameters).gain_v;
   const std::vector<double> v(40, 0.5), omega(40, 0.0);
   const std::vector<RolloutStart> settled{{{}, {0.5 * gain, 0.0}}};
   const RolloutBatch<double> batch{1, 40, {v.data(), omega.data(), 1, 1}, settled};
@@ -143,9 +143,9 @@ TEST_CASE("without commands before the start a drive with a slow part is taken t
 }
 
 TEST_CASE("last poses and costs are those along the path") {
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("thesis-15"), chain.learned);
-  const RolloutProgram program(model, tests::sample_parameters(model, chain), {kPeriod});
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("thesis-15"), actuator.learned);
+  const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod});
   const tests::SampleCommands<double> commands(21, 30, kPeriod);
   const auto path = tests::roll(program, commands.batch(kStart, kPast));
   std::vector<float> cells;
@@ -208,9 +208,9 @@ std::string refusal(const RolloutProgram& program, const RolloutBatch<double>& b
 }
 
 TEST_CASE("what cannot be rolled out is refused and named") {
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("edd-2"), chain.learned);
-  const Eigen::VectorXd parameters = tests::sample_parameters(model, chain);
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("edd-2"), actuator.learned);
+  const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);
   const RolloutProgram program(model, parameters, {kPeriod});
   tests::SampleCommands<double> commands(3, 10, kPeriod);
   const auto batch = commands.batch(kStart);

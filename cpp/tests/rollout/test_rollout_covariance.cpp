@@ -18,12 +18,12 @@ namespace {
 constexpr double kPeriod = 0.05;
 const std::vector<RolloutStart> kOrigin{{{}, {0.4, 0.2}}};
 
-UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& chain) {
+UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& actuator) {
   const Eigen::VectorXd stds = Eigen::VectorXd::LinSpaced(model.size(), 0.01, 0.03);
   Eigen::MatrixXd covariance = stds.cwiseAbs2().asDiagonal();
   covariance(0, 1) = covariance(1, 0) = 0.5 * stds[0] * stds[1];
   return {model,
-          tests::sample_parameters(model, chain),
+          tests::sample_parameters(model, actuator),
           {.covariance = covariance,
            .noise = {.psd_time = {1e-4, 2e-4, 1e-4}, .psd_motion = {2e-4, 1e-4, 3e-4}, .fraction = {0.01, 0.02, 0.01}},
            .scale = {1.5, 0.7, 2.0},
@@ -49,10 +49,10 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
     for (const std::size_t which : {std::size_t{3}, std::size_t{6}}) {
-      const tests::SampleChain chain = tests::sample_chains()[which];
-      CAPTURE(std::string(chain.name));
-      const MotionModel model(basis, chain.learned);
-      const UncertainModel uncertain = sample_model(model, chain);
+      const tests::SampleChain actuator = tests::sample_chains()[which];
+      CAPTURE(std::string(actuator.name));
+      const MotionModel model(basis, actuator.learned);
+      const UncertainModel uncertain = sample_model(model, actuator);
       std::vector<double> entries(6 * 4 * 60);
       rollout_covariance(uncertain, commands.batch(kOrigin, past), entries);
       for (std::size_t n = 0; n < 4; ++n) {
@@ -72,9 +72,9 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
 
 TEST_CASE("without noise the parameters' share is exact to the difference's step") {
   const tests::SampleCommands<double> commands(3, 40, kPeriod);
-  const tests::SampleChain chain = tests::sample_chains()[0];
-  const MotionModel model(named_basis("odd-even-10"), chain.learned);
-  UncertainModel uncertain = sample_model(model, chain);
+  const tests::SampleChain actuator = tests::sample_chains()[0];
+  const MotionModel model(named_basis("odd-even-10"), actuator.learned);
+  UncertainModel uncertain = sample_model(model, actuator);
   uncertain.uncertainty.noise = {};
   uncertain.uncertainty.growth = 1.0;
   std::vector<double> entries(6 * 3 * 40);
@@ -91,9 +91,9 @@ TEST_CASE("without noise the parameters' share is exact to the difference's step
 TEST_CASE("sampled futures scatter as the covariance says, from the same seed in the same way") {
   const std::size_t samples = 2000;
   const tests::SampleCommands<double> commands(2, 30, kPeriod);
-  const tests::SampleChain chain = tests::sample_chains()[3];
-  const MotionModel model(named_basis("full-linear-6"), chain.learned);
-  UncertainModel uncertain = sample_model(model, chain);
+  const tests::SampleChain actuator = tests::sample_chains()[3];
+  const MotionModel model(named_basis("full-linear-6"), actuator.learned);
+  UncertainModel uncertain = sample_model(model, actuator);
   uncertain.uncertainty.scale.setOnes();
   const auto batch = commands.batch(kOrigin);
   const std::size_t poses = 2 * 30;
@@ -126,9 +126,9 @@ TEST_CASE("sampled futures scatter as the covariance says, from the same seed in
 
 TEST_CASE("an uncertainty that does not fit is refused") {
   const tests::SampleCommands<double> commands(2, 3, kPeriod);
-  const tests::SampleChain chain = tests::sample_chains()[0];
-  const MotionModel model(named_basis("edd-2"), chain.learned);
-  UncertainModel uncertain = sample_model(model, chain);
+  const tests::SampleChain actuator = tests::sample_chains()[0];
+  const MotionModel model(named_basis("edd-2"), actuator.learned);
+  UncertainModel uncertain = sample_model(model, actuator);
   std::vector<double> entries(6 * 6), few(5);
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), few), std::invalid_argument);
   CHECK_THROWS_AS(sample_futures(uncertain, commands.batch(kOrigin), 1, {few, few, few}), std::invalid_argument);

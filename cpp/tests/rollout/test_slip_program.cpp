@@ -43,7 +43,7 @@ SlipProgram compiled(const Basis& basis, double gx = 0.0, double gy = 0.0) {
   return compile_slip(basis, {alpha.data(), basis.size()}, gx, gy);
 }
 
-TEST_CASE("for all bases the products are the drive and its slip, on slopes and parked too") {
+TEST_CASE("for all bases the products are the drive and its slip, on derivatives and parked too") {
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
     const SlipProgram program = compiled(basis, 0.8, -0.5);
@@ -59,11 +59,11 @@ TEST_CASE("for all bases the products are the drive and its slip, on slopes and 
 TEST_CASE("a product is computed once, from products before it, and its factors are known to be in use") {
   for (const Basis& basis : tests::all_bases()) {
     const SlipProgram program = compiled(basis);
-    std::set<std::pair<std::size_t, SlipFactor>> seen;
+    std::set<std::pair<std::size_t, SlipFactor>> observed;
     for (std::size_t i = kFirstProduct; i < program.products.size(); ++i) {
       const SlipProduct& product = program.products[i];
       CHECK(product.parent < i);
-      CHECK(seen.insert({product.parent, product.factor}).second);
+      CHECK(observed.insert({product.parent, product.factor}).second);
       CHECK((program.factors & bit(product.factor)) != 0U);
     }
   }

@@ -19,32 +19,32 @@ constexpr double kStep = 1e-3;
 
 struct Case {
   std::string name;
-  ChainParameters learned;
-  Eigen::VectorXd chain;  ///< the model's chain parameters
+  ActuatorParameters learned;
+  Eigen::VectorXd actuator;  ///< the model's actuator parameters
 };
 
 std::vector<Case> sample_chains() {
   const double lag_v = std::log(0.31), lag_omega = std::log(0.22), delay_v = std::log(0.0827),
                delay_omega = std::log(0.1133);
-  Eigen::VectorXd dynamics(4), both(5), all(11), seen(14);
+  Eigen::VectorXd dynamics(4), both(5), all(11), observed(14);
   const Eigen::Vector3d mount(1.5, -0.4, 0.21);
   dynamics << lag_v, lag_omega, delay_v, delay_omega;
   both << lag_v, lag_omega, delay_v, delay_omega, 0.0231;
   all << lag_v, lag_omega, delay_v, delay_omega, 0.93, 1.12, 0.21, 0.34, std::log(1.31), std::log(0.82), 0.0231;
-  seen << all, mount;
-  return {{"no chain", {}, Eigen::VectorXd(0)},
+  observed << all, mount;
+  return {{"no actuator", {}, Eigen::VectorXd(0)},
           {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
           {"dynamics", {.dynamics = true}, dynamics},
           {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
           {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
           {"mount", {.mount = true}, mount},
-          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, seen},
+          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, observed},
           {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)}};
 }
 
-Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& chain) {
-  Eigen::VectorXd all(slip.size() + chain.size());
-  all << slip, chain;
+Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& actuator) {
+  Eigen::VectorXd all(slip.size() + actuator.size());
+  all << slip, actuator;
   return all;
 }
 
@@ -57,12 +57,12 @@ double linearization_error(const MotionModel& model, const Eigen::VectorXd& para
   return tests::jacobian_error(linearize_segment(model, parameters, inputs, segment).by_parameter, numeric, 0.1);
 }
 
-void check_all_drives(const Basis& basis, const Case& chain, double period, const Segment& segment) {
-  const MotionModel model(basis, chain.learned);
-  const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), chain.chain);
+void check_all_drives(const Basis& basis, const Case& actuator, double period, const Segment& segment) {
+  const MotionModel model(basis, actuator.learned);
+  const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), actuator.actuator);
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(basis.name());
-    CAPTURE(chain.name);
+    CAPTURE(actuator.name);
     CAPTURE(drive.name);
     const InputTrack inputs = tests::sampled(drive.twist, 0.0, period, 200);
     CHECK(linearization_error(model, parameters, inputs, segment) < tests::kDerivativeTolerance);
@@ -73,8 +73,8 @@ const Segment kSegment{.start = 3.0131, .end = 5.0177, .gx = 0.3, .gy = -0.5};
 
 TEST_CASE("linearised segments have the exact derivative by every parameter for all bases, drives and chains") {
   for (const Basis& basis : tests::all_bases()) {
-    for (const Case& chain : sample_chains()) {
-      check_all_drives(basis, chain, 0.05, kSegment);
+    for (const Case& actuator : sample_chains()) {
+      check_all_drives(basis, actuator, 0.05, kSegment);
     }
   }
 }
@@ -86,9 +86,9 @@ TEST_CASE("linearised segments are exact from a measured initial twist and under
   Segment longer = measured;
   longer.start = 3.3131;
   longer.end = 8.2177;
-  for (const Case& chain : sample_chains()) {
-    check_all_drives(basis, chain, 0.05, measured);
-    check_all_drives(basis, chain, 1.0137, longer);
+  for (const Case& actuator : sample_chains()) {
+    check_all_drives(basis, actuator, 0.05, measured);
+    check_all_drives(basis, actuator, 1.0137, longer);
   }
 }
 
@@ -96,7 +96,7 @@ TEST_CASE("linearised segments are exact from a measured initial twist and under
 TEST_CASE("the derivative where both channels have the same delay is the limit of a yaw rate slightly later") {
   const Basis basis = named_basis("odd-even-10");
   const MotionModel model(basis, {.dynamics = true, .clock_offset = true});
-  Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains()[3].chain);
+  Eigen::VectorXd equal = joined(tests::sample_slip(basis, 21), sample_chains()[3].actuator);
   equal[model.slip_size() + 3] = equal[model.slip_size() + 2];
   Eigen::VectorXd later = equal;
   later[model.slip_size() + 3] += 1e-7;
@@ -112,11 +112,11 @@ TEST_CASE("the derivative where both channels have the same delay is the limit o
 
 TEST_CASE("a segment's beginnings are linearised as segments that end there, and the last is all of it") {
   const Basis basis = named_basis("odd-even-10");
-  for (const Case& chain : sample_chains()) {
-    const MotionModel model(basis, chain.learned);
-    const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), chain.chain);
+  for (const Case& actuator : sample_chains()) {
+    const MotionModel model(basis, actuator.learned);
+    const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 21), actuator.actuator);
     for (const tests::SampleDrive& drive : tests::sample_drives()) {
-      CAPTURE(chain.name);
+      CAPTURE(actuator.name);
       CAPTURE(drive.name);
       const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
       const auto beginnings = linearize_beginnings(model, parameters, inputs, kSegment, 5);
@@ -140,9 +140,9 @@ TEST_CASE("a segment's beginnings are linearised as segments that end there, and
 
 TEST_CASE("linearised segments predict what integration predicts") {
   for (const Basis& basis : tests::all_bases()) {
-    for (const Case& chain : sample_chains()) {
-      const MotionModel model(basis, chain.learned);
-      const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 22), chain.chain);
+    for (const Case& actuator : sample_chains()) {
+      const MotionModel model(basis, actuator.learned);
+      const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 22), actuator.actuator);
       for (const tests::SampleDrive& drive : tests::sample_drives()) {
         const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
         const auto linearized = linearize_segment(model, parameters, inputs, kSegment);
@@ -159,10 +159,10 @@ TEST_CASE("linearised segments predict what integration predicts") {
 
 TEST_CASE("the derivative is exact for a sensor whose place is known") {
   const Basis basis = named_basis("odd-even-10");
-  Segment seen = kSegment;
-  seen.sensor = {-0.7, 0.3, -1.2};
-  for (const Case& chain : sample_chains()) {
-    check_all_drives(basis, chain, 0.05, seen);
+  Segment observed = kSegment;
+  observed.sensor = {-0.7, 0.3, -1.2};
+  for (const Case& actuator : sample_chains()) {
+    check_all_drives(basis, actuator, 0.05, observed);
   }
 }
 

@@ -15,10 +15,10 @@ namespace {
 using Jacobian = Eigen::Matrix<double, 4, 3>;
 constexpr BodyGravity kSlope{.gx = 0.6, .gy = -0.4};
 
-DriveStep step_of(const Eigen::Vector4d& at) { return {at[0], at[1], at[2], at[3]}; }
+ActuatorStep step_of(const Eigen::Vector4d& at) { return {at[0], at[1], at[2], at[3]}; }
 
 Eigen::Vector3d tangent_at(const Basis& basis, const Eigen::VectorXd& alpha, const Eigen::Vector4d& at) {
-  const DriveStep step = step_of(at);
+  const ActuatorStep step = step_of(at);
   return tangent_of(step, slip_rate(basis, alpha, slip_state(step, kSlope)));
 }
 
@@ -31,7 +31,7 @@ TEST_CASE("the slip state is the mean drive over the step, and that of no time i
 }
 
 TEST_CASE("without slip the tangent is the drive") {
-  const DriveStep step{.duration = 0.5, .forward = 0.4, .left = 0.1, .turn = -0.1};
+  const ActuatorStep step{.duration = 0.5, .forward = 0.4, .left = 0.1, .turn = -0.1};
   CHECK(tangent_of(step, Eigen::Vector3d::Zero()) == Eigen::Vector3d(0.4, 0.1, -0.1));
 }
 
@@ -45,7 +45,7 @@ TEST_CASE("for all bases the tangent's derivative equals finite differences") {
     const auto value = [&](const Eigen::VectorXd& moved) -> Eigen::VectorXd {
       return tangent_at(basis, alpha, at + by * moved);
     };
-    const DriveStep step = step_of(at);
+    const ActuatorStep step = step_of(at);
     const PathSlip path{.basis = basis, .alpha = alpha, .gravity = kSlope};
     const Eigen::MatrixXd analytic = tangent_by(step, by, path, slip_rate(basis, alpha, slip_state(step, kSlope)));
     const Eigen::MatrixXd numeric = tests::finite_difference(value, Eigen::Vector3d::Zero(), 0.01);

@@ -52,7 +52,7 @@ TEST_CASE("the covariance of white slip noise is that of simulated paths") {
   const auto drive_once = [&]() -> Eigen::Vector3d {
     Pose2 pose;
     for (std::size_t k = 0; k < path.tangents.size(); ++k) {
-      const DriveStep& step = path.drive[k];
+      const ActuatorStep& step = path.drive[k];
       const double wheels = std::abs(step.forward) + kTurnRadius * std::abs(step.turn);
       const double yaw = std::abs(step.turn) + std::abs(step.forward) / kStraightRadius;
       const Eigen::Vector3d motion(wheels, wheels, yaw);
@@ -87,7 +87,7 @@ TEST_CASE("the covariance of a slip that lasts the whole segment is that of simu
   CHECK(worst_ratio(sample_covariance(kDraws, drive_once), slip_covariance(path, noise)) < tolerance(kDraws));
 }
 
-TEST_CASE("the covariance of pose noise is that of two noisy poses seen from the first") {
+TEST_CASE("the covariance of pose noise is that of two noisy poses observed from the first") {
   const MotionNoise noise{.pose_std_xy = 0.02, .pose_std_yaw = 0.01};
   const Pose2 start{3.0, -1.0, 0.7};
   for (const Pose2& motion : {Pose2{2.0, 0.5, 0.4}, Pose2{-0.5, 3.0, -1.5}, Pose2{0.0, 0.0, 7.0}}) {
@@ -139,9 +139,9 @@ TEST_CASE("motions that meet at a measured pose share its noise") {
   const Eigen::Vector3d of_first = pose_noise_covariance(before, noise).diagonal();
   const Eigen::Vector3d of_second = pose_noise_covariance(after, noise).diagonal();
   const Eigen::Matrix3d off = (sampled - shared_pose_noise(after, before, noise)).cwiseAbs();
-  const Eigen::Matrix3d usual = (of_second * of_first.transpose() / kDraws).cwiseSqrt();
-  CHECK(off.cwiseQuotient(usual).maxCoeff() < 5.0);
-  CHECK(sampled.cwiseAbs().cwiseQuotient(usual).maxCoeff() > 20.0);
+  const Eigen::Matrix3d nominal = (of_second * of_first.transpose() / kDraws).cwiseSqrt();
+  CHECK(off.cwiseQuotient(nominal).maxCoeff() < 5.0);
+  CHECK(sampled.cwiseAbs().cwiseQuotient(nominal).maxCoeff() > 20.0);
 }
 
 TEST_CASE("a parked robot gathers no slip noise") {

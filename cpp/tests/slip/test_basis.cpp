@@ -51,7 +51,7 @@ TEST_CASE("the shipped bases have the sizes of the published table") {
   }
 }
 
-TEST_CASE("a parked robot does not slip in any basis, on a slope either") {
+TEST_CASE("a parked robot does not slip in any basis, on a derivative either") {
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
     for (const double feature : features(basis, {.v = 0.0, .omega = 0.0, .gx = 1.0, .gy = -2.0})) {

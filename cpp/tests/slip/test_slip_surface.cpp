@@ -39,7 +39,7 @@ TEST_CASE("each term moves its own channel alone") {
   CHECK(slip_rate(Basis("t", none, none, one), alpha, {.v = 2.0}) == Eigen::Vector3d(0.0, 0.0, 1.0));
 }
 
-TEST_CASE("slopes of the slip rate are its derivatives by drive and by parameter") {
+TEST_CASE("derivatives of the slip rate are its derivatives by drive and by parameter") {
   for (const Basis& basis : tests::all_bases()) {
     CAPTURE(basis.name());
     const Eigen::VectorXd alpha = tests::sample_slip(basis, 6);
@@ -49,11 +49,11 @@ TEST_CASE("slopes of the slip rate are its derivatives by drive and by parameter
         return slip_rate(basis, alpha, {.v = d[0], .omega = d[1], .gx = state.gx, .gy = state.gy});
       };
       const auto by_parameter = [&](const Eigen::VectorXd& a) -> Eigen::VectorXd { return slip_rate(basis, a, state); };
-      const auto drive_slopes = tests::finite_difference(by_drive, Eigen::Vector2d(state.v, state.omega), 0.01);
-      const auto slopes = tests::finite_difference(by_parameter, alpha, 0.1);
+      const auto actuator_derivatives = tests::finite_difference(by_drive, Eigen::Vector2d(state.v, state.omega), 0.01);
+      const auto derivatives = tests::finite_difference(by_parameter, alpha, 0.1);
       CHECK((linearized.slip - slip_rate(basis, alpha, state)).norm() < 1e-14);
-      CHECK(tests::jacobian_error(linearized.by_drive, drive_slopes) < tests::kDerivativeTolerance);
-      CHECK(tests::jacobian_error(linearized.by_parameter, slopes) < tests::kDerivativeTolerance);
+      CHECK(tests::jacobian_error(linearized.by_drive, actuator_derivatives) < tests::kDerivativeTolerance);
+      CHECK(tests::jacobian_error(linearized.by_parameter, derivatives) < tests::kDerivativeTolerance);
     }
   }
 }

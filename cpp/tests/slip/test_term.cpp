@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip terms: reading, spelling, refusing, values and slopes.
+// Slip terms: reading, spelling, refusing, values and derivatives.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -94,7 +94,7 @@ TEST_CASE("gravity moves only a robot that moves") {
   CHECK(value("gx", {.v = 0.0, .omega = 0.1, .gx = 3.0}) == 3.0);
 }
 
-TEST_CASE("slopes of terms are their derivatives by speed and yaw rate") {
+TEST_CASE("derivatives of terms are their derivatives by speed and yaw rate") {
   const std::vector<std::string> texts{"V",       "w",    "abs(V)",  "abs(w)",  "V*abs(w)",     "sgn(V)*w^2", "kappa",
                                        "kappa*V", "gx*V", "kappa^2", "V^3*w^2", "abs(V)*V*w/g", "-0.3*w^8",   "gy"};
   for (const std::string& text : texts) {
@@ -105,9 +105,9 @@ TEST_CASE("slopes of terms are their derivatives by speed and yaw rate") {
         return Eigen::VectorXd::Constant(1,
                                          term.value(SlipQuantities({.v = d[0], .omega = d[1], .gx = 0.3, .gy = 0.7})));
       };
-      const auto slopes = term.linearize(SlipQuantities({.v = drive[0], .omega = drive[1], .gx = 0.3, .gy = 0.7}));
-      const Eigen::RowVector2d analytic(slopes.by_v, slopes.by_omega);
-      CHECK(slopes.value == doctest::Approx(at(drive)[0]).epsilon(1e-14));
+      const auto derivatives = term.linearize(SlipQuantities({.v = drive[0], .omega = drive[1], .gx = 0.3, .gy = 0.7}));
+      const Eigen::RowVector2d analytic(derivatives.by_v, derivatives.by_omega);
+      CHECK(derivatives.value == doctest::Approx(at(drive)[0]).epsilon(1e-14));
       CHECK(tests::jacobian_error(analytic, tests::finite_difference(at, drive, 0.01)) < tests::kDerivativeTolerance);
     }
   }

@@ -7,21 +7,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from slipwise.calibration.drive import (
-    DriveRun,
-    WindowSet,
-    choose_input,
-    collect_windows,
-    has_wheels,
-    prepare_drive,
-)
 from slipwise.calibration.estimator_run import run_estimator
-from slipwise.calibration.forecast import Forecaster, final_tail, forecast, forecast_all, tail_of
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
-from slipwise.calibration.plain import plain_forecaster
+from slipwise.calibration.plain import baseline_predictor
+from slipwise.calibration.predictors import Predictor, final_tail, predict_all, predictions_of, tail_of
+from slipwise.calibration.prepared_run import (
+    PreparedRun,
+    WindowSet,
+    choose_input,
+    collect_windows,
+    has_wheels,
+    prepare_run,
+)
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice
@@ -62,7 +62,7 @@ def calibrate(
     """
     settings = settings or Settings()
     input_name = input or choose_input(log)
-    drive = prepare_drive(log, input_name)
+    drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
     found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
@@ -113,16 +113,16 @@ def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | Non
 def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn with one of the estimators that the learner is compared with."""
     run = run_estimator(settings, windows.drive[0].input_name, windows, record=True, progress=progress)
-    forecaster = Forecaster("learned", settings.filter_settings().noise.shape, run.belief, run.dynamics)
+    predictor = Predictor("learned", settings.filter_settings().noise.shape, run.posterior, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
-    predictions = forecast_all(forecaster, windows, sets)
-    plain = tuple(forecast(plain_forecaster(settings), windows, targets) for targets in sets)
+    predictions = predict_all(predictor, windows, sets)
+    plain = tuple(predictions_of(baseline_predictor(settings), windows, targets) for targets in sets)
     tails = {p.horizon: final_tail(p) for p in predictions if len(p)}
     kept = run.kept()
     return Learned(kept, kept, predictions, plain, tails, run.history(), run.bases)
 
 
-def learning_windows(drive: tuple[DriveRun, ...], input_name: str, settings: Settings) -> WindowSet:
+def learning_windows(drive: tuple[PreparedRun, ...], input_name: str, settings: Settings) -> WindowSet:
     """Cut the windows to learn from: of the length in the settings, or whole frames that are shorter."""
     rules = replace(settings.rules(), whole_frames=True)
     return collect_windows(drive, settings.window_length(input_name), rules)
@@ -189,7 +189,7 @@ def judged_on(
     return Judged(judgement, verdict)
 
 
-def _range(drive: tuple[DriveRun, ...]) -> schema.Range:
+def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:
     speed = np.concatenate([run.inputs.v for run in drive])
     yaw_rate = np.concatenate([run.inputs.omega for run in drive])
     tilts = [t for run in drive for t in (run.run.poses.roll, run.run.poses.pitch) if t is not None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pass over windows that learns only as far as it is asked to, and keeps no belief but the present one."""
+"""A run over windows that learns only as far as requested, and keeps no posterior but the present one."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable
 from typing import Generic, Protocol, TypeVar
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.prepared_run import WindowSet
 
 UpdateT = TypeVar("UpdateT")
 UpdateT_co = TypeVar("UpdateT_co", covariant=True)
@@ -21,7 +21,7 @@ class OnlineLearner(Protocol[UpdateT_co]):
         """Learn one window and say how it was taken in."""
         ...
 
-    def belief(self) -> Belief:
+    def posterior(self) -> Posterior:
         """Return what is believed now."""
         ...
 
@@ -33,7 +33,7 @@ class CausalPass(Generic[UpdateT]):
         self,
         learner: OnlineLearner[UpdateT],
         windows: WindowSet,
-        observer: Callable[[int, UpdateT, Belief], None] | None = None,
+        observer: Callable[[int, UpdateT, Posterior], None] | None = None,
         *,
         pace: WindowSet | None = None,
         first: int = 0,
@@ -43,8 +43,8 @@ class CausalPass(Generic[UpdateT]):
         Args:
             learner: what learns; it has learned nothing yet.
             windows: what it learns, of any length, overlapping or not.
-            observer: gets each window's index, its update, and the belief after it.
-            pace: beliefs are asked for by counts of these windows, where they are not `windows` themselves.
+            observer: gets each window's index, its update, and the posterior after it.
+            pace: posteriors are requested by counts of these windows, where not of `windows` themselves.
             first: windows before this one are passed over.
         """
         self._learner, self._windows, self._observer = learner, windows, observer
@@ -62,22 +62,22 @@ class CausalPass(Generic[UpdateT]):
             return count
         return int(self._passed[count - 1])
 
-    def belief(self, count: int) -> Belief:
-        """Return the belief once `count` windows have passed.
+    def posterior(self, count: int) -> Posterior:
+        """Return the posterior once `count` windows have passed.
 
         Raises:
             ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
         """
         until = self.passed(count)
         if until < self._learned:
-            raise ValueError(f"the belief after {until} windows is gone: {self._learned} are learned")
+            raise ValueError(f"the posterior after {until} windows is gone: {self._learned} are learned")
         for i in range(self._learned, until):
             update = self._learner.learn(self._windows.track(i), self._windows.segments[i])
             self._learned = i + 1
             if self._observer is not None:
-                self._observer(i, update, self._learner.belief())
-        return self._learner.belief()
+                self._observer(i, update, self._learner.posterior())
+        return self._learner.posterior()
 
-    def finish(self) -> Belief:
-        """Learn what is left and return the last belief."""
-        return self.belief(len(self._windows if self._passed is None else self._passed))
+    def finish(self) -> Posterior:
+        """Learn what is left and return the last posterior."""
+        return self.posterior(len(self._windows if self._passed is None else self._passed))

@@ -10,23 +10,23 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.estimators import estimator_learner, estimator_motion, fed_windows
-from slipwise.calibration.learner import Belief, Progress
+from slipwise.calibration.learner import Posterior, Progress
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 
 
 @dataclass(frozen=True, eq=False)
 class EstimatorRun:
-    """Causal beliefs on the way, and what is kept in the end."""
+    """Causal posteriors on the way, and what is kept in the end."""
 
-    belief: Callable[[int], Belief]  # known causally after so many windows; their number never decreases
-    kept: Callable[[], Belief]  # learns what is left and returns what goes into a model
+    posterior: Callable[[int], Posterior]  # known causally after so many windows, which never decrease
+    kept: Callable[[], Posterior]  # learns what is left and returns what goes into a model
     history: Callable[[], History | None]  # where it was recorded
     bases: tuple[str, ...]
     dynamics: bool
-    causal: bool  # whether what is kept is the last of the causal beliefs
+    causal: bool  # whether what is kept is the last of the causal posteriors
 
 
 def run_estimator(
@@ -42,7 +42,7 @@ def run_estimator(
     Args:
         settings: what to learn and how.
         input_name: "command" or "wheel".
-        windows: what counts as learned; beliefs are asked for by counts of them.
+        windows: what counts as learned; posteriors are asked for by counts of them.
         record: keep the history.
         progress: called with the fraction done, 0 to 1, where the history is kept.
 
@@ -55,15 +55,15 @@ def run_estimator(
     causal = not _core.fits_all_segments(name)
     history = _empty_history(fed, motion)
 
-    def see(i: int, update: _core.IekfUpdate, belief: Belief) -> None:
-        history.mean[i], history.std[i] = belief.mean, np.sqrt(np.diag(belief.covariance))
+    def see(i: int, update: _core.IekfUpdate, posterior: Posterior) -> None:
+        history.mean[i], history.std[i] = posterior.mean, np.sqrt(np.diag(posterior.covariance))
         history.nis[i], history.weight[i] = update.nis, update.weight
         if progress is not None and i % 50 == 0:
             progress((i + 1) / len(fed))
 
     passing = CausalPass(learner, fed, see if record else None, pace=windows)
 
-    def kept() -> Belief:
+    def kept() -> Posterior:
         passing.finish()
         return learner.fitted()
 
@@ -71,7 +71,7 @@ def run_estimator(
         passing.finish()
         return history if record and causal else None
 
-    return EstimatorRun(passing.belief, kept, recorded, (motion.basis.name,), motion.dynamics, causal)
+    return EstimatorRun(passing.posterior, kept, recorded, (motion.basis.name,), motion.dynamics, causal)
 
 
 def _empty_history(windows: WindowSet, motion: _core.MotionModel) -> History:

@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet, collect_windows
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.prepared_run import WindowSet, collect_windows
 from slipwise.calibration.settings import Settings
 
 ESTIMATOR_BASIS = "odd-even-10"  # where the settings leave the basis to the average
@@ -68,17 +68,17 @@ class EstimatorLearner:
         """Learn one window."""
         return self._estimator.learn(inputs, segment)
 
-    def belief(self) -> Belief:
-        """Return the belief that learning goes on from."""
-        return self._belief(self._estimator.running())
+    def posterior(self) -> Posterior:
+        """Return the posterior that learning goes on from."""
+        return self._posterior(self._estimator.running())
 
-    def fitted(self) -> Belief:
-        """Return the estimate: the belief, or where the estimator fits all windows at once, that fit."""
-        return self._belief(self._estimator.estimate())
+    def fitted(self) -> Posterior:
+        """Return the estimate: the posterior, or where the estimator fits all windows at once, that fit."""
+        return self._posterior(self._estimator.estimate())
 
-    def _belief(self, estimate: _core.Estimate) -> Belief:
+    def _posterior(self, estimate: _core.Estimate) -> Posterior:
         prior_std, covariance = np.array(self._estimator.prior_std), np.array(estimate.covariance)
-        return Belief(
+        return Posterior(
             motion=self._motion,
             mean=np.array(estimate.mean),
             covariance=covariance,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from slipwise import _core
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
 from slipwise.models.parameter_table import physical_name
 from slipwise.models.schema import UNDETERMINED_RATIO
 
@@ -26,20 +26,20 @@ class LookAlike:
         return f"{physical_name(self.first)} and {physical_name(self.second)} ({self.correlation:+.2f})"
 
 
-def undetermined(belief: Belief) -> tuple[str, ...]:
+def undetermined(posterior: Posterior) -> tuple[str, ...]:
     """Return the parameters of which the drive told little more than the prior did."""
-    ratios = belief.variance_ratio.tolist()
+    ratios = posterior.variance_ratio.tolist()
     return tuple(
         info.name
-        for info, ratio in zip(belief.motion.parameters, ratios, strict=True)
+        for info, ratio in zip(posterior.motion.parameters, ratios, strict=True)
         if ratio > UNDETERMINED_RATIO
     )
 
 
-def look_alikes(belief: Belief) -> tuple[LookAlike, ...]:
+def look_alikes(posterior: Posterior) -> tuple[LookAlike, ...]:
     """Return the pairs that the drive can hardly tell apart, the closest first."""
-    names = [info.name for info in belief.motion.parameters]
-    pairs = _core.correlated_pairs(belief.covariance, LOOK_ALIKE)
+    names = [info.name for info in posterior.motion.parameters]
+    pairs = _core.correlated_pairs(posterior.covariance, LOOK_ALIKE)
     return tuple(LookAlike(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
 
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.drive import DriveRun
-from slipwise.calibration.learner import LIMITS, STRUCTURES, Belief, Progress, belief_of
+from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
 from slipwise.calibration.predictions import Predictions, residual
+from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.segments import recording_of
@@ -27,8 +27,8 @@ STEPS = 20  # pieces in which a run is pushed, so that progress can be shown
 class LearnedLog:
     """What a learner made of a log."""
 
-    kept: Belief  # what goes into a model
-    slip: Belief  # the same; of the next best where the baseline is kept, which has no parameters
+    kept: Posterior  # what goes into a model
+    slip: Posterior  # the same; of the next best where the baseline is kept, which has no parameters
     students: tuple[_core.StudentT, ...]  # of the predictions of each horizon, nothing recent being known
     predictions: tuple[Predictions, ...]  # one for each horizon
     baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
@@ -47,7 +47,7 @@ class Keep:
 
 
 def learn_log(
-    drive: tuple[DriveRun, ...],
+    drive: tuple[PreparedRun, ...],
     settings: Settings,
     horizons: Sequence[float],
     *,
@@ -78,8 +78,8 @@ def learn_log(
     predictions, baseline = held_out_predictions(model, horizons, drive)
     found = None if keep is None else learner.find_limits(keep.wheel_separation)
     return LearnedLog(
-        kept=kept_belief(model, found),
-        slip=belief_of(model.slip, model.disturbance),
+        kept=kept_posterior(model, found),
+        slip=posterior_of(model.slip, model.disturbance),
         students=tuple(model.students),
         predictions=predictions,
         baseline=baseline,
@@ -91,17 +91,17 @@ def learn_log(
     )
 
 
-def kept_belief(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Belief:
+def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Posterior:
     """Return what goes into a model: behind limits of the actuator, where these were found and kept."""
     motion = (found.posterior if found is not None else None) or model.motion
-    kept = belief_of(motion, model.disturbance)
+    kept = posterior_of(motion, model.disturbance)
     return replace(kept, limits=found.search.limits) if found and motion.structure == LIMITS else kept
 
 
 _LEARNED = _core.EventKind.SegmentLearned
 
 
-def _pushed(learner: _core.MotionLearner, drive: tuple[DriveRun, ...]) -> Iterator[float]:
+def _pushed(learner: _core.MotionLearner, drive: tuple[PreparedRun, ...]) -> Iterator[float]:
     """Push all runs, piece by piece; yields the fraction done."""
     for place, run in enumerate(drive):
         learner.start_run()
@@ -115,7 +115,7 @@ def _pushed(learner: _core.MotionLearner, drive: tuple[DriveRun, ...]) -> Iterat
 
 
 def held_out_predictions(
-    model: _core.LearnedModel, horizons: Sequence[float], drive: tuple[DriveRun, ...] = ()
+    model: _core.LearnedModel, horizons: Sequence[float], drive: tuple[PreparedRun, ...] = ()
 ) -> tuple[tuple[Predictions, ...], tuple[Predictions, ...]]:
     """Return the predictions that were held against what was measured, and those of the kinematic baseline.
 
@@ -133,7 +133,7 @@ def held_out_predictions(
 class _Record:
     """A prediction that was held against what was measured."""
 
-    def __init__(self, held_out: _core.HeldOutPrediction, drive: tuple[DriveRun, ...]) -> None:
+    def __init__(self, held_out: _core.HeldOutPrediction, drive: tuple[PreparedRun, ...]) -> None:
         if not drive:
             self.held_out, self.run, self.learned_until = held_out, held_out.run, held_out.learned_until
             return
@@ -184,7 +184,7 @@ def _history(
     events: Sequence[_core.LearnerEvent],
     last: _core.MotionPosterior,
     bases: tuple[str, ...],
-    drive: tuple[DriveRun, ...],
+    drive: tuple[PreparedRun, ...],
     *,
     several: bool,
 ) -> History:

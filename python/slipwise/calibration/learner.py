@@ -19,7 +19,7 @@ JOINT, CASCADED, LIMITS, DIRECT, BASELINE = range(len(STRUCTURES))
 
 
 @dataclass(frozen=True, eq=False)
-class Belief:
+class Posterior:
     """What is known of a model's parameters at one time."""
 
     motion: _core.MotionModel  # whose parameters these are
@@ -29,12 +29,14 @@ class Belief:
     prior_std: Floats  # [P]
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
-    noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its forecaster
-    coloured: _core.ColouredSlip | None = None  # the slip disturbance about this, where that is learned
+    noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its predictor
+    disturbance: _core.DisturbanceFilter | None = (
+        None  # of slip about this, where that is learned
+    )
     limits: _core.CommandLimits | None = None  # in front of the actuator, where some were found
     structure: int = JOINT  # of STRUCTURES; the errors of each are a population of their own
 
-    def posterior(self, noise: _core.MotionNoise) -> _core.MotionPosterior:
+    def for_core(self, noise: _core.MotionNoise) -> _core.MotionPosterior:
         """Return it as the core takes it; `noise` is that model of the noise where it has none of its own."""
         estimate = _core.Estimate(self.mean, self.covariance)
         return _core.MotionPosterior(
@@ -42,9 +44,11 @@ class Belief:
         )
 
 
-def belief_of(posterior: _core.MotionPosterior, coloured: _core.ColouredSlip | None = None) -> Belief:
+def posterior_of(
+    posterior: _core.MotionPosterior, disturbance: _core.DisturbanceFilter | None = None
+) -> Posterior:
     """Return what the core knows."""
-    return Belief(
+    return Posterior(
         motion=posterior.model,
         mean=np.array(posterior.estimate.mean),
         covariance=np.array(posterior.estimate.covariance),
@@ -52,6 +56,6 @@ def belief_of(posterior: _core.MotionPosterior, coloured: _core.ColouredSlip | N
         prior_std=np.array(posterior.prior_std),
         variance_ratio=np.array(posterior.variance_ratio),
         weights=np.array(posterior.basis_weights),
-        coloured=coloured,
+        disturbance=disturbance,
         structure=posterior.structure,
     )

@@ -12,7 +12,7 @@ _KINDS = {
     _core.LimitKind.Acceleration: "acceleration",
     _core.LimitKind.Braking: "braking",
 }
-_LANES = {
+_AXES = {
     _core.LimitedAxis.Speed: "speed",
     _core.LimitedAxis.YawRate: "yaw rate",
     _core.LimitedAxis.Side: "each side",
@@ -29,7 +29,7 @@ def advice_on_limits(search: _core.LimitSearch | None, *, kept: bool, wheels_log
 
 
 def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
-    """Return one sentence for each kind of limit that no lane shows; beyond what was commanded none can.
+    """Return one sentence for each kind of limit that no axis shows; beyond what was commanded none can.
 
     A dead-band that even the slowest commands do not show is none.
     """
@@ -56,7 +56,7 @@ def doubted_limits(search: _core.LimitSearch, *, wheels_logged: bool) -> tuple[s
     """Return a sentence about limits that were found, yet not kept, as they predict no better."""
     if not search.found:
         return ()
-    names = ", ".join(f"{_LANES[each.lane]}: {_KINDS[each.kind]}" for each in search.found)
+    names = ", ".join(f"{_AXES[each.axis]}: {_KINDS[each.kind]}" for each in search.found)
     remedy = "drive longer" if wheels_logged else "record wheel speeds"
     sentence = (
         f"The drive looks limited ({names}), yet behind these limits nothing is predicted better. They "

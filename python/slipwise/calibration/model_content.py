@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import History, Verdict
 from slipwise.calibration.settings import Settings
@@ -22,8 +22,8 @@ from slipwise.models.limits import limits_section
 class Learned:
     """What learning gave."""
 
-    kept: Belief
-    identifiable: Belief  # the same; of the next best where the baseline is kept, which has no parameters
+    kept: Posterior
+    identifiable: Posterior  # the same; of the next best where the baseline is kept, which has no parameters
     predictions: tuple[Predictions, ...]  # causal, of the horizons that are judged
     baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
     tails: dict[float, schema.Tail]
@@ -110,18 +110,18 @@ def _limits(learned: Learned) -> schema.LimitsSection | None:
     return None if learned.kept.limits is None or learned.limits is None else limits_section(learned.limits)
 
 
-def _parameters(belief: Belief) -> list[schema.Parameter]:
-    stds = np.sqrt(np.diag(belief.covariance))
+def _parameters(posterior: Posterior) -> list[schema.Parameter]:
+    stds = np.sqrt(np.diag(posterior.covariance))
     return [
         schema.Parameter(
             name=info.name,
             unit=info.unit,
-            value=float(belief.mean[i]),
+            value=float(posterior.mean[i]),
             std=float(stds[i]),
-            prior_std=float(belief.prior_std[i]),
-            determined=bool(belief.variance_ratio[i] <= schema.UNDETERMINED_RATIO),
+            prior_std=float(posterior.prior_std[i]),
+            determined=bool(posterior.variance_ratio[i] <= schema.UNDETERMINED_RATIO),
         )
-        for i, info in enumerate(belief.motion.parameters)
+        for i, info in enumerate(posterior.motion.parameters)
     ]
 
 
@@ -138,14 +138,17 @@ def _noise(learned: Learned, settings: Settings) -> schema.Noise:
     )
 
 
-def _coloured(belief: Belief, window: float) -> schema.Coloured | None:
-    if belief.coloured is None:
+def _coloured(posterior: Posterior, window: float) -> schema.SlipDisturbanceSection | None:
+    if posterior.disturbance is None:
         return None
-    law = belief.coloured.law
+    law = posterior.disturbance.law
     candidates = [
-        schema.Wander(
-            drift=wander.drift, turn=wander.turn, time_constant=wander.time_constant, weight=float(weight)
+        schema.DisturbanceCandidate(
+            drift=disturbance.drift,
+            turn=disturbance.turn,
+            time_constant=disturbance.time_constant,
+            weight=float(weight),
         )
-        for wander, weight in zip(law.candidates, law.weights, strict=True)
+        for disturbance, weight in zip(law.candidates, law.weights, strict=True)
     ]
-    return schema.Coloured(window=window, candidates=candidates)
+    return schema.SlipDisturbanceSection(window=window, candidates=candidates)

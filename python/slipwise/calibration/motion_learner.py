@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.forecast import tail_of
-from slipwise.calibration.learned_log import held_out_predictions, kept_belief
-from slipwise.calibration.learner import STRUCTURES, belief_of
+from slipwise.calibration.learned_log import held_out_predictions, kept_posterior
+from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
+from slipwise.calibration.predictors import tail_of
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
@@ -201,8 +201,8 @@ class MotionLearner:
         predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         students = zip(predictions, model.students, strict=True)
         learned = Learned(
-            kept_belief(model, found),
-            belief_of(model.slip, model.disturbance),
+            kept_posterior(model, found),
+            posterior_of(model.slip, model.disturbance),
             predictions,
             baseline,
             {p.horizon: tail_of(student) for p, student in students if len(p)},

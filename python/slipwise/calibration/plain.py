@@ -6,20 +6,20 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.predictors import Predictor
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 
 
-def plain_forecaster(settings: Settings) -> Forecaster:
+def baseline_predictor(settings: Settings) -> Predictor:
     """`none`: the robot does at once and exactly what it is told."""
     model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
     return _fixed("none", model, np.zeros(0), settings)
 
 
-def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
+def vendor_predictor(multiplier: float, settings: Settings) -> Predictor:
     """`vendor`: the yaw rate divided by a wheel-separation multiplier, as diff_drive_controller does.
 
     Raises:
@@ -33,9 +33,9 @@ def vendor_forecaster(multiplier: float, settings: Settings) -> Forecaster:
     return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
 
 
-def model_forecaster(model: Model) -> Forecaster:
+def model_predictor(model: Model) -> Predictor:
     """`model`: a model file as it is; what the slip disturbance is now is not asked for."""
-    belief = Belief(
+    posterior = Posterior(
         model.motion,
         model.mean,
         model.covariance,
@@ -43,13 +43,15 @@ def model_forecaster(model: Model) -> Forecaster:
         model.prior_std,
         np.ones(len(model.mean)),
         np.ones(1),
-        coloured=_core.ColouredSlip(model.wander),
+        disturbance=_core.DisturbanceFilter(model.disturbance),
         limits=model.limits,
     )
-    return Forecaster("model", model.noise, lambda _: belief, model.content.dynamics)
+    return Predictor("model", model.noise, lambda _: posterior, model.content.dynamics)
 
 
-def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Forecaster:
+def _fixed(method: str, model: _core.MotionModel, mean: np.ndarray, settings: Settings) -> Predictor:
     size = len(mean)
-    belief = Belief(model, mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1))
-    return Forecaster(method, settings.filter_settings().noise.shape, lambda _: belief, False)
+    posterior = Posterior(
+        model, mean, np.zeros((size, size)), np.ones(3), np.ones(size), np.ones(size), np.ones(1)
+    )
+    return Predictor(method, settings.filter_settings().noise.shape, lambda _: posterior, False)

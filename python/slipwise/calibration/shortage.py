@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from slipwise.calibration.drive import INPUT_NAMES, WindowSet, collect_windows, prepare_drive
 from slipwise.calibration.judgement import FEWEST_WINDOWS
+from slipwise.calibration.prepared_run import INPUT_NAMES, WindowSet, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.errors import LogError
 from slipwise.logs.log import Log
@@ -46,6 +46,6 @@ def shortage_advice(log: Log, input_name: str, shortest: WindowSet, settings: Se
 
 def _segments(log: Log, input_name: str, length: float, settings: Settings) -> int:
     try:
-        return len(collect_windows(prepare_drive(log, input_name), length, settings.rules()))
+        return len(collect_windows(prepare_run(log, input_name), length, settings.rules()))
     except LogError:
         return 0

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import Settings
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
@@ -70,23 +70,23 @@ class SmoothedCourse:
         return columns
 
 
-def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCourse:
+def smooth(posterior: Posterior, windows: WindowSet, settings: Settings) -> SmoothedCourse:
     """Smooth over all windows: forward filter, backward pass of Rauch, Tung and Striebel (1965).
 
     Lag, delay and clock offset are the robot's, not the ground's: they are taken as learned.
 
     Args:
-        belief: what was learned: its model, its prior of the slip, its chain and its noise are used.
+        posterior: what was learned: its model, its prior of the slip, its actuator and its noise are used.
         windows: what was learned; they must not overlap.
         settings: how fast the slip may change, the shape of the noise, and the filter.
     """
-    motion, filters = belief.motion, settings.filter_settings()
+    motion, filters = posterior.motion, settings.filter_settings()
     slip = slice(motion.slip_size)
     tracks = [windows.track(i) for i in range(len(windows))]
-    noise = [_noise(belief, filters.noise.shape, windows, i) for i in range(len(windows))]
+    noise = [_noise(posterior, filters.noise.shape, windows, i) for i in range(len(windows))]
     drift = settings.smoothing.drift_settings()
     course = _core.rts_smooth(
-        motion, _prior(belief), tracks, list(windows.segments), noise, drift, filters.iekf
+        motion, _prior(posterior), tracks, list(windows.segments), noise, drift, filters.iekf
     )
     return SmoothedCourse(
         run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
@@ -98,22 +98,22 @@ def smooth(belief: Belief, windows: WindowSet, settings: Settings) -> SmoothedCo
     )
 
 
-def _prior(belief: Belief) -> _core.Estimate:
-    """The slip as before any data, the chain as learned."""
-    slip = slice(belief.motion.slip_size)
-    mean, covariance = belief.mean.copy(), belief.covariance.copy()
+def _prior(posterior: Posterior) -> _core.Estimate:
+    """The slip as before any data, the actuator as learned."""
+    slip = slice(posterior.motion.slip_size)
+    mean, covariance = posterior.mean.copy(), posterior.covariance.copy()
     mean[slip] = 0.0
     covariance[slip, :] = covariance[:, slip] = 0.0
-    covariance[slip, slip] = np.diag(belief.prior_std[slip] ** 2)
+    covariance[slip, slip] = np.diag(posterior.prior_std[slip] ** 2)
     return _core.Estimate(mean, np.asfortranarray(covariance))
 
 
-def _noise(belief: Belief, shape: _core.MotionNoise, windows: WindowSet, i: int) -> Floats:
+def _noise(posterior: Posterior, shape: _core.MotionNoise, windows: WindowSet, i: int) -> Floats:
     """Covariance of the measured chart of window i, [3, 3]."""
     segment = windows.segments[i]
     path = _core.integrate_segment(
-        belief.motion, belief.mean, windows.track(i), segment, _core.Integrator.Exact
+        posterior.motion, posterior.mean, windows.track(i), segment, _core.Integrator.Exact
     )
     covariance = _core.slip_covariance(path, shape) + _core.pose_noise_covariance(segment.measured, shape)
-    root = np.sqrt(belief.noise_scale)
+    root = np.sqrt(posterior.noise_scale)
     return np.asfortranarray(covariance * np.outer(root, root))

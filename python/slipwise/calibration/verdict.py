@@ -14,7 +14,7 @@ from slipwise.calibration.identifiability import (
     undetermined,
 )
 from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
 from slipwise.calibration.result import Verdict
 from slipwise.logs.contradiction import Contradiction
 from slipwise.models.schema import HeldOut
@@ -45,12 +45,12 @@ class LogFacts:
     input_name: str = "command"
 
 
-def identified(belief: Belief, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
-    """Say what a belief knows of its parameters, and which driving would tell the rest."""
-    unknown, pairs = undetermined(belief), look_alikes(belief)
+def identified(posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
+    """Say what a posterior knows of its parameters, and which driving would tell the rest."""
+    unknown, pairs = undetermined(posterior), look_alikes(posterior)
     advice = (*drives_for(unknown), *advice_for_pairs(pairs))
-    timing = timing_words(belief.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
-    return Identified(len(belief.mean), unknown, advice, pairs, timing)
+    timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
+    return Identified(len(posterior.mean), unknown, advice, pairs, timing)
 
 
 def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Verdict:

@@ -14,7 +14,7 @@ from slipwise.cli.options import Folder, Json, Runs, optional
 from slipwise.cli.pictures import missing_picture
 
 if TYPE_CHECKING:
-    from slipwise.reproduction import ChapterResult
+    from slipwise.thesis import ChapterResult
 
 
 FILES = ("index.html", "markdown/README.md")
@@ -57,10 +57,10 @@ def reproduce(
     from slipwise.cli.run_folder import run_folder
     from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
-    from slipwise.reproduction import reproduce as make_again
-    from slipwise.reproduction import write_reproduction
-    from slipwise.reproduction.extras import refuse_missing_extras
-    from slipwise.reproduction.reproduce import BenchPlan, chosen_chapters
+    from slipwise.thesis import reproduce as make_again
+    from slipwise.thesis import write_reproduction
+    from slipwise.thesis.extras import refuse_missing_extras
+    from slipwise.thesis.reproduce import BenchPlan, chosen_chapters
 
     del work
     out = Output(json)

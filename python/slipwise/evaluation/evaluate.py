@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
-from slipwise.calibration.drive import WindowSet, choose_input, collect_windows, prepare_drive
 from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.prepared_run import WindowSet, choose_input, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.statistics import (
     coverage,
@@ -119,7 +119,7 @@ def _contest(
 ) -> tuple[Contest, tuple[str, ...]]:
     if not options.horizons or any(not (np.isfinite(h) and h > 0.0) for h in options.horizons):
         raise SettingsError("horizons must be positive seconds", where="--horizons", advice="such as 1,2,5")
-    drive = prepare_drive(log, input_name)
+    drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
     sets = [collect_windows(drive, horizon, settings.rules()) for horizon in sorted(set(options.horizons))]

@@ -7,16 +7,16 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.estimator_run import run_estimator
-from slipwise.calibration.forecast import Forecaster, forecast_all
 from slipwise.calibration.learned_log import learn_log
-from slipwise.calibration.plain import model_forecaster, plain_forecaster, vendor_forecaster
+from slipwise.calibration.plain import baseline_predictor, model_predictor, vendor_predictor
 from slipwise.calibration.predictions import Predictions
+from slipwise.calibration.predictors import Predictor, predict_all
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
-from slipwise.evaluation.slip_surfaces import surface_forecaster
+from slipwise.evaluation.slip_surfaces import surface_predictor
 from slipwise.models.model import Model
 
 
@@ -63,7 +63,7 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
     """
     special = {
         "none": MethodInfo(
-            _by(lambda _, c: plain_forecaster(c.settings)), "the kinematic baseline: no slip, no lag"
+            _by(lambda _, c: baseline_predictor(c.settings)), "the kinematic baseline: no slip, no lag"
         ),
         "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
         "model": MethodInfo(_by(_model), "the model file as it is"),
@@ -112,11 +112,11 @@ def refuse_names_of_methods(models: Collection[str]) -> None:
         )
 
 
-def _by(make: Callable[[str, Contest], Forecaster]) -> Callable[[str, Contest], tuple[Predictions, ...]]:
+def _by(make: Callable[[str, Contest], Predictor]) -> Callable[[str, Contest], tuple[Predictions, ...]]:
     """Predict with what `make` returns."""
 
     def predict(name: str, contest: Contest) -> tuple[Predictions, ...]:
-        return forecast_all(make(name, contest), contest.windows, contest.targets)
+        return predict_all(make(name, contest), contest.windows, contest.targets)
 
     return predict
 
@@ -129,34 +129,34 @@ def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     return tuple(replace(predictions, method=name) for predictions in learned.predictions)
 
 
-def _estimator(name: str, contest: Contest) -> Forecaster:
+def _estimator(name: str, contest: Contest) -> Predictor:
     settings = contest.settings.model_copy(update={"estimator": name})
     run = run_estimator(settings, contest.input_name, contest.windows)
     shape = settings.filter_settings().noise.shape
     if run.causal:
-        return Forecaster(name, shape, run.belief, run.dynamics)
+        return Predictor(name, shape, run.posterior, run.dynamics)
     kept = run.kept()
-    return Forecaster(name, shape, lambda _: kept, run.dynamics, causal=False)
+    return Predictor(name, shape, lambda _: kept, run.dynamics, causal=False)
 
 
-def _surface(name: str, contest: Contest) -> Forecaster:
-    return surface_forecaster(name, contest.input_name, contest.settings, contest.windows)
+def _surface(name: str, contest: Contest) -> Predictor:
+    return surface_predictor(name, contest.input_name, contest.settings, contest.windows)
 
 
-def _vendor(name: str, contest: Contest) -> Forecaster:
+def _vendor(name: str, contest: Contest) -> Predictor:
     if contest.vendor_track_multiplier is None:
         raise SettingsError(
             f"the method {name} needs a multiplier",
             where="--methods",
             advice="give --vendor-track-multiplier, such as 1.875",
         )
-    return vendor_forecaster(contest.vendor_track_multiplier, contest.settings)
+    return vendor_predictor(contest.vendor_track_multiplier, contest.settings)
 
 
-def _model(name: str, contest: Contest) -> Forecaster:
+def _model(name: str, contest: Contest) -> Predictor:
     if name not in contest.models:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
     causal = name not in contest.learned_from_this
-    return replace(model_forecaster(contest.models[name]), method=name, causal=causal)
+    return replace(model_predictor(contest.models[name]), method=name, causal=causal)

@@ -11,9 +11,9 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.drive import WindowSet
-from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.predictors import Predictor
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 
@@ -28,10 +28,10 @@ class Rival(Generic[UpdateT]):
     """An estimator of slip ratios: how it learns a window, and what it believes now."""
 
     learn: Callable[[_core.InputTrack, _core.Segment], UpdateT]
-    belief: Callable[[], Belief]
+    posterior: Callable[[], Posterior]
 
 
-def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
+def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -> Predictor:
     """`slip-ratio-ekf`: predictions carry the filter's covariance and the noise shape.
 
     Raises:
@@ -44,14 +44,14 @@ def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -
     table.noise = settings.filter_settings().noise.shape
     estimator = _core.SlipRatioFilter(table)
 
-    def belief() -> Belief:
+    def posterior() -> Posterior:
         linear = estimator.linear_estimate()
-        return _belief(np.array(linear.mean), np.array(linear.covariance))
+        return _posterior(np.array(linear.mean), np.array(linear.covariance))
 
-    return _forecaster(name, settings, Rival(estimator.learn, belief), windows)
+    return _forecaster(name, settings, Rival(estimator.learn, posterior), windows)
 
 
-def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
+def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet) -> Predictor:
     """`slip-ratio-smo`: an observer has no covariance, so that predictions carry the noise shape alone.
 
     Raises:
@@ -63,10 +63,10 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
     table.track = settings.vehicle.track
     estimator = _core.SlidingModeObserver(table)
 
-    def belief() -> Belief:
-        return _belief(np.array(estimator.linear_mean()), np.zeros((SIZE, SIZE)))
+    def posterior() -> Posterior:
+        return _posterior(np.array(estimator.linear_mean()), np.zeros((SIZE, SIZE)))
 
-    return _forecaster(name, settings, Rival(estimator.learn, belief), windows)
+    return _forecaster(name, settings, Rival(estimator.learn, posterior), windows)
 
 
 def _refuse_commands(name: str, input_name: str) -> None:
@@ -78,11 +78,11 @@ def _refuse_commands(name: str, input_name: str) -> None:
         )
 
 
-def _belief(mean: np.ndarray, covariance: np.ndarray) -> Belief:
+def _posterior(mean: np.ndarray, covariance: np.ndarray) -> Posterior:
     ones = np.ones(SIZE)
-    return Belief(_core.slip_ratio_model(), mean, covariance, np.ones(3), ones, ones, np.ones(1))
+    return Posterior(_core.slip_ratio_model(), mean, covariance, np.ones(3), ones, ones, np.ones(1))
 
 
-def _forecaster(name: str, settings: Settings, rival: Rival[UpdateT], windows: WindowSet) -> Forecaster:
+def _forecaster(name: str, settings: Settings, rival: Rival[UpdateT], windows: WindowSet) -> Predictor:
     shape = settings.filter_settings().noise.shape
-    return Forecaster(name, shape, CausalPass(rival, windows).belief, False)
+    return Predictor(name, shape, CausalPass(rival, windows).posterior, False)

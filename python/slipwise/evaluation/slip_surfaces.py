@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.drive import WindowSet
 from slipwise.calibration.estimators import estimator_basis, learned_parts
-from slipwise.calibration.forecast import Forecaster
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.predictors import Predictor
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import Settings
 from slipwise.evaluation.window_examples import window_examples
 from slipwise.surfaces import (
@@ -54,7 +54,7 @@ class SurfaceRules:
     noise: _core.MotionNoise  # its pose noise holds beside the surface's own slip noise
 
 
-def surface_forecaster(name: str, input_name: str, settings: Settings, windows: WindowSet) -> Forecaster:
+def surface_predictor(name: str, input_name: str, settings: Settings, windows: WindowSet) -> Predictor:
     """Return a slip surface at work, behind the lag, delay and clock offset that `edd-2` has learned so far.
 
     Raises:
@@ -63,7 +63,7 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     dynamics, offset = learned_parts(settings, input_name)
     basis = settings.model_copy(update={"basis": estimator_basis(settings)}).bases()[0]
     motion = _core.MotionModel(basis, dynamics, offset).with_mount(settings.mount.learn)
-    chain = _core.ModelAverage(
+    actuator = _core.ModelAverage(
         CHAIN_BASIS,
         [_core.named_basis(CHAIN_BASIS)],
         dynamics,
@@ -76,23 +76,23 @@ def surface_forecaster(name: str, input_name: str, settings: Settings, windows: 
     rules = SurfaceRules(name, motion, settings.prior.slip_fraction, shape)
     if name == "surface-gaussian-process":
         require_scikit_learn()
-    return Forecaster(name, shape, SurfacePass(rules, chain, windows).belief, dynamics)
+    return Predictor(name, shape, SurfacePass(rules, actuator, windows).posterior, dynamics)
 
 
-class _ChainLearner:
+class _ActuatorLearner:
     """The filter of the basis that gives lag, delay and offset."""
 
-    def __init__(self, chain: _core.ModelAverage) -> None:
-        self._chain, self._motion = chain, chain.model
+    def __init__(self, actuator: _core.ModelAverage) -> None:
+        self._actuator, self._motion = actuator, actuator.model
 
     def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
         """Learn one window."""
-        return self._chain.learn(inputs, segment)
+        return self._actuator.learn(inputs, segment)
 
-    def belief(self) -> Belief:
+    def posterior(self) -> Posterior:
         """Return what is known now."""
-        state = self._chain.state()
-        return Belief(
+        state = self._actuator.state()
+        return Posterior(
             motion=self._motion,
             mean=np.array(state.estimate.mean),
             covariance=np.array(state.estimate.covariance),
@@ -109,50 +109,50 @@ class SurfacePass:
     At each fit, all examples are made anew from the windows with what is then known of lag, delay and offset.
     """
 
-    def __init__(self, rules: SurfaceRules, chain: _core.ModelAverage, windows: WindowSet) -> None:
-        """`chain` has learned nothing yet; it gives lag, delay and offset, and tells slip from curves."""
+    def __init__(self, rules: SurfaceRules, actuator: _core.ModelAverage, windows: WindowSet) -> None:
+        """`actuator` has learned nothing yet; it gives lag, delay and offset, and tells slip from curves."""
         self._rules, self._windows = rules, windows
-        self._chain = CausalPass(_ChainLearner(chain), windows, self._learn)
+        self._actuator = CausalPass(_ActuatorLearner(actuator), windows, self._learn)
         self._weight = np.zeros(len(windows))
-        self._chain_start = chain.model.slip_size
-        self._reference = chain.model
+        self._actuator_start = actuator.model.slip_size
+        self._reference = actuator.model
         self._regression = SurfaceRegression(rules)
 
-    def belief(self, count: int) -> Belief:
-        """Return the belief after `count` windows.
+    def posterior(self, count: int) -> Posterior:
+        """Return the posterior after `count` windows.
 
         Raises:
             ValueError: more windows than that are learned already, and nothing learned is ever unlearned.
         """
-        return self._joined(self._chain.belief(count))
+        return self._joined(self._actuator.posterior(count))
 
-    def _learn(self, i: int, update: _core.IekfUpdate, chain: Belief) -> None:
-        """Learn window i, unless the filter of the chain left it out as an outlier."""
+    def _learn(self, i: int, update: _core.IekfUpdate, actuator: Posterior) -> None:
+        """Learn window i, unless the filter of the actuator left it out as an outlier."""
         self._weight[i] = update.weight
         if update.weight == 0.0:
             return
         if self._regression.due:
             places = np.flatnonzero(self._weight[: i + 1] > 0.0)
-            self._regression.relearn(self._examples(chain, places))
+            self._regression.relearn(self._examples(actuator, places))
         else:
-            self._regression.learn(self._examples(chain, np.array([i])))
+            self._regression.learn(self._examples(actuator, np.array([i])))
 
-    def _examples(self, chain: Belief, places: NDArray[np.int64]) -> SlipExamples | None:
-        return window_examples((self._reference, chain.mean), self._windows, places)
+    def _examples(self, actuator: Posterior, places: NDArray[np.int64]) -> SlipExamples | None:
+        return window_examples((self._reference, actuator.mean), self._windows, places)
 
-    def _joined(self, chain: Belief) -> Belief:
-        """Put the surface before the chain's parameters; the two are taken as independent."""
-        slip, start = self._regression.slip, self._chain_start
+    def _joined(self, actuator: Posterior) -> Posterior:
+        """Put the surface before the actuator's parameters; the two are taken as independent."""
+        slip, start = self._regression.slip, self._actuator_start
         size = len(slip.alpha)
         covariance = np.zeros((self._rules.motion.size, self._rules.motion.size))
         covariance[:size, :size] = slip.covariance
-        covariance[size:, size:] = chain.covariance[start:, start:]
-        prior_std = np.concatenate((slip.prior_std, chain.prior_std[start:]))
+        covariance[size:, size:] = actuator.covariance[start:, start:]
+        prior_std = np.concatenate((slip.prior_std, actuator.prior_std[start:]))
         variance = np.square(slip.noise_std) + np.square(slip.projection_rms)
         noise = self._slip_noise(variance * self._windows.length) if self._regression.fitted else None
-        return Belief(
+        return Posterior(
             motion=self._rules.motion,
-            mean=np.concatenate((slip.alpha, chain.mean[start:])),
+            mean=np.concatenate((slip.alpha, actuator.mean[start:])),
             covariance=covariance,
             noise_scale=np.ones(3),
             prior_std=prior_std,

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.calibration.drive import WindowSet
+from slipwise.calibration.prepared_run import WindowSet
 from slipwise.surfaces import SlipExamples
 
 Floats = NDArray[np.float64]

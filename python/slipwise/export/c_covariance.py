@@ -37,7 +37,7 @@ def shifts(model: Model) -> str:
     """Return the lines that add `by` to the parameters.
 
     Raises:
-        ModelError: the command chain has a parameter that is not known.
+        ModelError: the actuator model has a parameter that is not known.
     """
     lines = []
     for i, parameter in enumerate(model.content.parameters):
@@ -46,7 +46,7 @@ def shifts(model: Model) -> str:
         elif parameter.name in _SHIFTED:
             lines.append(f"    {_SHIFTED[parameter.name].format(by=f'by[{i}]')};")
         else:
-            raise ModelError(f"the command chain has {parameter.name}, which cannot be exported")
+            raise ModelError(f"the actuator model has {parameter.name}, which cannot be exported")
     return "\n".join(lines)
 
 
@@ -81,22 +81,22 @@ def noise(model: Model) -> str:
 
 
 def covariance(model: Model) -> str:
-    """Return the roots of the parameters' covariance, how slip wanders, the tails, and what uses them."""
+    """Return the roots of the parameters' covariance, the slip disturbance, the tails, and what uses them."""
     rows = _roots(model)
     seconds = sorted(model.content.noise.tails) or [0.0]
     at = [(s, tail_at(model, s)) for s in seconds]
     tails = [(s, math.log(tail.growth), math.log(tail.dof)) for s, tail in at]
-    wander = _wandering(model)
+    disturbance = _disturbed(model)
     return _filled(
         "covariance_template.h",
         {
             "ROOT_COUNT": str(len(rows)),
             "ROOTS": _rows(rows),
-            "WANDERING_COUNT": str(len(wander.places)),
-            "WANDERING": ", ".join(map(str, wander.places)) or "0",
-            "TIME_COUNT": str(len(wander.times)),
-            "TIMES": _numbers(wander.times) or _numbers([0.0]),
-            "VARIANCES": _rows(wander.variances.T.tolist()),
+            "DISTURBED_COUNT": str(len(disturbance.places)),
+            "DISTURBED": ", ".join(map(str, disturbance.places)) or "0",
+            "TIME_COUNT": str(len(disturbance.times)),
+            "TIMES": _numbers(disturbance.times) or _numbers([0.0]),
+            "VARIANCES": _rows(disturbance.variances.T.tolist()),
             "TAIL_COUNT": str(len(tails)),
             "TAILS": ", ".join(f"{{{_numbers(row)}}}" for row in tails),
         },
@@ -104,26 +104,26 @@ def covariance(model: Model) -> str:
 
 
 @dataclass(frozen=True, eq=False)
-class _Wandering:
-    """Slip parameters that wander, and how far by each time constant."""
+class _Disturbed:
+    """Slip parameters that are disturbed, and how far by each time constant."""
 
     places: list[int]
     times: list[float]  # s
     variances: NDArray[np.float64]  # [times, places]
 
 
-def _wandering(model: Model) -> _Wandering:
-    terms = _core.wandering_terms(model.motion, model.prior_std)
-    law = model.wander
-    times = sorted({wander.time_constant for wander in law.candidates})
+def _disturbed(model: Model) -> _Disturbed:
+    terms = _core.disturbed_terms(model.motion, model.prior_std)
+    law = model.disturbance
+    times = sorted({disturbance.time_constant for disturbance in law.candidates})
     variances = np.zeros((len(times), len(terms.places)))
-    for wander, weight in zip(law.candidates, law.weights, strict=True):
-        variances[times.index(wander.time_constant)] += weight * terms.variances(wander)
-    wanders, lasts = variances.any(axis=0), variances.any(axis=1)
-    return _Wandering(
-        np.array(terms.places, dtype=np.int64)[wanders].tolist(),
+    for disturbance, weight in zip(law.candidates, law.weights, strict=True):
+        variances[times.index(disturbance.time_constant)] += weight * terms.variances(disturbance)
+    disturbed, lasts = variances.any(axis=0), variances.any(axis=1)
+    return _Disturbed(
+        np.array(terms.places, dtype=np.int64)[disturbed].tolist(),
         np.array(times)[lasts].tolist(),
-        variances[np.ix_(lasts, wanders)],
+        variances[np.ix_(lasts, disturbed)],
     )
 
 

@@ -6,9 +6,9 @@ from __future__ import annotations
 from importlib.resources import files
 
 from slipwise import _core
+from slipwise.export.actuator import actuator_of
 from slipwise.export.c_covariance import covariance, noise, shifts
 from slipwise.export.c_limits import cursor, how_known, limits
-from slipwise.export.chain import chain_of
 from slipwise.export.origin import one_line
 from slipwise.models.model import Model
 
@@ -40,7 +40,7 @@ def c_header(model: Model, origin: list[str]) -> str:
         origin: lines of the comment on top.
 
     Raises:
-        ModelError: the command chain has a part that is not known.
+        ModelError: the actuator model has a part that is not known.
     """
     model = model.body
     template = files("slipwise.export").joinpath(_TEMPLATE).read_text(encoding="utf-8")
@@ -69,9 +69,9 @@ def _define(name: str, value: float, comment: str) -> str:
 
 
 def _constants(model: Model) -> str:
-    chain = chain_of(model)
+    actuator = actuator_of(model)
     named: list[tuple[str, float, str, str]] = []
-    for place, what, channel in (("V", "speed", chain.v), ("OMEGA", "yaw rate", chain.omega)):
+    for place, what, channel in (("V", "speed", actuator.v), ("OMEGA", "yaw rate", actuator.omega)):
         named += [
             (f"DELAY_{place}", channel.delay.value, f"[s] transport delay of the {what}", "delay"),
             (f"GAIN_{place}", channel.gain.value, f"drive over input, of the {what}", "gain"),
@@ -95,7 +95,7 @@ def _constants(model: Model) -> str:
         for name, value, what, part in named
     ]
     offset = "[s] poses are stamped this much later than the inputs" + how.get("clock_offset", "")
-    lines.append(_define("CLOCK_OFFSET", chain.clock_offset.value, offset))
+    lines.append(_define("CLOCK_OFFSET", actuator.clock_offset.value, offset))
     slip = model.content.parameters[: model.motion.slip_size]
     lines += [_define(f"P{i}", p.value, f"{p.name} [{p.unit}]{how[p.name]}") for i, p in enumerate(slip)]
     return "\n".join(lines)

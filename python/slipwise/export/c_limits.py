@@ -11,23 +11,23 @@ from slipwise.models.model import Model
 from slipwise.models.parameter_table import physical_parameters
 from slipwise.number_text import estimate_texts
 
-_NONE = _core.LaneLimits()
+_NONE = _core.AxisLimits()
 
 
 def limits(model: Model) -> str:
     """Return the limits as constants, for the header itself and for the C++ library."""
     of_drive = model.limits or _core.CommandLimits(_NONE, _NONE, _NONE, 1.0, 1.0, 1.0)
-    lanes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
+    axes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
     lines = [
         "/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */",
         *_said(model),
     ]
-    lines += [f"#define SLIPWISE_LIMITS_{name} {_lane(lane)}" for name, lane in lanes.items()]
+    lines += [f"#define SLIPWISE_LIMITS_{name} {_axis(axis)}" for name, axis in axes.items()]
     lines += [
         f"#define SLIPWISE_LIMITS_TRACK SLIPWISE_R({of_drive.track!r})  /* [m] between the sides */",
         f"#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R({of_drive.gain_v!r})  /* of what the sides are asked */",
         f"#define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R({of_drive.gain_omega!r})",
-        f"#define SLIPWISE_LIMITS_SIDES {int(_lane(of_drive.side) != _lane(_NONE))}",
+        f"#define SLIPWISE_LIMITS_SIDES {int(_axis(of_drive.side) != _axis(_NONE))}",
     ]
     return "\n".join(lines)
 
@@ -57,6 +57,6 @@ def cursor(model: Model) -> str:
     return text.replace("@PIECE@", repr(_core.RAMP_PIECE))
 
 
-def _lane(lane: _core.LaneLimits) -> str:
-    values = (lane.dead_band, lane.top, lane.acceleration, lane.braking)
+def _axis(axis: _core.AxisLimits) -> str:
+    values = (axis.dead_band, axis.top, axis.acceleration, axis.braking)
     return ", ".join("INFINITY" if math.isinf(value) else repr(value) for value in values)

@@ -4,14 +4,14 @@ static const slipwise_real slipwise_roots[SLIPWISE_SLOTS(SLIPWISE_ROOTS)]
                                          [SLIPWISE_SLOTS(SLIPWISE_PARAMETER_COUNT)] = {
 @ROOTS@
 };
-/* Slip parameters that wander about what was learned: which, and the variance that a process of each time constant [s]
- * gives them. Their mean over a prediction has another normal deviate each. */
-#define SLIPWISE_WANDERING @WANDERING_COUNT@
-#define SLIPWISE_WANDER_TIMES @TIME_COUNT@
-static const int slipwise_wandering[SLIPWISE_SLOTS(SLIPWISE_WANDERING)] = {@WANDERING@};
-static const slipwise_real slipwise_wander_times[SLIPWISE_SLOTS(SLIPWISE_WANDER_TIMES)] = {@TIMES@};
-static const slipwise_real slipwise_wander_variance[SLIPWISE_SLOTS(SLIPWISE_WANDERING)]
-                                                   [SLIPWISE_SLOTS(SLIPWISE_WANDER_TIMES)] = {
+/* Slip parameters that a disturbance moves about what was learned: which, and the variance that a process of each time
+ * constant [s] gives them. Their mean over a prediction has another normal deviate each. */
+#define SLIPWISE_DISTURBED @DISTURBED_COUNT@
+#define SLIPWISE_DISTURBANCE_TIMES @TIME_COUNT@
+static const int slipwise_disturbed[SLIPWISE_SLOTS(SLIPWISE_DISTURBED)] = {@DISTURBED@};
+static const slipwise_real slipwise_disturbance_times[SLIPWISE_SLOTS(SLIPWISE_DISTURBANCE_TIMES)] = {@TIMES@};
+static const slipwise_real slipwise_disturbance_variance[SLIPWISE_SLOTS(SLIPWISE_DISTURBED)]
+                                                   [SLIPWISE_SLOTS(SLIPWISE_DISTURBANCE_TIMES)] = {
 @VARIANCES@
 };
 /* What held-out predictions of these horizons [s] needed: ln of the growth of the covariance, and of the degrees of
@@ -39,14 +39,14 @@ static inline void slipwise_tail(slipwise_real horizon, slipwise_real *growth, s
 }
 
 /* Standard deviation of the mean of such a parameter over a prediction of this horizon [s]. */
-static inline slipwise_real slipwise_wander_std(int place, slipwise_real horizon) {
+static inline slipwise_real slipwise_disturbance_std(int place, slipwise_real horizon) {
   slipwise_real variance = 0;
   int i;
-  for (i = 0; i < SLIPWISE_WANDER_TIMES; ++i) {
-    const slipwise_real s = horizon / slipwise_wander_times[i];
+  for (i = 0; i < SLIPWISE_DISTURBANCE_TIMES; ++i) {
+    const slipwise_real s = horizon / slipwise_disturbance_times[i];
     const slipwise_real mean = s < SLIPWISE_SMALL_SPAN ? 1 - s / 3 * (1 - s / 4 * (1 - s / 5))
                                                        : 2 / s * (1 + SLIPWISE_MATH(expm1)(-s) / s);
-    variance += mean * slipwise_wander_variance[place][i];
+    variance += mean * slipwise_disturbance_variance[place][i];
   }
   return SLIPWISE_MATH(sqrt)(variance);
 }
@@ -61,9 +61,9 @@ static inline void slipwise_add_square(slipwise_real sum[3][3], const slipwise_r
   }
 }
 
-/* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, slip that
- * wanders about them, slip noise, the noise of two measured poses, and growth. It costs 2 * (SLIPWISE_ROOTS +
- * SLIPWISE_WANDERING) + 1 predictions. */
+/* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, the slip
+ * disturbance about them, slip noise, the noise of two measured poses, and growth. It costs 2 * (SLIPWISE_ROOTS +
+ * SLIPWISE_DISTURBED) + 1 predictions. */
 static inline int slipwise_predict_covariance(const slipwise_commands *commands, const slipwise_window *window,
                                               slipwise_pose *pose, slipwise_drive *drive,
                                               slipwise_real covariance[3][3]) {
@@ -77,7 +77,7 @@ static inline int slipwise_predict_covariance(const slipwise_commands *commands,
   if (status != SLIPWISE_OK) {
     return status;
   }
-  for (root = 0; root < SLIPWISE_ROOTS + SLIPWISE_WANDERING; ++root) { /* derivatives along the roots: central differences */
+  for (root = 0; root < SLIPWISE_ROOTS + SLIPWISE_DISTURBED; ++root) { /* derivatives along the roots: central differences */
     slipwise_real change[3] = {0, 0, 0};
     for (side = -1; side <= 1; side += 2) {
       slipwise_walk shifted;
@@ -87,8 +87,8 @@ static inline int slipwise_predict_covariance(const slipwise_commands *commands,
       }
       if (root >= SLIPWISE_ROOTS) {
         const int place = root - SLIPWISE_ROOTS;
-        by[slipwise_wandering[place]] = (slipwise_real)side * SLIPWISE_DIFFERENCE *
-                                        slipwise_wander_std(place, window->end - window->start);
+        by[slipwise_disturbed[place]] = (slipwise_real)side * SLIPWISE_DIFFERENCE *
+                                        slipwise_disturbance_std(place, window->end - window->start);
       }
       other = slipwise_model_shifted(by);
       slipwise_run(&other, commands, window, 0, &shifted);

@@ -41,7 +41,7 @@ typedef float slipwise_real;
 @CONSTANTS@
 /* The range that the log held; beyond it the model is a guess. */
 @RANGE@
-/* The same model for the C++ library: terms of the slip basis, parts of the chain, and the parameter vector. */
+/* The same model for the C++ library: terms of the slip basis, parts of the actuator, and the parameter vector. */
 @LIBRARY@
 @LIMITS@
 #define SLIPWISE_LONGEST_STEP SLIPWISE_R(0.1)  /* [s] a lagging drive is averaged over no more than this */

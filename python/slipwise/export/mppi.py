@@ -6,8 +6,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from slipwise.errors import ModelError
+from slipwise.export.actuator import Actuator, actuator_of
 from slipwise.export.body_limits import Gains, body_limits, slip_gains
-from slipwise.export.chain import Chain, chain_of
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.export.mppi_limits import Bound, dead_bands, limit_notes, with_limits
 from slipwise.export.options import ExportOptions
@@ -35,17 +35,17 @@ def mppi(model: Model, options: ExportOptions) -> ParameterFile:
             "MPPI plans commands, and this model was not learned from commands",
             advice="calibrate with `--input command`",
         )
-    numbers, chain, limits = LearnedNumbers(model.body), chain_of(model), model.content.limits
+    numbers, actuator, limits = LearnedNumbers(model.body), actuator_of(model), model.content.limits
     slip = slip_gains(numbers, body_twists(model))
-    behind = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
+    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     before = (1.0, 1.0) if limits is None else (limits.gain_v, limits.gain_omega)
     gains = (behind[0] * before[0], behind[1] * before[1])
     bounds = _speeds(model, gains)
     if options.nav2 == "kilted":
-        bounds |= _accelerations(chain, model, gains)
+        bounds |= _accelerations(actuator, model, gains)
     entries = [
         *_kind(options),
-        *(_delays(chain, numbers) if options.nav2 == "rolling" else ()),
+        *(_delays(actuator, numbers) if options.nav2 == "rolling" else ()),
         *with_limits(bounds, body_limits(limits, behind, numbers), numbers),
         *_turning(model, options, numbers),
         *dead_bands(limits, numbers),
@@ -94,7 +94,7 @@ def _speeds(model: Model, gains: Gains) -> dict[str, list[Bound]]:
     }
 
 
-def _delays(chain: Chain, numbers: LearnedNumbers) -> list[Entry | Kept]:
+def _delays(actuator: Actuator, numbers: LearnedNumbers) -> list[Entry | Kept]:
     return [
         stated(
             (f"model_delay_{name}",),
@@ -104,14 +104,14 @@ def _delays(chain: Chain, numbers: LearnedNumbers) -> list[Entry | Kept]:
             "the same length loses the same distance",
             numbers,
         )
-        for name, channel in (("vx", chain.v), ("wz", chain.omega))
+        for name, channel in (("vx", actuator.v), ("wz", actuator.omega))
     ]
 
 
-def _accelerations(chain: Chain, model: Model, gains: Gains) -> dict[str, list[Bound]]:
+def _accelerations(actuator: Actuator, model: Model, gains: Gains) -> dict[str, list[Bound]]:
     """Return the ramps to the fastest speed that lose as much distance as the robot does by being late."""
     span = model.content.range
-    late_v, late_omega = chain.v.mean_delay, chain.omega.mean_delay
+    late_v, late_omega = actuator.v.mean_delay, actuator.omega.mean_delay
     if not (late_v.value > 0.0 and late_omega.value > 0.0):
         return {}
     ax = gains[0] * (max(map(abs, span.speed)) / 2.0) / late_v

@@ -18,7 +18,7 @@ from slipwise.prediction import tail_at
 Floats = NDArray[np.float64]
 
 REFERENCE_SHARE = 0.5  # of the fastest speed and yaw rate that the log holds
-_SETTLED = 16384.0  # s after a command; no chain is slower
+_SETTLED = 16384.0  # s after a command; no actuator is slower
 _BRIEF = 2.0**-10  # s; the robot hardly turns in it
 _NO_NOISE = (0.0, 0.0, 0.0)
 
@@ -63,7 +63,7 @@ def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Fl
     """Return white noise of the slip rates [3] (m^2/s, m^2/s, rad^2/s) that is as large after `seconds`.
 
     What is white already keeps its density. What lasts, the constant slip, the parameters' error and the slip
-    that wanders about them, has a variance of c t^2 over that time, and counts as density c * seconds.
+    that disturbed about them, has a variance of c t^2 over that time, and counts as density c * seconds.
     """
     model, noise = model.body, model.noise
     white = _core.MotionNoise(noise.psd_time, noise.psd_motion, _NO_NOISE, 0.0, 0.0)

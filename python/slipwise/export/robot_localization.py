@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from slipwise.export.actuator import actuator_of
 from slipwise.export.body_limits import body_limits, slip_gains, strictest
-from slipwise.export.chain import chain_of
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.export.options import ExportOptions
 from slipwise.export.parameter_file import Entry, Kept, ParameterFile
@@ -116,17 +116,17 @@ def _axis(
 
 def _control(model: Model) -> list[Entry | Kept]:
     """Return the control term of the axes whose lag is known."""
-    numbers, chain, span = LearnedNumbers(model.body), chain_of(model), model.content.range
+    numbers, actuator, span = LearnedNumbers(model.body), actuator_of(model), model.content.range
     slip = slip_gains(numbers, body_twists(model))
-    behind = (chain.v.gain * slip[0], chain.omega.gain * slip[1])
+    behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     limits = body_limits(model.content.limits, behind, numbers)
-    v = _axis(chain.v.mean_lag, span.speed, (limits.acceleration_v, limits.braking_v), numbers)
+    v = _axis(actuator.v.mean_lag, span.speed, (limits.acceleration_v, limits.braking_v), numbers)
     omega = _axis(
-        chain.omega.mean_lag, span.yaw_rate, (limits.acceleration_omega, limits.braking_omega), numbers
+        actuator.omega.mean_lag, span.yaw_rate, (limits.acceleration_omega, limits.braking_omega), numbers
     )
     if v.why and omega.why:
         return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]
-    delays = f"{numbers.text(chain.v.delay)} s and {numbers.text(chain.omega.delay)} s"
+    delays = f"{numbers.text(actuator.v.delay)} s and {numbers.text(actuator.omega.delay)} s"
     unknown = [
         f"not the {name}: {axis.why}" for name, axis in (("speed", v), ("yaw rate", omega)) if axis.why
     ]

@@ -9,10 +9,10 @@ import numpy as np
 
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
-from slipwise.calibration.drive import prepare_drive
 from slipwise.calibration.identifiability import drives_for
 from slipwise.calibration.learned_log import learn_log
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
 from slipwise.logs.contradiction import Contradiction
@@ -62,14 +62,14 @@ def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnabili
 
 def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     try:
-        windows = learning_windows(prepare_drive(log, input_name), input_name, settings)
+        windows = learning_windows(prepare_run(log, input_name), input_name, settings)
         refuse_empty(windows, log)
     except LogError as nothing:
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
-    belief = learn_log(windows.drive, settings, ()).slip
+    posterior = learn_log(windows.drive, settings, ()).slip
     parameters = tuple(
-        _parameter((info.name, info.unit), belief, i) for i, info in enumerate(belief.motion.parameters)
+        _parameter((info.name, info.unit), posterior, i) for i, info in enumerate(posterior.motion.parameters)
     )
     unknown = tuple(parameter.name for parameter in parameters if not parameter.determined)
     return Learnability(
@@ -83,10 +83,10 @@ def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     )
 
 
-def _parameter(named: tuple[str, str], belief: Belief, i: int) -> LearnableParameter:
+def _parameter(named: tuple[str, str], posterior: Posterior, i: int) -> LearnableParameter:
     return LearnableParameter(
         *named,
-        float(belief.mean[i]),
-        float(np.sqrt(belief.covariance[i, i])),
-        float(belief.variance_ratio[i]),
+        float(posterior.mean[i]),
+        float(np.sqrt(posterior.covariance[i, i])),
+        float(posterior.variance_ratio[i]),
     )

@@ -6,13 +6,13 @@ from __future__ import annotations
 import math
 
 from slipwise import _core
-from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
 
-LANES = ("speed", "yaw_rate", "side")
+AXES = ("speed", "yaw_rate", "side")
 KINDS = ("dead_band", "top", "acceleration", "braking")
-_LANE_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
-_CORE_LANES = dict(
-    zip(LANES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
+_AXIS_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
+_CORE_AXES = dict(
+    zip(AXES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
 )
 _CORE_KINDS = dict(
     zip(
@@ -30,16 +30,16 @@ _CORE_KINDS = dict(
 
 def limits_section(search: _core.LimitSearch) -> LimitsSection:
     """Return what a search found as the section of a model file."""
-    found = {(limit.lane, limit.kind): limit for limit in search.found}
+    found = {(limit.axis, limit.kind): limit for limit in search.found}
 
-    def learned(lane: str, kind: str) -> LearnedLimit | None:
-        limit = found.get((_CORE_LANES[lane], _CORE_KINDS[kind]))
+    def learned(axis: str, kind: str) -> LearnedLimit | None:
+        limit = found.get((_CORE_AXES[axis], _CORE_KINDS[kind]))
         return None if limit is None else LearnedLimit(value=limit.value, std=limit.std)
 
-    lanes = {lane: LaneLimitsSection(**{kind: learned(lane, kind) for kind in KINDS}) for lane in LANES}
+    axes = {axis: AxisLimitsSection(**{kind: learned(axis, kind) for kind in KINDS}) for axis in AXES}
     limits = search.limits
     return LimitsSection(
-        **lanes,
+        **axes,
         track=limits.track,
         track_std=search.track_std,
         gain_v=limits.gain_v,
@@ -50,28 +50,28 @@ def limits_section(search: _core.LimitSearch) -> LimitsSection:
 def core_limits(section: LimitsSection) -> _core.CommandLimits:
     """Return the limits for the core."""
 
-    def lane(name: str) -> _core.LaneLimits:
-        limits: LaneLimitsSection = getattr(section, name)
+    def axis(name: str) -> _core.AxisLimits:
+        limits: AxisLimitsSection = getattr(section, name)
         values = {kind: getattr(limits, kind) for kind in KINDS}
         absent = {"dead_band": 0.0}
-        return _core.LaneLimits(
+        return _core.AxisLimits(
             **{k: absent.get(k, math.inf) if v is None else v.value for k, v in values.items()}
         )
 
     return _core.CommandLimits(
-        lane("speed"), lane("yaw_rate"), lane("side"), section.track, section.gain_v, section.gain_omega
+        axis("speed"), axis("yaw_rate"), axis("side"), section.track, section.gain_v, section.gain_omega
     )
 
 
 def limit_rows(section: LimitsSection) -> list[tuple[str, float, float, str]]:
     """Return name, value, standard deviation and unit of every limit."""
     rows = []
-    for lane in LANES:
+    for axis in AXES:
         for kind in KINDS:
-            limit: LearnedLimit | None = getattr(getattr(section, lane), kind)
+            limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
             if limit is not None:
-                unit = _LANE_UNITS[lane] + ("^2" if kind in ("acceleration", "braking") else "")
-                rows.append((f"limits.{lane}.{kind}", limit.value, limit.std, unit))
+                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("acceleration", "braking") else "")
+                rows.append((f"limits.{axis}.{kind}", limit.value, limit.std, unit))
     if any(name.startswith("limits.side") for name, *_ in rows):
         rows.append(("limits.track", section.track, section.track_std, "m"))
     return rows

@@ -47,7 +47,7 @@ class Model:
         stated = [parameter.name for parameter in self.content.parameters]
         if names != stated:
             raise ModelError(
-                f"the parameters are {', '.join(stated)} where slip and chain have {', '.join(names)}",
+                f"the parameters are {', '.join(stated)} where slip and actuator have {', '.join(names)}",
                 advice="calibrate again, or restore the file",
             )
         for info, parameter in zip(self.motion.parameters, self.content.parameters, strict=True):
@@ -160,12 +160,12 @@ class Model:
 
     @cached_property
     def limits(self) -> _core.CommandLimits | None:
-        """The limits in front of the chain, where some were learned."""
+        """The limits in front of the actuator, where some were learned."""
         section = self.content.limits
         return None if section is None else core_limits(section)
 
     def driven(self, inputs: _core.InputTrack) -> _core.InputTrack:
-        """Return what reaches the chain of these inputs: what the drive's limits leave of them."""
+        """Return what reaches the actuator of these inputs: what the drive's limits leave of them."""
         if self.limits is None:
             return inputs
         return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
@@ -176,8 +176,8 @@ class Model:
         """Return the same where the drive did `measured` at `time` [s], in the stamps of the inputs."""
         if self.limits is None:
             return inputs
-        chain = self.motion.chain(self.mean)
-        return _core.limited_track_from(inputs, self.limits, chain, time, measured)
+        actuator = self.motion.actuator(self.mean)
+        return _core.limited_track_from(inputs, self.limits, actuator, time, measured)
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -204,28 +204,30 @@ class Model:
         return np.array([parameter.prior_std for parameter in self.content.parameters], dtype=np.float64)
 
     @cached_property
-    def belief(self) -> _core.MotionPosterior:
+    def posterior(self) -> _core.MotionPosterior:
         """What the core predicts from: parameters, how sure they are, and the noise."""
         estimate = _core.Estimate(self.mean, self.covariance)
         scale = np.array(self.content.noise.scale)
         return _core.MotionPosterior(self.motion, estimate, self.prior_std, self.noise, scale)
 
     @cached_property
-    def wander(self) -> _core.WanderLaw:
-        """How slip wanders about the parameters; without any candidate where that was not learned."""
+    def disturbance(self) -> _core.DisturbanceModel:
+        """The slip disturbance about the parameters; without any candidate where that was not learned."""
         coloured = self.content.coloured
         candidates = [] if coloured is None else coloured.candidates
-        return _core.WanderLaw(
-            [_core.SlipWander(each.drift, each.turn, each.time_constant) for each in candidates],
+        return _core.DisturbanceModel(
+            [_core.SlipDisturbance(each.drift, each.turn, each.time_constant) for each in candidates],
             np.array([each.weight for each in candidates], dtype=np.float64),
         )
 
     def covariance_over(self, seconds: float) -> NDArray[np.float64]:
-        """Covariance of the parameters' mean over `seconds`, slip that wanders included.
+        """Covariance of the parameters' mean over `seconds`, the slip disturbance included.
 
         Nothing recent is known of that slip (derivations.md, section 18). [parameters, parameters].
         """
-        covariance = _core.covariance_over(self.motion, self.covariance, self.wander, self.prior_std, seconds)
+        covariance = _core.covariance_over(
+            self.motion, self.covariance, self.disturbance, self.prior_std, seconds
+        )
         return np.asarray(covariance, dtype=np.float64)
 
     def save(self, path: str | Path) -> Path:

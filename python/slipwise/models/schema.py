@@ -76,8 +76,8 @@ class Noise(_Section):
     tails: dict[NotNegative, Tail] = {}  # by horizon [s]
 
 
-class Wander(_Section):
-    """One guess of how slip wanders: first-order Gauss-Markov processes of one time constant."""
+class DisturbanceCandidate(_Section):
+    """One guess of the slip disturbance: first-order Gauss-Markov processes of one time constant."""
 
     drift: NotNegative  # of the forward and sideways terms, as a fraction of their prior std [-]
     turn: NotNegative  # of the angular terms [-]
@@ -85,14 +85,14 @@ class Wander(_Section):
     weight: NotNegative  # how likely this guess is; all together 1
 
 
-class Coloured(_Section):
-    """How slip wanders about the parameters, beside the noise."""
+class SlipDisturbanceSection(_Section):
+    """The slip disturbance about the parameters, beside the noise."""
 
     window: Positive  # length of the windows that say how [s]
-    candidates: Annotated[list[Wander], Field(min_length=1)]
+    candidates: Annotated[list[DisturbanceCandidate], Field(min_length=1)]
 
     @model_validator(mode="after")
-    def _weights_are_shares(self) -> Coloured:
+    def _weights_are_shares(self) -> SlipDisturbanceSection:
         total = sum(candidate.weight for candidate in self.candidates)
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"the weights of the candidates must sum to 1, not {total:.6g}")
@@ -164,8 +164,8 @@ class LearnedLimit(_Section):
     std: NotNegative
 
 
-class LaneLimitsSection(_Section):
-    """Limits of one lane; what the log did not show is absent, and not limited."""
+class AxisLimitsSection(_Section):
+    """Limits of one axis; what the log did not show is absent, and not limited."""
 
     dead_band: LearnedLimit | None = None  # what is slower gives zero, the rest passes as it is
     top: LearnedLimit | None = None  # no faster
@@ -176,9 +176,9 @@ class LaneLimitsSection(_Section):
 class LimitsSection(_Section):
     """Limits in front of delay and lag: of the commands, and then of each side's speed, v -+ w track / 2."""
 
-    speed: LaneLimitsSection
-    yaw_rate: LaneLimitsSection
-    side: LaneLimitsSection
+    speed: AxisLimitsSection
+    yaw_rate: AxisLimitsSection
+    side: AxisLimitsSection
     track: Positive  # between the sides [m]; without limits of the sides it has no effect, nor have the gains
     track_std: NotNegative
     gain_v: Positive  # of what is asked of the sides over the limited command [-]
@@ -200,7 +200,9 @@ class ModelFile(_Section):
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
-    coloured: Coloured | None = None  # slip that wanders about the parameters; None: it was not looked for
+    coloured: SlipDisturbanceSection | None = (
+        None  # the slip disturbance about the parameters; None: it was not looked for
+    )
     range: Range
     weights: dict[str, NotNegative] = {}
     provenance: Provenance

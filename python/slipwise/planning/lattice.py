@@ -164,9 +164,9 @@ def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _c
         raise SettingsError(str(problem), where="lattice options") from problem
 
 
-def _driving(speed: float) -> _core.DriveStart:
+def _driving(speed: float) -> _core.ActuatorState:
     straight = _core.BodyTwist(speed, 0.0, 0.0)
-    return _core.DriveStart(straight, straight, None)
+    return _core.ActuatorState(straight, straight, None)
 
 
 def _shortest(

@@ -88,10 +88,10 @@ class DriveState:
         if not all(map(math.isfinite, (*self.drive, *self.told, *(self.fast or ())))):
             raise SettingsError("the speeds at the start are not finite", advice="such as drive=(0.5, 0.0)")
 
-    def to_core(self) -> _core.DriveStart:
+    def to_core(self) -> _core.ActuatorState:
         """Return the state as the core takes it."""
         fast = None if self.fast is None else _twist(self.fast)
-        return _core.DriveStart(_twist(self.drive), _twist(self.told), fast)
+        return _core.ActuatorState(_twist(self.drive), _twist(self.told), fast)
 
 
 def _twist(values: tuple[float, float]) -> _core.BodyTwist:

@@ -45,8 +45,8 @@ def vendor_motion(multiplier: float) -> Motion:
 def learned_motions(model: Model, *, samples: int = 0, seed: int = 1, seconds: float = 2.8) -> list[Motion]:
     """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
 
-    Slip that wanders is drawn as its mean over `seconds`, by default the controller's horizon. All have the
-    limits of the drive that were learned.
+    The slip disturbance is drawn as its mean over `seconds`, by default the controller's horizon. All have
+    the limits of the drive that were learned.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
     drawn = rng.multivariate_normal(model.mean, model.covariance_over(seconds), size=samples, method="eigh")

@@ -56,7 +56,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     level: str | None = None,
     device: str = "cpu",
 ) -> Rollouts:
-    """Roll out `commands` through `model`: limits, command chain, slip of any basis, exact steps.
+    """Roll out `commands` through `model`: limits, actuator model, slip of any basis, exact steps.
 
     Args:
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
@@ -148,7 +148,7 @@ def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: fl
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
     scale = np.array(model.content.noise.scale)
     growth = tail_at(model, horizon).growth
-    spread = (model.covariance, model.noise, scale, growth, model.wander, model.prior_std)
+    spread = (model.covariance, model.noise, scale, growth, model.disturbance, model.prior_std)
     return _core.UncertainModel(model.motion, model.mean, *spread, dt, *gravity, model.limits)
 
 

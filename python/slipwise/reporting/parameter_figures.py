@@ -101,9 +101,9 @@ def _order(parameter: Parameter) -> tuple[bool, float]:
 
 def _chosen(known: dict[str, Parameter], names: tuple[str, ...], slip: list[str]) -> list[str]:
     """Choose the slip parameters that explain most, and those of lag, delay and clock."""
-    chain = [name for name in names if name in known and name not in slip]
+    actuator = [name for name in names if name in known and name not in slip]
     slip = sorted((name for name in names if name in slip), key=lambda name: _order(known[name]))
-    return slip[: max(_MOST_PARAMETERS - len(chain), 1)] + chain[:_MOST_PARAMETERS]
+    return slip[: max(_MOST_PARAMETERS - len(actuator), 1)] + actuator[:_MOST_PARAMETERS]
 
 
 def _figure(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A robot whose command chain, clocks, slip, noise and pose sensor are known, to be learned from its log."""
+"""A robot whose actuator model, clocks, slip, noise and pose sensor are known, to be learned from its log."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NONE = _core.Basis("none", [], [], [])
 
 @dataclass(frozen=True)
 class KnownRobot:
-    """What lies between commands and measured poses. It is simulated without the core's command chain."""
+    """What lies between commands and measured poses. It is simulated without the core's actuator model."""
 
     lag: Pair = (0.3, 0.3)  # s
     delay: Pair = (0.1, 0.1)  # s

@@ -71,7 +71,7 @@ def scaled_svd(design: Floats, prior_std: Floats) -> tuple[Floats, Floats]:
 
 
 def undetermined(basis: _core.Basis, examples: SlipExamples) -> list[str]:
-    """What the drives of the examples do not determine, such as 'lon: V and V^2 are not told apart'."""
+    """What the drives of the examples do not determine, such as 'lon: V and V^2 cannot be distinguished'."""
     said = []
     for name, design, terms in zip(
         CHANNELS, channel_designs(basis, examples.v, examples.omega), channel_terms(basis), strict=True

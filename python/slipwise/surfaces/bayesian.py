@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class BayesianOptions:
-    """The belief before any example, and how many are remembered."""
+    """The posterior before any example, and how many are remembered."""
 
     reference: tuple[float, float] | None = None  # usual V [m/s], omega [rad/s]; None: from the fit
     slip_fraction: float = 0.3  # standard deviation of a term's slip as a fraction of the motion

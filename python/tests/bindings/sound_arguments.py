@@ -33,24 +33,24 @@ def _estimate() -> _core.Estimate:
     return _core.Estimate(np.full(SIZE, 0.01), 0.01 * np.eye(SIZE))
 
 
-def _law() -> _core.WanderLaw:
-    return _core.WanderLaw([_core.SlipWander(0.1, 0.1, 5.0)], np.ones(1))
+def _law() -> _core.DisturbanceModel:
+    return _core.DisturbanceModel([_core.SlipDisturbance(0.1, 0.1, 5.0)], np.ones(1))
 
 
 def _noise() -> _core.MotionNoise:
     return _core.MotionNoise([1e-4] * 3, [1e-4] * 3, [0.01] * 3, 0.01, 0.01)
 
 
-def _belief() -> _core.MotionPosterior:
+def _posterior() -> _core.MotionPosterior:
     return _core.MotionPosterior(_model(), _estimate(), np.ones(SIZE), _noise(), np.ones(3))
 
 
 def _now() -> _core.SlipNow:
-    return _core.ColouredSlip(_law()).now(_belief(), _inputs(), [_segment()])
+    return _core.DisturbanceFilter(_law()).now(_posterior(), _inputs(), [_segment()])
 
 
 def _expected() -> _core.ExpectedPose:
-    return _core.ColouredSlip(_law()).predict(_belief(), _inputs(), _now(), _segment())
+    return _core.DisturbanceFilter(_law()).predict(_posterior(), _inputs(), _now(), _segment())
 
 
 def _steady() -> _core.SteadySegment:
@@ -85,13 +85,13 @@ def _example() -> _core.RegressionExample:
 
 
 def _limits() -> _core.CommandLimits:
-    lane = _core.LaneLimits(0.01, 2.0, 1.0, 1.5)
-    return _core.CommandLimits(lane, lane, lane, 0.5, 1.0, 1.0)
+    axis = _core.AxisLimits(0.01, 2.0, 1.0, 1.5)
+    return _core.CommandLimits(axis, axis, axis, 0.5, 1.0, 1.0)
 
 
-def _record() -> _core.DriveRecord:
+def _record() -> _core.WheelRecord:
     wheels = np.column_stack([T, np.sin(T - 0.2), np.cos(T - 0.2)])
-    return _core.DriveRecord(_inputs(), wheels)
+    return _core.WheelRecord(_inputs(), wheels)
 
 
 def _mppi() -> _core.Mppi:
@@ -100,8 +100,8 @@ def _mppi() -> _core.Mppi:
     return _core.Mppi([(_model(), np.full(SIZE, 0.01), None)], settings)
 
 
-def _drive_start() -> _core.DriveStart:
-    return _core.DriveStart(_core.BodyTwist(0.1, 0.0, 0.0), _core.BodyTwist(0.1, 0.0, 0.0), None)
+def _drive_start() -> _core.ActuatorState:
+    return _core.ActuatorState(_core.BodyTwist(0.1, 0.0, 0.0), _core.BodyTwist(0.1, 0.0, 0.0), None)
 
 
 def _planner() -> _core.TrajectoryPlanner:
@@ -148,8 +148,8 @@ def _rows() -> np.ndarray:
     return np.column_stack((T, np.sin(T), np.zeros(ROWS), np.cos(T)))
 
 
-def _chain_learner() -> _core.ChainLearner:
-    return _core.ChainLearner(_core.CausalFilterSettings())
+def _chain_learner() -> _core.ActuatorFilter:
+    return _core.ActuatorFilter(_core.CausalFilterSettings())
 
 
 def _slip_ratios() -> _core.SlipRatioFilterSettings:
@@ -174,13 +174,13 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "AverageState": lambda: _average().state(),
     "BayesianRegression": _regression,
     "Basis": lambda: _core.named_basis("edd-2"),
-    "ChainLearner": _chain_learner,
-    "ColouredSlip": lambda: _core.ColouredSlip(_law()),
+    "ActuatorFilter": _chain_learner,
+    "DisturbanceFilter": lambda: _core.DisturbanceFilter(_law()),
     "CommandLimits": _limits,
     "CostmapView": lambda: _core.CostmapView(np.zeros((4, 5), np.float32), 0.5, 0.0, 0.0, 100.0),
     "DriveLimits": lambda: _core.DriveLimits(1.0, 1.0, 1.0, 1.0),
-    "DriveRecord": _record,
-    "DriveStart": _drive_start,
+    "WheelRecord": _record,
+    "ActuatorState": _drive_start,
     "Estimate": _estimate,
     "Estimator": lambda: _core.make_estimator("iekf", _model(), _estimate(), _estimator_settings()),
     "ExpectedPose": _expected,
@@ -193,7 +193,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "LearnerSettings": _learner_settings,
     "LimitSearch": lambda: None,
     "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
-    "MotionPosterior": _belief,
+    "MotionPosterior": _posterior,
     "MotionLearner": _learner,
     "MotionModel": _model,
     "MotionNoise": _noise,
@@ -217,14 +217,14 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "TrajectoryPlanner": _planner,
     "TrajectoryStatus": lambda: _core.TrajectoryStatus.Reached,
     "UncertainModel": _uncertain,
-    "WanderLaw": _law,
-    "WanderingTerms": lambda: _core.wandering_terms(_model(), np.ones(SIZE)),
+    "DisturbanceModel": _law,
+    "DisturbedTerms": lambda: _core.disturbed_terms(_model(), np.ones(SIZE)),
 }
 
 _square, _list3 = 0.01 * np.eye(SIZE), [0.01, 0.01, 0.01]
 ARGUMENTS: dict[str, Callable[[], Any]] = {
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
-    "DriveRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
+    "WheelRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
     "MotionLearner.forget fraction": lambda: 0.5,
     "MotionLearner.load saved": lambda: _learner().save(),
     "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
@@ -245,7 +245,7 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "SteadySegment.__init__ times": lambda: np.array([0.0, 1.0, 2.0]),
     "InputTrack.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),
     "FollowingEstimator.__init__ name": lambda: "iekf",
-    "WanderLaw.__init__ weights": lambda: np.ones(1),
+    "DisturbanceModel.__init__ weights": lambda: np.ones(1),
     "fits_all_segments name": lambda: "iekf",
     "learns_overlapping_segments name": lambda: "iekf",
     "slip_rate_covariance covariance": lambda: 0.01 * np.eye(2),
@@ -264,8 +264,8 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "sample_futures out": lambda: np.zeros((3, 5, 4, 2)),
     "thesis_std_coefficients design": _features,
     "undetermined_directions terms": lambda: ["one", "sine"],
-    "ChainLearner.learn end": lambda: 2.0,
-    "ChainLearner.learn start": lambda: 1.0,
+    "ActuatorFilter.learn end": lambda: 2.0,
+    "ActuatorFilter.learn start": lambda: 1.0,
     "Segment.__init__ end": lambda: 2.0,
     "Basis.__init__ ang": lambda: ["w"],
     "Basis.__init__ lat": lambda: ["V*w"],
@@ -355,9 +355,9 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
         "Basis": [_core.named_basis("odd-even-10"), _core.Basis("none", [], [], [])],
         "BayesianRegression": [_core.BayesianRegression(np.ones(5), 0.1, 1.0)],
         "BodyTwist": [_core.BodyTwist(nan, nan, nan), _core.BodyTwist(1e300, 1e300, 1e300)],
-        "CommandChain": [
-            _core.CommandChain(nan, nan, nan, nan, nan),
-            _core.CommandChain(1e300, 0, 1e300, 0, 0),
+        "ActuatorModel": [
+            _core.ActuatorModel(nan, nan, nan, nan, nan),
+            _core.ActuatorModel(1e300, 0, 1e300, 0, 0),
         ],
         "Estimate": [_core.Estimate(np.zeros(9), np.eye(9)), _core.Estimate(zero[:0], np.zeros((0, 0)))],
         "InputTrack": [_core.InputTrack(zero, zero, zero, zero), _core.InputTrack(*[zero[:0]] * 4)],
@@ -369,6 +369,6 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
         "SegmentLinearization": [path],
         "SegmentPath": [path.path],
         "SteadySegment": [_core.SteadySegment(_core.BodyTwist(1, 0, 0), zero[:0], np.zeros((0, 3)))],
-        "WanderLaw": [_core.WanderLaw([], zero[:0])],
+        "DisturbanceModel": [_core.DisturbanceModel([], zero[:0])],
     }
     yield from ((f"another {kind} {number}", other) for number, other in enumerate(others.get(kind, [])))

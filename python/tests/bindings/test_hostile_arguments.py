@@ -24,7 +24,7 @@ MODEL = _core.MotionModel(EDD_2, False, True)
 def test_a_covariance_of_another_size_is_refused(shape: tuple[int, int]) -> None:
     with pytest.raises(ValueError, match="the covariance of slip rates needs 2 rows and columns"):
         _core.slip_rate_covariance(EDD_2, np.zeros(shape), STATE)
-    law = _core.WanderLaw([], np.zeros(0))
+    law = _core.DisturbanceModel([], np.zeros(0))
     with pytest.raises(ValueError, match="the covariance of a model needs 3 rows and columns"):
         _core.covariance_over(MODEL, np.zeros((shape[0] + 1, shape[1] + 2)), law, np.ones(3), 1.0)
 
@@ -34,7 +34,7 @@ def test_parameters_of_another_number_are_refused(count: int) -> None:
     with pytest.raises(ValueError, match=f"a slip rate needs 2 numbers, got {count}"):
         _core.slip_rate(EDD_2, np.zeros(count), STATE)
     with pytest.raises(ValueError, match=f"takes 3 parameters, got {count + 1 if count == 3 else count}"):
-        MODEL.chain(np.zeros(count + 1 if count == 3 else count))
+        MODEL.actuator(np.zeros(count + 1 if count == 3 else count))
 
 
 def test_pairs_of_a_matrix_that_is_no_covariance_are_refused() -> None:

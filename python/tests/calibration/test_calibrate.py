@@ -44,8 +44,8 @@ def recovered(basis: str, input_name: str, seed: int, estimator: str = "average"
 
 
 def truth_of(basis: str, input_name: str) -> np.ndarray:
-    chain = tuple(np.log((0.4, 0.4, 0.2, 0.2))) if input_name == "command" else (0.15,)
-    return np.array(TRUTHS[basis] + chain)
+    actuator = tuple(np.log((0.4, 0.4, 0.2, 0.2))) if input_name == "command" else (0.15,)
+    return np.array(TRUTHS[basis] + actuator)
 
 
 @pytest.mark.slow

@@ -13,8 +13,8 @@ from slipwise import _core
 from slipwise.calibration import Settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 
 NOTHING = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
 
@@ -29,28 +29,30 @@ class LastEnd:
         self.ends.append(segment.end)
         return segment.end
 
-    def belief(self) -> Belief:
+    def posterior(self) -> Posterior:
         none = np.zeros(0)
-        return Belief(NOTHING, none, np.zeros((0, 0)), np.ones(3), none, none, np.array(self.ends[-1:]))
+        return Posterior(NOTHING, none, np.zeros((0, 0)), np.ones(3), none, none, np.array(self.ends[-1:]))
 
 
 @pytest.fixture(scope="module")
 def windows() -> WindowSet:
     settings = Settings()
-    return learning_windows(prepare_drive(simulated_log(Drive(seconds=60.0)), "wheel"), "wheel", settings)
+    return learning_windows(prepare_run(simulated_log(Drive(seconds=60.0)), "wheel"), "wheel", settings)
 
 
 def test_it_learns_in_order_as_far_as_asked_and_tells_its_observer(windows: WindowSet) -> None:
     learner, seen = LastEnd(), []
-    passing = CausalPass(learner, windows, lambda i, end, belief: seen.append((i, end, belief.weights[0])))
-    assert len(passing.belief(0).weights) == 0
-    assert passing.belief(5).weights[0] == windows.end[4]
+    passing = CausalPass(
+        learner, windows, lambda i, end, posterior: seen.append((i, end, posterior.weights[0]))
+    )
+    assert len(passing.posterior(0).weights) == 0
+    assert passing.posterior(5).weights[0] == windows.end[4]
     assert learner.ends == windows.end[:5].tolist()
     assert seen == [(i, windows.end[i], windows.end[i]) for i in range(5)]
     passing.finish()
     assert len(learner.ends) == len(windows)
     with pytest.raises(ValueError, match="is gone"):
-        passing.belief(5)
+        passing.posterior(5)
 
 
 def test_at_another_pace_nothing_is_learned_that_ends_later(windows: WindowSet) -> None:
@@ -58,7 +60,7 @@ def test_at_another_pace_nothing_is_learned_that_ends_later(windows: WindowSet) 
     learner = LastEnd()
     passing = CausalPass(learner, short, pace=windows)
     for count in (0, 1, 7, len(windows)):
-        passing.belief(count)
+        passing.posterior(count)
         ended = windows.end[count - 1] if count else -np.inf
         assert passing.learned == np.sum(short.end <= ended + 1e-9)
     assert passing.finish().weights[0] == learner.ends[-1]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small part of `benchmarks/chain_truth.py`: what is learned of known robots, and what is said of it."""
+"""A small part of `benchmarks/actuator_truth.py`: what is learned of known robots, and what is said of it."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
-from benchmarks.chain_truth import NOT_SHOWN, Found, dull, from_commands, from_wheels_too
+from benchmarks.actuator_truth import NOT_SHOWN, Found, dull, from_commands, from_wheels_too
 
 SEEDS = range(6)
 
@@ -36,9 +36,9 @@ def test_all_is_found_in_cascade_and_as_surely_as_stated() -> None:
         f.name for f in runs[0]
     }
     assert len(far_off(runs)) <= 0.03 * sum(len(run) for run in runs), far_off(runs)
-    chain = [f for run in runs for f in run if f.name.endswith(("_v", "_omega"))]
-    assert 0.4 < np.sqrt(np.mean([f.sigmas**2 for f in chain])) < 1.5
-    assert np.median([f.std / f.prior_std for f in chain]) < 0.05
+    actuator = [f for run in runs for f in run if f.name.endswith(("_v", "_omega"))]
+    assert 0.4 < np.sqrt(np.mean([f.sigmas**2 for f in actuator])) < 1.5
+    assert np.median([f.std / f.prior_std for f in actuator]) < 0.05
 
 
 @pytest.mark.parametrize("seed", range(3))

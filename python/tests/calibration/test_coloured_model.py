@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model file holds how slip wanders, so that predictions from it hold the share that they state."""
+"""A model file holds the slip disturbance, so that predictions from it hold the share that they state."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from sample_logs import Drive, simulated_log
 
 from slipwise import _core
 from slipwise.calibration import Settings, calibrate
-from slipwise.calibration.drive import WindowSet, collect_windows, prepare_drive
 from slipwise.calibration.predictions import normalised_squared, residual
+from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.models import Model, load_model
 from slipwise.prediction import predict
 from slipwise.student import share_inside
@@ -19,13 +19,13 @@ SETTINGS = Settings(basis="edd-2", learn_clock_offset=False)
 
 
 def drive(seed: int, seconds: float) -> Drive:
-    """A drive whose shares of V and w wander by 0.1, over some 8 s."""
+    """A drive whose shares of V and w disturbance by 0.1, over some 8 s."""
     return Drive(
         seconds=seconds,
         seed=seed,
         basis=_core.named_basis("edd-2"),
         alpha=(-0.08, -0.3),
-        wander=(0.1, 8.0),
+        disturbance=(0.1, 8.0),
         pose_std=(0.01, 0.005),
         speeds=(0.3, 1.5),
     )
@@ -42,7 +42,7 @@ def models(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Model]:
 
 def held_out(seed: int, seconds: float) -> list[WindowSet]:
     """Windows of other drives."""
-    drives = [prepare_drive(simulated_log(drive(100 * seed + k, 300.0)), "wheel") for k in range(4)]
+    drives = [prepare_run(simulated_log(drive(100 * seed + k, 300.0)), "wheel") for k in range(4)]
     return [collect_windows(each, seconds, SETTINGS.rules()) for each in drives]
 
 

@@ -11,7 +11,6 @@ from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.calibrate import learning_windows
 from slipwise.calibration.causal_pass import CausalPass
-from slipwise.calibration.drive import WindowSet, prepare_drive
 from slipwise.calibration.estimator_run import EstimatorRun, run_estimator
 from slipwise.calibration.estimators import (
     estimator_basis,
@@ -19,6 +18,7 @@ from slipwise.calibration.estimators import (
     estimator_motion,
     fed_windows,
 )
+from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs, Log, Poses, Run
@@ -51,7 +51,7 @@ def settings() -> Settings:
 
 @pytest.fixture(scope="module")
 def windows(settings: Settings) -> WindowSet:
-    return learning_windows(prepare_drive(circling_log(), "wheel"), "wheel", settings)
+    return learning_windows(prepare_run(circling_log(), "wheel"), "wheel", settings)
 
 
 def run_of(name: str, settings: Settings, windows: WindowSet) -> EstimatorRun:
@@ -61,10 +61,10 @@ def run_of(name: str, settings: Settings, windows: WindowSet) -> EstimatorRun:
 @pytest.mark.parametrize("name", _core.estimator_names())
 def test_every_estimator_learns_the_slip(name: str, settings: Settings, windows: WindowSet) -> None:
     run = run_of(name, settings, windows)
-    causal, kept = run.belief(len(windows)), run.kept()
-    for belief in (causal, kept):
-        assert belief.mean == pytest.approx(SLIP, abs=0.01)
-        assert belief.variance_ratio.shape == (2,)
+    causal, kept = run.posterior(len(windows)), run.kept()
+    for posterior in (causal, kept):
+        assert posterior.mean == pytest.approx(SLIP, abs=0.01)
+        assert posterior.variance_ratio.shape == (2,)
     assert run.causal == (name != "batch") == np.array_equal(causal.mean, kept.mean)
 
 
@@ -72,9 +72,9 @@ def test_what_batch_knew_on_the_way_never_depends_on_what_came_later(
     settings: Settings, windows: WindowSet
 ) -> None:
     one, other = (run_of("batch", settings, windows) for _ in range(2))
-    early = one.belief(20)
+    early = one.posterior(20)
     one.kept()
-    assert np.array_equal(early.mean, other.belief(20).mean)
+    assert np.array_equal(early.mean, other.posterior(20).mean)
 
 
 @pytest.mark.parametrize("name", _core.estimator_names())
@@ -109,7 +109,7 @@ def test_iekf_is_the_filter_that_calibrates_until_that_refits(settings: Settings
     estimating = run_of("iekf", settings, windows)
     for i in range(7):
         average.learn(windows.track(i), windows.segments[i])
-        known, posterior = average.state(), estimating.belief(i + 1)
+        known, posterior = average.state(), estimating.posterior(i + 1)
         assert posterior.mean == pytest.approx(np.array(known.estimate.mean), rel=1e-9)
     # Means that agree after each segment have had the same gains; the covariance that the average
     # reports also holds what residuals say of the noise model.
@@ -122,11 +122,11 @@ def test_thesis_estimators_see_overlapping_windows_but_none_that_ends_later(
     learner = estimator_learner("ekf-thesis", motion, settings)
     thesis = CausalPass(learner, fed_windows("ekf-thesis", settings, windows), pace=windows)
     at = int(np.searchsorted(windows.end, 10.0))
-    assert (thesis.belief(0).mean == 0.0).all()
-    thesis.belief(at)
+    assert (thesis.posterior(0).mean == 0.0).all()
+    thesis.posterior(at)
     assert thesis.learned == pytest.approx((windows.end[at - 1] - 5.0) / 0.05 + 1.0, abs=1.0)
     with pytest.raises(ValueError, match="is gone"):
-        thesis.belief(at - 1)
+        thesis.posterior(at - 1)
 
 
 def test_basis_is_that_of_the_settings_and_thesis_estimators_have_no_lag() -> None:

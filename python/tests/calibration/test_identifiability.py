@@ -19,7 +19,7 @@ from slipwise.calibration.identifiability import (
     timing_words,
     undetermined,
 )
-from slipwise.calibration.learner import Belief
+from slipwise.calibration.learner import Posterior
 from slipwise.logs import Log
 from slipwise.models import load_model
 
@@ -34,23 +34,23 @@ def straight(**given: object) -> Log:
     return simulated_log(replace(Drive(seconds=60.0, speeds=(1.0, 1.0), yaw_rates=(0.0, 0.0)), **given))
 
 
-def belief(motion: _core.MotionModel, correlation: float) -> Belief:
-    """A belief whose first two parameters go together."""
+def posterior(motion: _core.MotionModel, correlation: float) -> Posterior:
+    """A posterior whose first two parameters go together."""
     covariance = np.eye(motion.size)
     covariance[0, 1] = covariance[1, 0] = correlation
     ratio = np.full(motion.size, 0.1)
-    return Belief(
+    return Posterior(
         motion, np.zeros(motion.size), covariance, np.ones(3), np.ones(motion.size), ratio, np.ones(1)
     )
 
 
 def test_pairs_that_go_together_are_named() -> None:
     motion = _core.MotionModel(_core.named_basis("edd-2"), True, False)
-    assert look_alikes(belief(motion, 0.89)) == ()
-    (pair,) = look_alikes(belief(motion, -0.95))
+    assert look_alikes(posterior(motion, 0.89)) == ()
+    (pair,) = look_alikes(posterior(motion, -0.95))
     assert pair == LookAlike("lon.V", "ang.w", pytest.approx(-0.95))
     assert str(pair) == "lon.V and ang.w (-0.95)"
-    assert undetermined(belief(motion, -0.95)) == ()
+    assert undetermined(posterior(motion, -0.95)) == ()
 
 
 def test_a_lever_arm_that_a_straight_drive_cannot_show_is_said() -> None:

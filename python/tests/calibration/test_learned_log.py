@@ -12,9 +12,9 @@ from sample_logs import Drive, inputs_until, kept, simulated_run
 
 from slipwise import _core
 from slipwise.calibration import Settings, make_settings
-from slipwise.calibration.drive import collect_windows, prepare_drive
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import BASELINE, STRUCTURES
+from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.logs import Log, Run
 
 HORIZONS = (1.0, 2.0, 5.0)
@@ -63,7 +63,7 @@ def until(log: Log, t: float) -> Log:
 def learned(
     log: Log, input_name: str, settings: Settings | None = None, keep: Keep | None = None
 ) -> LearnedLog:
-    return learn_log(prepare_drive(log, input_name), settings or Settings(), HORIZONS, keep=keep)
+    return learn_log(prepare_run(log, input_name), settings or Settings(), HORIZONS, keep=keep)
 
 
 @cache
@@ -76,7 +76,7 @@ def test_the_history_has_a_row_for_each_segment_in_the_order_of_time(input_name:
     found = whole(input_name)
     history = found.history
     assert history is not None
-    drive, settings = prepare_drive(log(), input_name), Settings()
+    drive, settings = prepare_run(log(), input_name), Settings()
     rules = replace(settings.rules(), whole_frames=True)
     segments = collect_windows(drive, settings.window_length(input_name), rules)
     assert found.segments == len(segments) == len(history.t)
@@ -110,7 +110,7 @@ def test_without_keep_there_is_no_history_and_the_same_predictions() -> None:
 
 def test_progress_grows_from_above_zero_to_one() -> None:
     said: list[float] = []
-    learn_log(prepare_drive(log(), "wheel"), Settings(), HORIZONS, progress=said.append)
+    learn_log(prepare_run(log(), "wheel"), Settings(), HORIZONS, progress=said.append)
     assert said == sorted(said)
     assert 0.0 < said[0] < 0.1
     assert said[-1] == 1.0
@@ -118,7 +118,7 @@ def test_progress_grows_from_above_zero_to_one() -> None:
 
 @pytest.mark.parametrize("input_name", INPUTS)
 def test_predictions_are_of_the_segments_that_are_cut_for_other_methods(input_name: str) -> None:
-    drive = prepare_drive(log(), input_name)
+    drive = prepare_run(log(), input_name)
     for p, baseline in zip(whole(input_name).predictions, whole(input_name).baseline, strict=True):
         targets = collect_windows(drive, p.horizon, Settings().rules())
         for one in (p, baseline):

@@ -18,7 +18,7 @@ def searched(commands: Inputs) -> _core.LimitSearch:
     """Search for limits of a drive that has none."""
     wheels = wheels_behind(NO_LIMITS, commands, 1)
     rows = np.column_stack((wheels.t, wheels.v, wheels.omega))
-    record = _core.DriveRecord(track_of(commands), np.ascontiguousarray(rows))
+    record = _core.WheelRecord(track_of(commands), np.ascontiguousarray(rows))
     return _core.find_limits([record], _core.PriorSettings(), TRACK, _core.LEAST_LIMIT_GAIN, None)
 
 

@@ -22,7 +22,7 @@ from slipwise.export.parameter_file import Entry
 from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
-from slipwise.models.schema import LaneLimitsSection, LearnedLimit, LimitsSection
+from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
 from slipwise.planning import Controller, Start, Track, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
@@ -60,13 +60,13 @@ def model(log: Log) -> Model:
 @pytest.mark.parametrize("seed", [11, 12])
 def test_limits_are_found_within_three_sigma(limits: _core.CommandLimits, seed: int) -> None:
     found = search(limits, steps_drive(seed, 60.0), seed).found
-    shown = {(limit.lane, limit.kind) for limit in found}
-    lanes = (
+    shown = {(limit.axis, limit.kind) for limit in found}
+    axes = (
         (_core.LimitedAxis.Side,) if limits is SIDES else (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate)
     )
     smooth = (_core.LimitKind.Top, _core.LimitKind.Acceleration, _core.LimitKind.Braking)
-    assert {(lane, kind) for lane in lanes for kind in smooth} <= shown
-    assert {lane for lane, _ in shown} == set(lanes)
+    assert {(axis, kind) for axis in axes for kind in smooth} <= shown
+    assert {axis for axis, _ in shown} == set(axes)
     for limit in found:
         truth = true_value(limits, limit)
         assert abs(limit.value - truth) <= 3.0 * limit.std
@@ -87,14 +87,14 @@ def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
 
 
 def test_simulated_physics_behind_limits_show_them() -> None:
-    side = _core.LaneLimits(0.15, 1.2, 1.0, 1.5)
+    side = _core.AxisLimits(0.15, 1.2, 1.0, 1.5)
     limits = _core.CommandLimits(FREE, FREE, side, TRACK, 1.0, 1.0)
     scenario = Scenario(duration=90.0, drive="steps", limits=limits)
     run = simulate(scenario, seed=2).log.runs[0]
     rows = np.column_stack((run.wheels.t, run.wheels.v, run.wheels.omega))
-    record = _core.DriveRecord(track_of(run.commands), np.ascontiguousarray(rows))
+    record = _core.WheelRecord(track_of(run.commands), np.ascontiguousarray(rows))
     found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
-    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.lane == _core.LimitedAxis.Side]
+    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.axis == _core.LimitedAxis.Side]
     assert len(tops) == 1
     assert tops[0].value == pytest.approx(1.2, rel=0.05)
 
@@ -150,10 +150,10 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
     def learned(value: float) -> LearnedLimit:
         return LearnedLimit(value=value, std=0.01)
 
-    lane = LaneLimitsSection(dead_band=learned(0.1), top=learned(1.0), acceleration=learned(2.0))
-    none = LaneLimitsSection()
+    axis = AxisLimitsSection(dead_band=learned(0.1), top=learned(1.0), acceleration=learned(2.0))
+    none = AxisLimitsSection()
     section = LimitsSection(
-        speed=lane, yaw_rate=none, side=none, track=1.0, track_std=0.0, gain_v=1.0, gain_omega=1.0
+        speed=axis, yaw_rate=none, side=none, track=1.0, track_std=0.0, gain_v=1.0, gain_omega=1.0
     )
     numbers = LearnedNumbers(make_model(replace(named("edd-2"), commands=True)))
     gains = (numbers.exactly(0.9), numbers.exactly(1.0))
@@ -187,15 +187,15 @@ def test_limits_are_learned_from_commands_and_poses_alone(limits: _core.CommandL
     assert learned.limits is not None
     if limits is SIDES:
         assert learned.limits.track == pytest.approx(TRACK, rel=0.02)
-    for lane, truth in (
+    for axis, truth in (
         (learned.limits.speed, limits.speed),
         (learned.limits.yaw_rate, limits.yaw_rate),
         (learned.limits.side, limits.side),
     ):
-        assert lane.dead_band == pytest.approx(truth.dead_band, abs=0.03)
-        assert lane.top == pytest.approx(truth.top, rel=0.03)
-        assert lane.acceleration == pytest.approx(truth.acceleration, rel=0.05)
-        assert lane.braking == pytest.approx(truth.braking, rel=0.05)
+        assert axis.dead_band == pytest.approx(truth.dead_band, abs=0.03)
+        assert axis.top == pytest.approx(truth.top, rel=0.03)
+        assert axis.acceleration == pytest.approx(truth.acceleration, rel=0.05)
+        assert axis.braking == pytest.approx(truth.braking, rel=0.05)
     known = {p.name: p for p in learned.content.parameters}
     held = 0.025  # s by which the simulated robot is later: it drives each wheel speed until the next
     for name, truth in (("lag_v", CHAIN.lag_v), ("lag_omega", CHAIN.lag_omega)):
@@ -217,7 +217,7 @@ def test_a_drive_without_limits_shows_none_in_its_poses() -> None:
 @pytest.mark.slow
 def test_limits_that_change_are_found_again() -> None:
     commands, half = steps_drive(3, 2.0 * SECONDS), SECONDS
-    slower = _core.CommandLimits(FREE, FREE, _core.LaneLimits(0.12, 0.8, 0.6, 2.0), TRACK, 1.0, 1.0)
+    slower = _core.CommandLimits(FREE, FREE, _core.AxisLimits(0.12, 0.8, 0.6, 2.0), TRACK, 1.0, 1.0)
     first, second = (wheels_behind(limits, commands, 1) for limits in (SIDES, slower))
     late = commands.t >= half
     changed = replace(
@@ -236,7 +236,7 @@ def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: 
     for run in log.runs[first : first + 2]:
         learner.start_run()
         learner.push(recording_of(run))
-    found = {(f.lane, f.kind): f.value for f in learner.find_limits(TRACK).search.found}
+    found = {(f.axis, f.kind): f.value for f in learner.find_limits(TRACK).search.found}
     assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
     assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)
 

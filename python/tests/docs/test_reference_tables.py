@@ -142,9 +142,9 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     noise, average, iekf = _core.NoiseSettings(), _core.ModelAverageSettings(), _core.IekfSettings()
     assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.memory:g})" in derivations
     assert f"{noise.largest:g} s_i" in derivations
-    weighing = average.weighing
-    assert f"η = {weighing.learning_rate:g}, share α_n = min({weighing.share:g}, 1/n)" in derivations
-    assert f"has π = {average.richest:g}" in derivations
+    weighting = average.weighting
+    assert f"η = {weighting.learning_rate:g}, share α_n = min({weighting.share:g}, 1/n)" in derivations
+    assert f"has π = {average.largest_basis:g}" in derivations
     assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
     assert f"by less than {iekf.tolerance:g}" in derivations
     change = average.change
@@ -159,7 +159,7 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     derivations = read("derivations.md")
     flowing = " ".join(derivations.split())
     scale_std, dof, dof_std = constants(
-        "identify/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd"
+        "online/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd"
     )
     assert f"ln c normal about ln 1 with standard deviation {scale_std:g}" in flowing
     assert f"ln ν about ln {dof:g} with {dof_std:g}" in flowing

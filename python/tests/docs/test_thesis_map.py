@@ -90,7 +90,7 @@ def test_cpp_names_are_declared_in_their_headers() -> None:
 
 def exhibit_keys_written(key: str) -> bool:
     """Whether the reproduction's sources write this key, whole or put together of two strings."""
-    sources = sorted((ROOT / "python/slipwise/reproduction").glob("*.py"))
+    sources = sorted((ROOT / "python/slipwise/thesis").glob("*.py"))
     nodes = [node for path in sources for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
     texts = {node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)}
     joined = [node.values[0] for node in nodes if isinstance(node, ast.JoinedStr) and len(node.values) == 2]

@@ -14,7 +14,7 @@ from sample_logs import Drive, simulated_log
 from slipwise import _core
 from slipwise.calibration import make_settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
@@ -56,26 +56,26 @@ def test_constant_slip_ratios_are_learned_and_beat_the_icr(method: str) -> None:
 
 
 def test_both_rivals_find_the_true_terms() -> None:
-    windows = learning_windows(prepare_drive(crooked(), "wheel"), "wheel", SETTINGS)
+    windows = learning_windows(prepare_run(crooked(), "wheel"), "wheel", SETTINGS)
     for make, tolerance in ((slip_ratio_filter, 0.03), (slip_ratio_observer, 0.06)):
-        mean = make("wheel", SETTINGS, windows).belief(len(windows)).mean
+        mean = make("wheel", SETTINGS, windows).posterior(len(windows)).mean
         np.testing.assert_allclose(mean, ALPHA, atol=tolerance / TRACK)
 
 
 def test_filter_carries_a_covariance_and_the_observer_the_noise_shape_alone() -> None:
-    windows = learning_windows(prepare_drive(crooked(), "wheel"), "wheel", SETTINGS)
-    assert np.linalg.matrix_rank(slip_ratio_filter("wheel", SETTINGS, windows).belief(5).covariance) == 3
-    assert not slip_ratio_observer("wheel", SETTINGS, windows).belief(5).covariance.any()
+    windows = learning_windows(prepare_run(crooked(), "wheel"), "wheel", SETTINGS)
+    assert np.linalg.matrix_rank(slip_ratio_filter("wheel", SETTINGS, windows).posterior(5).covariance) == 3
+    assert not slip_ratio_observer("wheel", SETTINGS, windows).posterior(5).covariance.any()
 
 
 @pytest.mark.parametrize("make", [slip_ratio_filter, slip_ratio_observer])
 def test_nothing_learned_is_unlearned(make: object) -> None:
     assert callable(make)
-    windows = learning_windows(prepare_drive(crooked(), "wheel"), "wheel", SETTINGS)
-    forecaster = make("wheel", SETTINGS, windows)
-    forecaster.belief(5)
+    windows = learning_windows(prepare_run(crooked(), "wheel"), "wheel", SETTINGS)
+    predictor = make("wheel", SETTINGS, windows)
+    predictor.posterior(5)
     with pytest.raises(ValueError, match="after 3 windows is gone"):
-        forecaster.belief(3)
+        predictor.posterior(3)
 
 
 @pytest.mark.parametrize("method", RIVALS)

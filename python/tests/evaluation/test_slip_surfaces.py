@@ -12,10 +12,10 @@ from sample_logs import Drive, simulated_log
 from slipwise import _core
 from slipwise.calibration import make_settings
 from slipwise.calibration.calibrate import learning_windows
-from slipwise.calibration.drive import prepare_drive
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
-from slipwise.evaluation.slip_surfaces import surface_forecaster
+from slipwise.evaluation.slip_surfaces import surface_predictor
 from slipwise.evaluation.window_examples import window_examples
 from slipwise.logs import Log
 
@@ -68,7 +68,7 @@ def test_slip_rates_of_windows_are_those_of_a_steady_drive() -> None:
         pose_std=(0.0, 0.0),
         slip_psd=(0.0, 0.0, 0.0),
     )
-    windows = learning_windows(prepare_drive(simulated_log(drive), "wheel"), "wheel", SETTINGS)
+    windows = learning_windows(prepare_run(simulated_log(drive), "wheel"), "wheel", SETTINGS)
     wrong = _core.MotionModel(_core.named_basis("edd-2"), False, False), np.array([0.2, -0.5])
     examples = window_examples(wrong, windows, np.arange(3))
     assert examples is not None
@@ -107,11 +107,11 @@ def test_what_one_speed_does_not_determine_keeps_its_prior(method: str) -> None:
     needs_scikit_learn(method)
     settings = make_settings({"basis": "full-linear-6", "learn_clock_offset": False})
     dull = Drive(seconds=60.0, basis=SLIP, alpha=ALPHA, speeds=(1.0, 1.0), yaw_rates=(0.4, 0.4))
-    windows = learning_windows(prepare_drive(simulated_log(dull), "wheel"), "wheel", settings)
-    belief = surface_forecaster(method, "wheel", settings, windows).belief(len(windows))
-    std = belief.prior_std[4:]
+    windows = learning_windows(prepare_run(simulated_log(dull), "wheel"), "wheel", settings)
+    posterior = surface_predictor(method, "wheel", settings, windows).posterior(len(windows))
+    std = posterior.prior_std[4:]
     driven, beside = np.array([1.0, 0.4]), np.array([0.4, -1.0]) / std**2  # uncorrelated before any example
-    covariance = belief.covariance[4:, 4:]
+    covariance = posterior.covariance[4:, 4:]
     assert driven @ covariance @ driven < 0.01 * driven @ np.diag(std**2) @ driven
     assert beside @ covariance @ beside == pytest.approx(beside @ np.diag(std**2) @ beside, rel=1e-6)
 
@@ -120,27 +120,27 @@ def test_what_one_speed_does_not_determine_keeps_its_prior(method: str) -> None:
 def test_one_window_is_enough_to_go_on(method: str) -> None:
     needs_scikit_learn(method)
     log = simulated_log(Drive(seconds=3.2, basis=SLIP, alpha=ALPHA, speeds=(0.8, 1.2)))
-    windows = learning_windows(prepare_drive(log, "command"), "command", SETTINGS)
+    windows = learning_windows(prepare_run(log, "command"), "command", SETTINGS)
     assert len(windows) == 1
     result = judged(log, (method,))
     assert all(np.isfinite(p.pose).all() and np.isfinite(p.nis).all() for p in result.predictions)
-    belief = surface_forecaster(method, "command", SETTINGS, windows).belief(1)
-    assert (np.linalg.eigvalsh(belief.covariance) >= -1e-12).all()
+    posterior = surface_predictor(method, "command", SETTINGS, windows).posterior(1)
+    assert (np.linalg.eigvalsh(posterior.covariance) >= -1e-12).all()
 
 
 def test_before_any_window_there_is_no_slip() -> None:
-    windows = learning_windows(prepare_drive(slipping(), "command"), "command", SETTINGS)
-    belief = surface_forecaster("surface-bayesian", "command", SETTINGS, windows).belief(0)
-    assert not belief.mean[: SLIP.size].any()
-    assert (belief.variance_ratio[: SLIP.size] == 1.0).all()
+    windows = learning_windows(prepare_run(slipping(), "command"), "command", SETTINGS)
+    posterior = surface_predictor("surface-bayesian", "command", SETTINGS, windows).posterior(0)
+    assert not posterior.mean[: SLIP.size].any()
+    assert (posterior.variance_ratio[: SLIP.size] == 1.0).all()
 
 
 def test_nothing_learned_is_ever_unlearned() -> None:
-    windows = learning_windows(prepare_drive(slipping(), "command"), "command", SETTINGS)
-    forecaster = surface_forecaster("surface-least-squares", "command", SETTINGS, windows)
-    forecaster.belief(5)
+    windows = learning_windows(prepare_run(slipping(), "command"), "command", SETTINGS)
+    predictor = surface_predictor("surface-least-squares", "command", SETTINGS, windows)
+    predictor.posterior(5)
     with pytest.raises(ValueError, match="is gone"):
-        forecaster.belief(4)
+        predictor.posterior(4)
 
 
 def test_without_scikit_learn_the_gaussian_process_says_how_to_get_it(
@@ -155,9 +155,9 @@ def test_without_scikit_learn_the_gaussian_process_says_how_to_get_it(
 def test_a_long_log_says_aloud_that_the_process_takes_a_part_of_it(caplog: pytest.LogCaptureFixture) -> None:
     needs_scikit_learn(PROCESS)
     log = simulated_log(Drive(seconds=300.0, basis=SLIP, alpha=ALPHA))
-    windows = learning_windows(prepare_drive(log, "wheel"), "wheel", SETTINGS)
-    forecaster = surface_forecaster(PROCESS, "wheel", SETTINGS, windows)
-    forecaster.belief(len(windows))
+    windows = learning_windows(prepare_run(log, "wheel"), "wheel", SETTINGS)
+    predictor = surface_predictor(PROCESS, "wheel", SETTINGS, windows)
+    predictor.posterior(len(windows))
     said = [
         record.getMessage() for record in caplog.records if "spread over the drives" in record.getMessage()
     ]

@@ -89,8 +89,8 @@ MODELS = {
     ),
     "commands": replace(named("full-linear-6", lon__V=-0.05, ang__w=-0.4), commands=True, clock_offset=0.05),
     "response": replace(named("edd-2", lon__V=-0.05, ang__w=-0.3), response=True),
-    "wandering slip": replace(
-        named("full-linear-6", lon__V=-0.05, ang__w=-0.4), wander=(0.1, 0.3, 2.0), commands=True
+    "slip disturbance": replace(
+        named("full-linear-6", lon__V=-0.05, ang__w=-0.4), disturbance=(0.1, 0.3, 2.0), commands=True
     ),
     "limits": replace(named("edd-2", lon__V=-0.05, ang__w=-0.3), response=True, limits=LIMITS),
 }

@@ -323,16 +323,16 @@ def test_constants_are_those_of_the_model_to_the_last_bit() -> None:
     def number(name: str) -> float:
         return float(words[f"SLIPWISE_{name}"].removeprefix("SLIPWISE_R(").removesuffix(")"))
 
-    chain = model.motion.chain(model.mean)
+    actuator = model.motion.actuator(model.mean)
     assert [number("P0"), number("P1")] == [-0.1, 1.0 / 3.0]
-    assert number("LAG_V") == chain.lag_v
-    assert number("DELAY_OMEGA") == chain.delay_omega
+    assert number("LAG_V") == actuator.lag_v
+    assert number("DELAY_OMEGA") == actuator.delay_omega
     assert number("CLOCK_OFFSET") == 0.07
     assert [number("SPEED_MIN"), number("SPEED_MAX")] == model.content.range.speed
 
 
 def test_a_chain_that_the_header_does_not_know_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     model = make_model(replace(named("edd-2"), commands=True))
-    monkeypatch.setattr("slipwise.export.chain._KNOWN", {"log_lag_v"})
-    with pytest.raises(ModelError, match=r"the command chain has log_delay_omega, .* cannot be exported"):
+    monkeypatch.setattr("slipwise.export.actuator._KNOWN", {"log_lag_v"})
+    with pytest.raises(ModelError, match=r"the actuator model has log_delay_omega, .* cannot be exported"):
         c_header(model, [])

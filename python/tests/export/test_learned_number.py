@@ -15,7 +15,7 @@ from sample_models import LIMITS, Made, make_model, named
 
 from slipwise.errors import ModelError
 from slipwise.export import ExportOptions, export_model
-from slipwise.export.chain import chain_of
+from slipwise.export.actuator import actuator_of
 from slipwise.export.learned_number import LearnedNumbers
 from slipwise.models import Model, ModelFile
 from slipwise.models.schema import LearnedLimit
@@ -46,11 +46,11 @@ def test_the_standard_deviation_is_that_of_drawn_parameters() -> None:
         {"log_lag_v": {"std": 0.1}, "slow_share_v": {"std": 0.05}, "gain_v": {"std": 0.04}},
     )
     numbers, rng = LearnedNumbers(model), np.random.default_rng(3)
-    number = chain_of(model).v.gain * 1.5 / chain_of(model).v.mean_delay
+    number = actuator_of(model).v.gain * 1.5 / actuator_of(model).v.mean_delay
     names = [p.name for p in model.content.parameters]
     drawn = []
     for values in rng.multivariate_normal(model.mean, model.covariance, 300).tolist():
-        v = chain_of(changed(with_values(dict(zip(names, values, strict=True))), {})).v
+        v = actuator_of(changed(with_values(dict(zip(names, values, strict=True))), {})).v
         drawn.append(v.gain.value * 1.5 / v.mean_delay.value)
     assert numbers.std(number) == pytest.approx(np.std(drawn), rel=0.15)
 

@@ -45,11 +45,11 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
 
 
 def test_learned_limits_replace_what_is_less_strict() -> None:
-    lanes = {
+    axes = {
         "speed": {"dead_band": 0.1, "top": 1.2, "acceleration": 0.8, "braking": 1.7},
         "yaw_rate": {"top": 5.0, "acceleration": 0.3},
     }
-    made = replace(named("edd-2"), commands=True, limits=lanes)
+    made = replace(named("edd-2"), commands=True, limits=axes)
     parameters, gains = written(made, KILTED), (1.1, 0.9)  # of the sides behind the limits
     free = written(replace(made, limits=None), KILTED)
     assert parameters["vx_max"] == pytest.approx(gains[0] * 1.2)

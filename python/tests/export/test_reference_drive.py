@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The noise that other tools are told is that of predictions, slip that wanders included."""
+"""The noise that other tools are told is that of predictions, the slip disturbance included."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from slipwise.export.reference_drive import motion_covariance, slip_density
 from slipwise.models import Model
 from slipwise.prediction import predict
 
-MADE = replace(named("edd-2", lon__V=-0.05, ang__w=-0.3), wander=(0.2, 0.3, 8.0), growth={1.0: 1.4, 5.0: 2.0})
+MADE = replace(
+    named("edd-2", lon__V=-0.05, ang__w=-0.3), disturbance=(0.2, 0.3, 8.0), growth={1.0: 1.4, 5.0: 2.0}
+)
 
 
 def exact(model: Model) -> Model:
@@ -30,7 +32,7 @@ def test_covariance_is_that_of_predict(seconds: float) -> None:
 
 
 def test_white_noise_of_slip_that_wanders_is_larger_over_a_longer_time() -> None:
-    model, still = make_model(MADE), make_model(replace(MADE, wander=None))
+    model, still = make_model(MADE), make_model(replace(MADE, disturbance=None))
     short, long = (
         slip_density(model, (0.7, 0.3), seconds) / slip_density(still, (0.7, 0.3), seconds)
         for seconds in (1.0, 5.0)

@@ -5,7 +5,7 @@ import numpy as np
 from sample_logs import held, steady_run
 
 from slipwise.calibration import make_settings
-from slipwise.calibration.drive import collect_windows, prepare_drive
+from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.inspection import coverage_map
 from slipwise.logs import Inputs, Log, Run
 from slipwise.logs.held import HeldSum, held_for
@@ -36,7 +36,7 @@ def test_poses_are_compared_with_inputs_that_the_setting_calls_known() -> None:
 
 def test_driven_distances_and_maps_obey_the_setting() -> None:
     rules = make_settings({"window": {"unknown_after": 1.5}}).rules()
-    windows = collect_windows(prepare_drive(Log(runs=(slow_run(),)), "command"), 2.0, rules)
+    windows = collect_windows(prepare_run(Log(runs=(slow_run(),)), "command"), 2.0, rules)
     np.testing.assert_allclose(windows.distances(), windows.end - windows.start, atol=1e-6)
     assert "20 s in all" in coverage_map([SLOW], unknown_after=1.5)[-1]
     assert "10 s in all" in coverage_map([SLOW], unknown_after=0.5)[-1]

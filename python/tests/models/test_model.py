@@ -80,8 +80,8 @@ def test_model_without_an_actuator_model_makes_the_round_trip(tmp_path: Path) ->
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
     assert again.motion.delays
-    chain = again.motion.chain(again.mean)
-    assert (chain.delay_v, chain.delay_omega, chain.lag_v) == (0.2, -0.01, 0.0)
+    actuator = again.motion.actuator(again.mean)
+    assert (actuator.delay_v, actuator.delay_omega, actuator.lag_v) == (0.2, -0.01, 0.0)
     with pytest.raises(ModelError, match="a lag or delay is longer than 1000 s"):
         make_model(Made(_core.named_basis("edd-2"), delays=(0.2, -2000.0)))
 
@@ -134,14 +134,14 @@ WRONG = {
     "no schema": (set_key("slipwise_model", None), "schema version None"),
     "schema is a flag": (set_key("slipwise_model", True), "schema version True"),
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),
-    "slip wanders without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
+    "slip is disturbed without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
     "weights of more than all": (set_key("coloured.candidates.0.weight", 1.5), "coloured: .*sum to 1"),
     "a section of the schema before": (set_key("start", {}), "start: there is no such key"),
-    "wander of negative size": (
+    "disturbance of negative size": (
         set_key("coloured.candidates.1.turn", -0.1),
         r"coloured\.candidates\.1\.turn",
     ),
-    "wander of no time": (
+    "disturbance of no time": (
         set_key("coloured.candidates.1.time_constant", 0.0),
         r"candidates\.1\.time_constant",
     ),
@@ -169,7 +169,7 @@ WRONG = {
     "terms that are not parameters": (set_key("slip.lon", ["V"]), "the parameters are .* have"),
     "parameter renamed": (set_key("parameters.0.name", "lon.w"), "the parameters are .* have"),
     "parameters missing": (set_key("parameters", []), "covariance must have 0 rows"),
-    "chain without parameters": (set_key("dynamics", False), "the parameters are .* have"),
+    "actuator without parameters": (set_key("dynamics", False), "the parameters are .* have"),
     "offset without a parameter": (set_key("clock_offset", True), "the parameters are .* have"),
     "delays beside lags": (set_key("delays", True), "delays alone are of commands"),
     "section is a list": (set_key("noise", [1, 2]), "noise: must be a table of keys"),

@@ -12,8 +12,8 @@ import yaml
 from sample_models import make_model, named
 
 from slipwise import _core
+from slipwise.export.actuator import actuator_of
 from slipwise.export.c_header import c_header
-from slipwise.export.chain import chain_of
 from slipwise.export.reference_drive import motion_covariance, slip_density
 from slipwise.models import Model, load_model
 from slipwise.planning import rollout
@@ -81,7 +81,7 @@ def test_rollouts_are_those_of_base_link(body: Model, mounted: Model) -> None:
 
 
 def test_exports_are_those_of_base_link(body: Model, mounted: Model) -> None:
-    ours, theirs = chain_of(mounted), chain_of(body)
+    ours, theirs = actuator_of(mounted), actuator_of(body)
     for channel in ("v", "omega"):
         a, b = getattr(ours, channel), getattr(theirs, channel)
         assert (a.mean_delay.value, a.gain.value) == (b.mean_delay.value, b.gain.value)

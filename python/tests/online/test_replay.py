@@ -124,7 +124,7 @@ def same_model(
     assert [(t.growth, t.dof) for t in noise.tails.values()] == [(s.inflation, s.dof) for s in tails.values()]
     assert content.coloured is not None
     law = learned.disturbance.law
-    assert [wander.weight for wander in content.coloured.candidates] == list(law.weights)
+    assert [disturbance.weight for disturbance in content.coloured.candidates] == list(law.weights)
     assert content.provenance.learned_windows == learned.segments
     assert content.range.speed + content.range.yaw_rate == list(learned.range)
 

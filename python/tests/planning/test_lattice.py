@@ -38,8 +38,8 @@ def share() -> float:
 
 
 def test_the_map_of_held_curvatures_has_dead_band_and_tops() -> None:
-    lanes = {"speed": {"top": 0.8}, "yaw_rate": {"dead_band": 0.1, "top": 0.5}}
-    model = make_model(Made(basis=_core.Basis("none", [], [], []), commands=True, limits=lanes))
+    axes = {"speed": {"top": 0.8}, "yaw_rate": {"dead_band": 0.1, "top": 0.5}}
+    model = make_model(Made(basis=_core.Basis("none", [], [], []), commands=True, limits=axes))
     held = curvature_map(model, limits=LIMITS, speeds=3, curvatures=21)
     speed = np.broadcast_to(held.speed[:, None], held.held.shape)
     turn = held.told * speed

@@ -29,8 +29,8 @@ def test_limits_are_the_fastest_that_was_driven_either_way() -> None:
 
 
 def test_learned_limits_of_the_drive_are_kept_where_they_are_tighter() -> None:
-    lanes = {"speed": {"top": 1.1, "acceleration": 0.4, "braking": 1.7}, "yaw_rate": {"top": 5.0}}
-    limits = limits_of(make_model(made(speed=(0.0, 1.5), yaw_rate=(-1.0, 1.0), commands=True, limits=lanes)))
+    axes = {"speed": {"top": 1.1, "acceleration": 0.4, "braking": 1.7}, "yaw_rate": {"top": 5.0}}
+    limits = limits_of(make_model(made(speed=(0.0, 1.5), yaw_rate=(-1.0, 1.0), commands=True, limits=axes)))
     assert limits.speed == pytest.approx(1.1)
     assert limits.yaw_rate == pytest.approx(1.0)
     assert limits.acceleration == pytest.approx(0.4)

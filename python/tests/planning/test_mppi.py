@@ -52,8 +52,8 @@ def test_the_controller_steers_back_to_its_track() -> None:
 
 
 def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> None:
-    wandering = make_model(Made(basis=_core.named_basis("edd-2"), commands=True, wander=(0.1, 0.3, 8.0)))
-    for model in (learned_model(), wandering):
+    disturbed = make_model(Made(basis=_core.named_basis("edd-2"), commands=True, disturbance=(0.1, 0.3, 8.0)))
+    for model in (learned_model(), disturbed):
         drawn = np.array([motion.parameters for motion in learned_motions(model, samples=400, seconds=2.0)])
         assert (drawn[0] == model.mean).all()
         spread = drawn[1:].std(axis=0) / np.sqrt(np.diag(model.covariance_over(2.0)))

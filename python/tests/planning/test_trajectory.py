@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from planning.planning_samples import LIMITS, learned_model
-from sample_models import LIMITS as LANES
+from sample_models import LIMITS as AXES
 from sample_models import Made, make_model, named
 
 from slipwise import _core
@@ -67,7 +67,7 @@ def test_a_goal_in_another_frame_gives_the_same_commands(planner: Planner) -> No
 
 
 def test_goals_are_reached_through_the_limits_of_the_drive() -> None:
-    model = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.3), commands=True, limits=LANES))
+    model = make_model(replace(named("full-linear-6", lat__w=0.1, ang__w=-0.3), commands=True, limits=AXES))
     planner = Planner(
         model, limits=Limits(speed=1.0, yaw_rate=0.7, curvature=1.0), options=TrajectoryOptions()
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The known robot does what it says: chain, clocks, slip and sensor, each alone."""
+"""The known robot does what it says: actuator, clocks, slip and sensor, each alone."""
 
 from __future__ import annotations
 

@@ -64,5 +64,5 @@ def test_a_surface_that_is_not_determined_makes_no_model() -> None:
     examples = draw(50, 4)
     surface = LeastSquaresSurface(_core.Basis("twice", ["V", "abs(V)"], ["w"], ["w"]))
     surface.fit(examples)
-    with pytest.raises(SettingsError, match="V and abs\\(V\\) are not told apart"):
+    with pytest.raises(SettingsError, match="V and abs\\(V\\) cannot be distinguished"):
         as_basis_model(surface, examples)

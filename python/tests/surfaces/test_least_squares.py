@@ -48,11 +48,11 @@ def test_one_speed_names_its_directions_and_is_unsure_elsewhere_only() -> None:
     slip = true_slip(v, omega) + 0.01 * np.random.default_rng(4).standard_normal((20, 3))
     surface = LeastSquaresSurface(_core.named_basis("thesis-15"))
     surface.fit(slip_examples(np.column_stack((v, omega)), slip))
-    assert "lon: V and V^2 are not told apart" in surface.notes
+    assert "lon: V and V^2 cannot be distinguished" in surface.notes
     assert len(surface.notes) == 6
     assert np.isfinite(surface.predict(1.5, 0.3).std).all()
     assert np.isinf(surface.predict(1.0, 0.3).std).all()
-    with pytest.raises(SettingsError, match="V and V\\^2 are not told apart"):
+    with pytest.raises(SettingsError, match="V and V\\^2 cannot be distinguished"):
         surface.basis_slip()
 
 

@@ -45,18 +45,18 @@ double best_seconds(const Work& work) {
 }
 
 __global__ void multiply_and_add(float factor, float summand, float* sink) {
-  float chain[kChains];
+  float actuator[kChains];
   for (int c = 0; c < kChains; ++c) {
-    chain[c] = static_cast<float>(threadIdx.x + c);
+    actuator[c] = static_cast<float>(threadIdx.x + c);
   }
   for (int i = 0; i < kRounds; ++i) {
 #pragma unroll
     for (int c = 0; c < kChains; ++c) {
-      chain[c] = fmaf(chain[c], factor, summand);
+      actuator[c] = fmaf(actuator[c], factor, summand);
     }
   }
   float sum = 0.0F;
-  for (const float number : chain) {
+  for (const float number : actuator) {
     sum += number;
   }
   if (sum == 1.0F) {  // it is not, which the compiler does not know

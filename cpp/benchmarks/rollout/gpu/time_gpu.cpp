@@ -32,9 +32,9 @@ struct Case {
   double operations;
 };
 
-constexpr Case kCases[]{{"thesis-15, no chain", "thesis-15", false, 34.0},  // NOLINT(modernize-avoid-c-arrays)
+constexpr Case kCases[]{{"thesis-15, no actuator", "thesis-15", false, 34.0},  // NOLINT(modernize-avoid-c-arrays)
                         {"thesis-15, lag and one delay", "thesis-15", true, 40.0},
-                        {"odd-even-10, no chain", "odd-even-10", false, 0.0}};
+                        {"odd-even-10, no actuator", "odd-even-10", false, 0.0}};
 
 RolloutProgram program_of(const Case& kind) {
   const MotionModel model(named_basis(kind.basis), {.dynamics = kind.dynamics});

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/input_track.hpp"
 
 namespace slipwise {
@@ -13,7 +13,7 @@ namespace slipwise {
 /// One axis: which part of the inputs it follows, and how.
 struct ActuatorAxis {
   double BodyTwist::* part;
-  ChannelResponse response;
+  AxisResponse response;
   double delay;  ///< [s]
 };
 
@@ -28,7 +28,7 @@ inline constexpr int kAxisParameters = 7;
 
 struct AxisMotion {
   Eigen::VectorXd value;  ///< [K + 2] mean over each interval, then the state at the end
-  Eigen::Matrix<double, Eigen::Dynamic, kAxisParameters> slope;  ///< [K + 2, 7]
+  Eigen::Matrix<double, Eigen::Dynamic, kAxisParameters> derivative;  ///< [K + 2, 7]
 };
 
 /// The state of an axis whose input at `time` [s] was held for long.

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/first_order_lag.hpp"
 #include "slipwise/actuator/slow_mode.hpp"
 
@@ -15,7 +15,7 @@ namespace slipwise {
 template <int N>
 struct Sensitive {
   double value = 0.0;
-  Eigen::Matrix<double, 1, N> slope = Eigen::Matrix<double, 1, N>::Zero();
+  Eigen::Matrix<double, 1, N> derivative = Eigen::Matrix<double, 1, N>::Zero();
 };
 
 template <int N>
@@ -25,12 +25,12 @@ double value_of(const Sensitive<N>& number) {
 
 template <int N>
 Sensitive<N> operator+(const Sensitive<N>& a, const Sensitive<N>& b) {
-  return {a.value + b.value, a.slope + b.slope};
+  return {a.value + b.value, a.derivative + b.derivative};
 }
 
 template <int N>
 Sensitive<N> operator-(double a, const Sensitive<N>& b) {
-  return {a - b.value, -b.slope};
+  return {a - b.value, -b.derivative};
 }
 
 /// Where an axis's parameters stand among the N; kNotAmong where nothing is differentiated by one.
@@ -43,7 +43,7 @@ struct AxisPlaces {
 struct AxisDecay {
   LagDecay fast, slow;
 
-  AxisDecay(const ChannelResponse& response, double duration)
+  AxisDecay(const AxisResponse& response, double duration)
       : fast(response.lag, duration), slow(response.slow_lag, duration) {}
 };
 
@@ -54,10 +54,10 @@ class AxisStepper {
   using Value = Sensitive<N>;
   using Row = Eigen::Matrix<double, 1, N>;
 
-  explicit AxisStepper(const ChannelResponse& response, const AxisPlaces& places = {})
+  explicit AxisStepper(const AxisResponse& response, const AxisPlaces& places = {})
       : response_(response), places_(places) {}
 
-  const ChannelResponse& response() const { return response_; }
+  const AxisResponse& response() const { return response_; }
   const Value& fast() const { return fast_; }
   const Value& slow() const { return slow_; }
   Value whole() const { return fast_ + slow_; }
@@ -66,7 +66,7 @@ class AxisStepper {
   void start(const Value& fast, const Value& slow) {
     fast_ = fast;
     slow_ = slow;
-    moves_ = fast.value != 0.0 || slow.value != 0.0 || !fast.slope.isZero(0.0) || !slow.slope.isZero(0.0);
+    moves_ = fast.value != 0.0 || slow.value != 0.0 || !fast.derivative.isZero(0.0) || !slow.derivative.isZero(0.0);
   }
 
   /// An input that was held for long.
@@ -89,9 +89,9 @@ class AxisStepper {
   /// An input that moves with some of the N, which are none of the axis's own.
   void hold(const Value& input) {
     const double fast = response_.fast_share(), slow = response_.share() * response_.gain;
-    towards_fast_ = {fast * input.value, fast * input.slope};
-    towards_slow_ = {slow * input.value, slow * input.slope};
-    moves_ = moves_ || input.value != 0.0 || !input.slope.isZero(0.0);
+    towards_fast_ = {fast * input.value, fast * input.derivative};
+    towards_slow_ = {slow * input.value, slow * input.derivative};
+    moves_ = moves_ || input.value != 0.0 || !input.derivative.isZero(0.0);
   }
 
   /// The whole was measured while the held input acts.
@@ -113,8 +113,8 @@ class AxisStepper {
     slow_ = {.value = response_.share() * value};
     if constexpr (N > 0) {
       if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
-        fast_.slope[places_.slow_share] = -value;
-        slow_.slope[places_.slow_share] = value;
+        fast_.derivative[places_.slow_share] = -value;
+        slow_.derivative[places_.slow_share] = value;
       }
     }
     towards_fast_ = fast_;
@@ -134,31 +134,31 @@ class AxisStepper {
   }
 
   /// The same with derivatives; the step's duration may move with the parameters too.
-  Value advance(const AxisDecay& decay, const Row& duration_slope) {
+  Value advance(const AxisDecay& decay, const Row& duration_derivative) {
     if (!moves_) {
       return {};
     }
-    const Value fast = advance(fast_, towards_fast_, decay.fast, places_.lag, duration_slope);
+    const Value fast = advance(fast_, towards_fast_, decay.fast, places_.lag, duration_derivative);
     return response_.has_slow_part()
-               ? fast + advance(slow_, towards_slow_, decay.slow, places_.slow_lag, duration_slope)
+               ? fast + advance(slow_, towards_slow_, decay.slow, places_.slow_lag, duration_derivative)
                : fast;
   }
 
   /// Goes on for a while whose integral nobody asks for.
-  void follow(const AxisDecay& decay, const Row& duration_slope) {
+  void follow(const AxisDecay& decay, const Row& duration_derivative) {
     if (!moves_) {
       return;
     }
     follow(fast_, towards_fast_, linearize_lag_step(fast_.value, towards_fast_.value, decay.fast), places_.lag,
-           duration_slope);
+           duration_derivative);
     if (response_.has_slow_part()) {
       follow(slow_, towards_slow_, linearize_lag_step(slow_.value, towards_slow_.value, decay.slow), places_.slow_lag,
-             duration_slope);
+             duration_derivative);
     }
   }
 
   /// Without lag, the derivative of a step's integral by the gain.
-  double by_gain(double duration) const { return towards_fast_.slope[places_.gain] * duration; }
+  double by_gain(double duration) const { return towards_fast_.derivative[places_.gain] * duration; }
 
  private:
   /// Of an input, what one of the modes goes towards: its share of gain * input.
@@ -167,10 +167,10 @@ class AxisStepper {
     Value part{.value = share * response_.gain * input};
     if constexpr (N > 0) {
       if (places_.gain != kNotAmong) {
-        part.slope[places_.gain] = share * input;
+        part.derivative[places_.gain] = share * input;
       }
       if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
-        part.slope[places_.slow_share] = (slow ? 1.0 : -1.0) * response_.gain * input;
+        part.derivative[places_.slow_share] = (slow ? 1.0 : -1.0) * response_.gain * input;
       }
     }
     return part;
@@ -183,34 +183,34 @@ class AxisStepper {
   }
 
   static void follow(Value& mode, const Value& towards, const LagStepLinearization& step, Eigen::Index time_constant,
-                     const Row& duration_slope) {
+                     const Row& duration_derivative) {
     if constexpr (N > 0) {
-      mode.slope = (step.by_duration.output * duration_slope + step.by_output.output * mode.slope +
-                    step.by_input.output * towards.slope)
-                       .eval();
+      mode.derivative = (step.by_duration.output * duration_derivative + step.by_output.output * mode.derivative +
+                         step.by_input.output * towards.derivative)
+                            .eval();
       if (time_constant != kNotAmong) {
-        mode.slope[time_constant] += step.by_time_constant.output;
+        mode.derivative[time_constant] += step.by_time_constant.output;
       }
     }
     mode.value = step.value.output;
   }
 
   static Value advance(Value& mode, const Value& towards, const LagDecay& decay, Eigen::Index time_constant,
-                       const Row& duration_slope) {
+                       const Row& duration_derivative) {
     const auto step = linearize_lag_step(mode.value, towards.value, decay);
     Value integral{.value = step.value.integral};
     if constexpr (N > 0) {
-      integral.slope = step.by_duration.integral * duration_slope + step.by_output.integral * mode.slope +
-                       step.by_input.integral * towards.slope;
+      integral.derivative = step.by_duration.integral * duration_derivative +
+                            step.by_output.integral * mode.derivative + step.by_input.integral * towards.derivative;
       if (time_constant != kNotAmong) {
-        integral.slope[time_constant] += step.by_time_constant.integral;
+        integral.derivative[time_constant] += step.by_time_constant.integral;
       }
     }
-    follow(mode, towards, step, time_constant, duration_slope);
+    follow(mode, towards, step, time_constant, duration_derivative);
     return integral;
   }
 
-  ChannelResponse response_;
+  AxisResponse response_;
   AxisPlaces places_;
   Value fast_, slow_, towards_fast_, towards_slow_;
   /// Most robots never drive sideways. What has not moved, and is not commanded to, has no derivatives either.

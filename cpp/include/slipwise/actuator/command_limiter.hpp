@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of the drive as they act: what it was told, and what its ramps hold meanwhile (derivations.md, section 4).
+// Limits of the drive as they act: what it was commanded, and what its ramps hold meanwhile (derivations.md, section
+// 4).
 #pragma once
 
 #include <algorithm>
@@ -10,13 +11,13 @@
 
 namespace slipwise {
 
-/// The set speed of one lane, which follows its target as fast as it may. A track holds thousands of pieces, so its
+/// The set speed of one axis, which follows its target as fast as it may. A track holds thousands of pieces, so its
 /// steps are inline.
-class LaneRamp {
+class AxisRamp {
  public:
-  explicit LaneRamp(const LaneLimits& limits) : limits_(limits) {}
+  explicit AxisRamp(const AxisLimits& limits) : limits_(limits) {}
 
-  /// What the lane makes of a command that is held for long.
+  /// What the axis makes of a command that is held for long.
   double limited(double command) const {
     return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.top, limits_.top);
   }
@@ -55,7 +56,7 @@ class LaneRamp {
     if (taken == piece) {
       return follow(piece) / piece;
     }
-    LaneRamp whole = *this;
+    AxisRamp whole = *this;
     follow(taken);
     return whole.follow(piece) / piece;
   }
@@ -91,7 +92,7 @@ class LaneRamp {
     return integral + state_ * seconds;
   }
 
-  LaneLimits limits_;
+  AxisLimits limits_;
   double state_ = 0.0;
   double target_ = 0.0;
 };
@@ -101,14 +102,14 @@ class CommandLimiter {
  public:
   explicit CommandLimiter(const CommandLimits& limits);
 
-  /// It was told this for long.
+  /// It was commanded this for long.
   void settle(const BodyTwist& command);
-  /// It gives out `given` now, and was told so.
+  /// It gives out `given` now, and was commanded so.
   void place(const BodyTwist& given);
   /// The drive was measured to do what `given` keeps: ramps of the speed or of the yaw rate, and those of both sides,
   /// have come at least as far.
   void reach(const BodyTwist& given, bool speed, bool yaw_rate);
-  /// It is told this from now on; vy passes as it is.
+  /// It is commanded this from now on; vy passes as it is.
   void tell(const BodyTwist& command);
 
   /// No ramp takes longer; 0 where all are over [s].
@@ -133,7 +134,7 @@ class CommandLimiter {
   CommandLimits limits_;
   bool sides_;
   double vy_ = 0.0;
-  LaneRamp speed_, yaw_rate_, left_, right_;
+  AxisRamp speed_, yaw_rate_, left_, right_;
 };
 
 /// What is left of a command that is held for long.

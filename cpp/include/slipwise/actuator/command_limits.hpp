@@ -10,22 +10,22 @@
 
 namespace slipwise {
 
-/// Limits of one lane of the drive, the same for both signs; the defaults are the identity.
-struct LaneLimits {
+/// Limits of one axis of the drive, the same for both signs; the defaults are the identity.
+struct AxisLimits {
   double dead_band = 0.0;  ///< what is slower gives zero, the rest passes as it is [m/s or rad/s]
   double top = std::numeric_limits<double>::infinity();           ///< no faster [m/s or rad/s]
   double acceleration = std::numeric_limits<double>::infinity();  ///< away from zero no quicker [m/s^2 or rad/s^2]
   double braking = std::numeric_limits<double>::infinity();       ///< towards zero no quicker [m/s^2 or rad/s^2]
 
-  auto operator<=>(const LaneLimits&) const = default;
+  auto operator<=>(const AxisLimits&) const = default;
 };
 
 /// Limits of the commands, as a controller has them, and then of the two sides of a skid-steered or differential drive,
 /// as its motors have them. Both sides are built alike.
 struct CommandLimits {
-  LaneLimits speed = {};
-  LaneLimits yaw_rate = {};
-  LaneLimits side = {};     ///< of each side's speed, v -+ omega * track / 2
+  AxisLimits speed = {};
+  AxisLimits yaw_rate = {};
+  AxisLimits side = {};     ///< of each side's speed, v -+ omega * track / 2
   double track = 1.0;       ///< [m] between the sides
   double gain_v = 1.0;      ///< of the speed that is asked of the sides over the limited command [-]
   double gain_omega = 1.0;  ///< of the yaw rate [-]
@@ -38,8 +38,8 @@ bool unlimited(const CommandLimits& limits);
 /// Whether the sides are limited; if not, track and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
-/// Whether a lane, or some lane, ramps.
-bool limits_rates(const LaneLimits& limits);
+/// Whether a axis, or some axis, ramps.
+bool limits_rates(const AxisLimits& limits);
 bool limits_rates(const CommandLimits& limits);
 /// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top, track or gain not positive.
 void check(const CommandLimits& limits);

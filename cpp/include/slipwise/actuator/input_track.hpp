@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the robot was told (or its wheels did) over time: each sample is held until the next one.
+// What the robot was commanded (or its wheels did) over time: each sample is held until the next one.
 #pragma once
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 // What measured speeds say of the limits in front of a drive (derivations.md, section 4).
 #pragma once
 
-#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 
 namespace slipwise {
@@ -15,7 +15,7 @@ struct MeasuredStart {
 };
 
 /// The drive did `measured` at `time` [s], in the stamps of the commands.
-MeasuredStart measured_start(const CommandChain& chain, double time, const BodyTwist& measured);
+MeasuredStart measured_start(const ActuatorModel& actuator, double time, const BodyTwist& measured);
 
 /// The limited track of a drive that was measured. A channel in which no command acts by then starts from what keeps
 /// the measured speed. In the others a ramp that the measured speed has overtaken has come as far as that speed.

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "slipwise/actuator/channel_response.hpp"
+#include "slipwise/actuator/axis_response.hpp"
 
 namespace slipwise {
 

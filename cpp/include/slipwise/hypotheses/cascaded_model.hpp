@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "slipwise/estimate/chain_learner.hpp"
-#include "slipwise/estimate/model_average.hpp"
-#include "slipwise/estimate/motion_posterior.hpp"
-#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/filter/predictive_score.hpp"
+#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/identify/actuator_filter.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -63,7 +63,7 @@ class CascadedModel {
   MotionModel model_;
   MotionNoise noise_;
   ModelAverage slip_;
-  ChainLearner actuator_;
+  ActuatorFilter actuator_;
   PredictiveScore score_;
   std::vector<Eigen::Index> places_of_slip_;  ///< of its parameters among the model's
   std::vector<Eigen::Index> places_of_actuator_;

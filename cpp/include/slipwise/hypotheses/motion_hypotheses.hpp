@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "slipwise/estimate/model_average.hpp"
-#include "slipwise/estimate/motion_posterior.hpp"
-#include "slipwise/estimate/predictive_score.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/hypotheses/model_average.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {

@@ -61,10 +61,10 @@ inline Pose2 inverse(const Pose2& pose) {
   return {-c * pose.x - s * pose.y, s * pose.x - c * pose.y, -pose.theta};
 }
 
-/// T_a_b from T_w_a and T_w_b: where b is as seen from a.
+/// T_a_b from T_w_a and T_w_b: where b is as observed from a.
 inline Pose2 between(const Pose2& world_a, const Pose2& world_b) { return compose(inverse(world_a), world_b); }
 
-/// Ad_X: maps a tangent at the robot to the same motion seen from the frame of the pose.
+/// Ad_X: maps a tangent at the robot to the same motion observed from the frame of the pose.
 inline Eigen::Matrix3d adjoint(const Pose2& pose) {
   Eigen::Matrix3d ad = Eigen::Matrix3d::Identity();
   ad.topLeftCorner<2, 2>() = rotation(pose.theta);

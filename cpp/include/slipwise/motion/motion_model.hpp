@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The motion model: a slip basis behind a command chain, seen by a pose sensor, and the layout of its parameter vector.
+// The motion model: a slip basis behind a command actuator, observed by a pose sensor, and the layout of its parameter
+// vector.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,15 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/parameter_block.hpp"
 #include "slipwise/slip/basis.hpp"
 
 namespace slipwise {
 
-/// Which parts of the chain, and of what measures its poses, are parameters. What is not learned is the identity.
-struct ChainParameters {
+/// Which parts of the actuator, and of what measures its poses, are parameters. What is not learned is the identity.
+struct ActuatorParameters {
   bool dynamics = false;      ///< lag and delay per channel
   bool clock_offset = false;  ///< offset between inputs and poses
   bool response = false;      ///< gain, and a slow part with its share and time constant, per channel
@@ -27,7 +28,7 @@ inline constexpr Eigen::Index kMountParameters = 3;
 
 /// Derivative, by its logarithm, of a coordinate of a time in which motion is nearly linear (derivations.md, section
 /// 6): (s + 0.03) / (s + 0.3) for s [s].
-double even_slope(double seconds);
+double log_time_derivative(double seconds);
 
 /// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
 /// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
@@ -38,36 +39,37 @@ class MotionModel {
  public:
   MotionModel();  ///< the kinematic baseline: no slip, nothing learned
   /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow part.
-  MotionModel(Basis basis, ChainParameters learned);
+  MotionModel(Basis basis, ActuatorParameters learned);
 
   /// What the constructor takes.
-  std::tuple<Basis, ChainParameters> definition() const { return {basis_, learned_}; }
+  std::tuple<Basis, ActuatorParameters> definition() const { return {basis_, learned_}; }
   const Basis& basis() const { return basis_; }
-  ChainParameters learned() const { return learned_; }
+  ActuatorParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
-  Eigen::Index chain_size() const { return static_cast<Eigen::Index>(chain_places_.size()); }
+  Eigen::Index actuator_size() const { return static_cast<Eigen::Index>(chain_places_.size()); }
   Eigen::Index mount_size() const { return learned_.mount ? kMountParameters : 0; }
-  Eigen::Index size() const { return slip_size() + chain_size() + mount_size(); }
+  Eigen::Index size() const { return slip_size() + actuator_size() + mount_size(); }
   std::vector<ParameterInfo> parameters() const;
 
-  CommandChain chain(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+  ActuatorModel actuator(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
   /// Pose of the sensor in base_link; the identity where it is not learned.
   Pose2 mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
-  /// Which of the chain's parameters (in CommandChain's order) the model's chain parameters are, one after the other.
+  /// Which of the actuator's parameters (in ActuatorModel's order) the model's actuator parameters are, one after the
+  /// other.
   const std::vector<Eigen::Index>& chain_places() const { return chain_places_; }
   /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
-  Eigen::VectorXd chain_scales(const CommandChain& chain) const;
+  Eigen::VectorXd chain_scales(const ActuatorModel& actuator) const;
 
-  /// `even_slope` of each time whose logarithm is learned, 1 for the other parameters.
-  Eigen::VectorXd even_slopes(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+  /// `log_time_derivative` of each time whose logarithm is learned, 1 for the other parameters.
+  Eigen::VectorXd log_time_derivatives(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
 
   /// \throws std::invalid_argument when the length is not size() or a value is not finite.
   void check(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
 
  private:
   Basis basis_;
-  ChainParameters learned_;
-  std::vector<Eigen::Index> chain_rows_;  ///< in the table of what may be learned of the chain
+  ActuatorParameters learned_;
+  std::vector<Eigen::Index> actuator_rows_;  ///< in the table of what may be learned of the actuator
   std::vector<Eigen::Index> chain_places_;
 };
 

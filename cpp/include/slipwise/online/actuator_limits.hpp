@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/estimate/causal_filter.hpp"
-#include "slipwise/estimate/limit_search.hpp"
-#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/identify/limit_search.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -42,6 +42,6 @@ std::optional<LimitSearch> search_limits(std::span<const WheelSegment> driven, c
                                          double wheel_separation);
 
 /// Commands and wheel speeds as the search takes them: stretches without a gap, a twist in each twentieth of a second.
-std::vector<DriveRecord> drive_records(std::span<const WheelSegment> wheels);
+std::vector<WheelRecord> drive_records(std::span<const WheelSegment> wheels);
 
 }  // namespace slipwise

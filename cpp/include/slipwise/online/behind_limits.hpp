@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "slipwise/actuator/command_limits.hpp"
-#include "slipwise/estimate/motion_posterior.hpp"
-#include "slipwise/estimate/noise_scale.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/filter/noise_scale.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {

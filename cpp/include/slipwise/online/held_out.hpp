@@ -10,19 +10,19 @@
 #include <memory>
 
 #include "slipwise/archive/bytes.hpp"
-#include "slipwise/estimate/coloured_slip.hpp"
-#include "slipwise/estimate/motion_posterior.hpp"
-#include "slipwise/identify/student_calibration.hpp"
+#include "slipwise/disturbance/slip_disturbance.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/online/student_calibration.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
 
 /// What was known at some time.
 struct Knowledge {
-  double until;                                     ///< stamp of what was measured last of all that was learned [s]
-  std::shared_ptr<const MotionPosterior> motion;    ///< of the structure that predicts
-  std::shared_ptr<const MotionPosterior> slip;      ///< of the best structure that has slip
-  std::shared_ptr<const ColouredSlip> disturbance;  ///< how slip differs from that now and then
+  double until;                                   ///< stamp of what was measured last of all that was learned [s]
+  std::shared_ptr<const MotionPosterior> motion;  ///< of the structure that predicts
+  std::shared_ptr<const MotionPosterior> slip;    ///< of the best structure that has slip
+  std::shared_ptr<const DisturbanceFilter> disturbance;  ///< how slip differs from that now and then
 };
 
 /// A prediction of one horizon, and what was measured.

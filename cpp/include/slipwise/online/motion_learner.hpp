@@ -24,7 +24,7 @@ namespace slipwise {
 struct LearnerSettings {
   StreamSettings stream = {};
   HypothesisSettings hypotheses = {};
-  ColouredSlipSettings disturbance = {};
+  DisturbanceSettings disturbance = {};
   bool learn_disturbance = true;  ///< how slip differs from what was learned, now and then
 };
 
@@ -142,7 +142,7 @@ class MotionLearner {
   LearnerSettings settings_;
   SegmentStream stream_;
   MotionHypotheses hypotheses_;
-  ColouredSlip disturbance_;
+  DisturbanceFilter disturbance_;
   std::deque<StreamItem> waiting_;              ///< segments in the order in which they are learned
   bool started_ = false;                        ///< whether the first of them is being learned
   std::deque<Knowledge> known_;                 ///< of late; the last is the newest

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "slipwise/estimate/speed_range.hpp"
+#include "slipwise/filter/speed_range.hpp"
 #include "slipwise/online/input_history.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 

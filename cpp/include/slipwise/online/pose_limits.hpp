@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/actuator_limits.hpp"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "slipwise/estimate/coloured_slip.hpp"
+#include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -19,7 +19,7 @@ using SegmentList = std::vector<const DrivenSegment*>;
 class RecentSlip {
  public:
   /// Where slip is after `segments`, the last of a run, by what is known of the motion: good until the next call.
-  const SlipNow& after(const ColouredSlip& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
+  const SlipNow& after(const DisturbanceFilter& disturbance, const std::shared_ptr<const MotionPosterior>& motion,
                        const SegmentList& segments);
   /// Another run begins: segments of one run are distinguished by their ends.
   void restart() { found_.clear(); }

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "slipwise/estimate/motion_posterior.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
 
 namespace slipwise {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot may be told to do, and the state in which a plan begins.
+// What a robot may be commanded to do, and the state in which a plan begins.
 #pragma once
 
 #include <optional>
@@ -20,9 +20,9 @@ struct DriveLimits {
 };
 
 /// The robot when a plan begins.
-struct DriveStart {
+struct ActuatorState {
   BodyTwist drive = {};                ///< what the drive does, behind its lag
-  BodyTwist told = {};                 ///< the last command before the plan; it acts until the delay is over
+  BodyTwist commanded = {};            ///< the last command before the plan; it acts until the delay is over
   std::optional<BodyTwist> fast = {};  ///< of the drive, what the lags hold beside the slow ones; settled if not known
 
   /// \throws std::invalid_argument unless all are finite.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A model predictive path integral controller: many sampled command sequences, driven through the learned model, and
-// their average weighed by cost (Williams et al. 2018).
+// their average weighted by cost (Williams et al. 2018).
 #pragma once
 
 #include <cstdint>

@@ -33,7 +33,7 @@ struct Reach {
 struct ReachProblem {
   const PlanningModel& model;
   ManoeuvreFrame frame;
-  DriveStart start;
+  ActuatorState start;
   ManoeuvreBounds bounds;
 };
 

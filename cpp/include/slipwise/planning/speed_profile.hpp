@@ -14,7 +14,7 @@ struct SpeedEnds {
 /// A value with its derivative by the length of the stretch.
 struct ByLength {
   double value;
-  double slope;
+  double derivative;
 };
 
 /// Trapezoid of speed over time, or a triangle where the stretch is short.

@@ -37,7 +37,7 @@ struct Trajectory {
   std::vector<double> t = {};      ///< [commands + 1], when each is given [s]
   std::vector<double> v = {};      ///< [m/s]
   std::vector<double> omega = {};  ///< [rad/s]
-  ManoeuvrePath path = {};         ///< seen from the start; it ends when the robot is at the goal
+  ManoeuvrePath path = {};         ///< observed from the start; it ends when the robot is at the goal
   double gap_xy = 0.0;             ///< how far the end is from the goal [m]
   double gap_yaw = 0.0;            ///< [rad]
   int linearizations = 0;          ///< how often the model was linearised
@@ -48,14 +48,15 @@ class TrajectoryPlanner {
  public:
   /// \throws std::invalid_argument when limits, settings or start make no sense.
   TrajectoryPlanner(PlanningModel model, const DriveLimits& limits, const TrajectorySettings& settings,
-                    const DriveStart& start = {});
+                    const ActuatorState& start = {});
 
-  /// A manoeuvre to `goal`, seen from the robot. Without one the status says so, and the nearest attempt is returned.
+  /// A manoeuvre to `goal`, observed from the robot. Without one the status says so, and the nearest attempt is
+  /// returned.
   /// \throws std::invalid_argument when goal or start are not finite, or the start is faster than the limits.
-  Trajectory to(const Pose2& goal, const DriveStart& start) const;
+  Trajectory to(const Pose2& goal, const ActuatorState& start) const;
 
   /// Bounds and frame of all manoeuvres from a start; `cruise` [m/s] is what the settings say, or slower.
-  ReachProblem problem(const DriveStart& start, double cruise) const;
+  ReachProblem problem(const ActuatorState& start, double cruise) const;
   const TrajectorySettings& settings() const { return settings_; }
 
  private:

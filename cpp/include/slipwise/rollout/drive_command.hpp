@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a robot is told to drive.
+// What a robot is commanded to drive.
 #pragma once
 
 namespace slipwise {

@@ -8,8 +8,8 @@
 
 namespace slipwise {
 
-/// Portable is what the compiler was told to build for: any processor that runs the rest of the library. Avx2 stands
-/// for all of x86-64-v3 (fused multiply-add), Avx512 for x86-64-v4.
+/// Portable is what the compiler was asked to build for: any processor that runs the rest of the library. Avx2
+/// stands for all of x86-64-v3 (fused multiply-add), Avx512 for x86-64-v4.
 enum class InstructionLevel : std::uint8_t { Portable, Avx2, Avx512 };
 inline constexpr std::array kInstructionLevels{InstructionLevel::Portable, InstructionLevel::Avx2,
                                                InstructionLevel::Avx512};

@@ -108,10 +108,10 @@ struct LaneJob {
   Scalar* cost_lowest;
 };
 
-/// One channel of the drives at the start (start_drive.hpp), a number per lane.
+/// One channel of the drives at the start (actuator_start.hpp), a number per lane.
 template <typename Scalar>
 struct LaneStart {
-  Scalar* told;
+  Scalar* commanded;
   Scalar* fast;
   Scalar* slow;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rollout of one block of lanes: command chain, slip, exact steps, outputs. Compiled once per instruction level.
+// The rollout of one block of lanes: command actuator, slip, exact steps, outputs. Compiled once per instruction level.
 #pragma once
 
-#include "slipwise/rollout/lane_drive.hpp"
+#include "slipwise/rollout/lane_actuator.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
 #include "slipwise/rollout/lane_path.hpp"
@@ -14,10 +14,10 @@
 namespace slipwise {
 
 /// A robot in every lane: its drive and where it is.
-template <class L, Chain kChain>
+template <class L, Chain kActuator>
 struct RobotLanes {
-  ChannelLanes<L, kChain> v;
-  ChannelLanes<L, kChain> omega;
+  ChannelLanes<L, kActuator> v;
+  ChannelLanes<L, kActuator> omega;
   PathLanes<L> path;
 };
 
@@ -35,13 +35,13 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
 }
 
 /// The tangent of one part: the drive moves on, and slips.
-template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
-SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part, RobotLanes<L, kChain>& robot,
-                               TangentLanes<L>& tangent) {
+template <class L, Chain kActuator, bool kQuadratic, typename Scalar = L::Scalar>
+SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
+                               RobotLanes<L, kActuator>& robot, TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
   typename L::Vector mean_omega;
-  advance<L, kChain, true>(part.v, robot.v, mean_v);
-  advance<L, kChain, false>(part.omega, robot.omega, mean_omega);
+  advance<L, kActuator, true>(part.v, robot.v, mean_v);
+  advance<L, kActuator, false>(part.omega, robot.omega, mean_omega);
   if constexpr (kQuadratic) {
     quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
   } else {
@@ -52,31 +52,31 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, Chain kChain, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
+template <class L, Chain kActuator, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
 SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
   const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
-  RobotLanes<L, kChain> robot;
+  RobotLanes<L, kActuator> robot;
   start_channel(job, block, source_v, job.shift_v, robot.v);
   start_channel(job, block, source_omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
   OutputLanes<L> output(job, block);
-  RobotLanes<L, kChain> aside = robot;
+  RobotLanes<L, kActuator> aside = robot;
   const bool has_tail = job.tail != job.part_end;
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
-    if (kChain == Chain::None || part.next_v) {
+    if (kActuator == Chain::None || part.next_v) {
       tell(job, block, source_v, robot.v);
     }
-    if (kChain == Chain::None || part.next_omega) {
+    if (kActuator == Chain::None || part.next_omega) {
       tell(job, block, source_omega, robot.omega);
     }
     TangentLanes<L> tangent;
-    drive_part<L, kChain, kQuadratic>(job, part, robot, tangent);
+    drive_part<L, kActuator, kQuadratic>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);
-    if constexpr (kChain == Chain::None) {
+    if constexpr (kActuator == Chain::None) {
       output.write_period(robot.path, period);
       ++period;
       continue;
@@ -107,10 +107,10 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, Chain kChain, bool kQuadratic, typename Scalar = L::Scalar>
+template <class L, Chain kActuator, bool kQuadratic, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const unsigned fault = roll_block_as<L, kChain, kQuadratic, false>(job, block);
-  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kChain, kQuadratic, true>(job, block);
+  const unsigned fault = roll_block_as<L, kActuator, kQuadratic, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kActuator, kQuadratic, true>(job, block);
 }
 
 /// What the job needs a kernel for.

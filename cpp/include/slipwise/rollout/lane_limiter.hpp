@@ -2,7 +2,7 @@
 // Limits of the drive in lanes: what dead-band, top and ramps leave of the commands of a block, piece by piece.
 #pragma once
 
-#include "slipwise/rollout/lane_drive.hpp"
+#include "slipwise/rollout/lane_actuator.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
@@ -92,13 +92,13 @@ void limit_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block, con
   load(start.right, ramps.right);
   std::size_t row = 0;
   for (std::size_t period = 0; period < rows.periods; ++period) {
-    typename L::Vector told_v;
-    typename L::Vector told_omega;
-    read_commands<L>(job, block, source_v, static_cast<std::ptrdiff_t>(period), told_v);
-    read_commands<L>(job, block, source_omega, static_cast<std::ptrdiff_t>(period), told_omega);
-    const typename L::Vector aimed_v = aim(limits.speed, told_v);
-    const typename L::Vector aimed_omega = aim(limits.yaw_rate, told_omega);
-    const typename L::Vector nothing = (told_v - told_v) + (told_omega - told_omega);
+    typename L::Vector commanded_v;
+    typename L::Vector commanded_omega;
+    read_commands<L>(job, block, source_v, static_cast<std::ptrdiff_t>(period), commanded_v);
+    read_commands<L>(job, block, source_omega, static_cast<std::ptrdiff_t>(period), commanded_omega);
+    const typename L::Vector aimed_v = aim(limits.speed, commanded_v);
+    const typename L::Vector aimed_omega = aim(limits.yaw_rate, commanded_omega);
+    const typename L::Vector nothing = (commanded_v - commanded_v) + (commanded_omega - commanded_omega);
     for (std::size_t piece = 0; piece < job.pieces; ++piece, row += L::kLanes) {
       typename L::Vector v = aimed_v;
       typename L::Vector omega = aimed_omega;

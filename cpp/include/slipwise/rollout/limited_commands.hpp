@@ -27,9 +27,10 @@ struct LimitedStart {
 /// Adds the pieces of one more command.
 void add_pieces(const RolloutProgram& program, const DriveCommand& command, LimitedStart& start);
 
-/// `past` was told before the start, and the oldest of it for long. Without any, the limits give what keeps the drive
-/// as it is, `told`.
-LimitedStart limited_start(const RolloutProgram& program, std::span<const DriveCommand> past, const DriveCommand& told);
+/// `past` was commanded before the start, and the oldest of it for long. Without any, the limits give what keeps the
+/// drive as it is, `commanded`.
+LimitedStart limited_start(const RolloutProgram& program, std::span<const DriveCommand> past,
+                           const DriveCommand& commanded);
 
 /// Memory for the limited commands of one block at a time.
 template <typename Scalar>

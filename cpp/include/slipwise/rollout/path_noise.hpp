@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "slipwise/lie/se2.hpp"
+#include "slipwise/motion/disturbance_model.hpp"
 #include "slipwise/motion/motion_noise.hpp"
-#include "slipwise/motion/slip_wander.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 
 namespace slipwise {
@@ -17,10 +17,10 @@ namespace slipwise {
 /// The learned uncertainty of a model.
 struct ModelUncertainty {
   Eigen::MatrixXd covariance;  ///< of the parameters
-  MotionNoise noise;           ///< its pose noise is not used: a rollout starts where it is told to
+  MotionNoise noise;           ///< its pose noise is not used: a rollout starts at a given pose
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< learned factor of the variances of (x, y, theta)
   double growth = 1.0;                              ///< factor of all variances at the horizon in question
-  WanderLaw wander{};                               ///< of slip about the parameters
+  DisturbanceModel wander{};                        ///< of slip about the parameters
   Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip wanders
 };
 
@@ -37,9 +37,9 @@ struct UncertainModel {
 void check_uncertainty(const UncertainModel& model);
 
 /// The terms that wander; none without a law.
-WanderingTerms terms_that_wander(const UncertainModel& model);
+DisturbedTerms disturbed_terms_of(const UncertainModel& model);
 
-/// The model that only drives: no slip, the same chain. Its paths say how far the drive moves.
+/// The model that only drives: no slip, the same actuator. Its paths say how far the drive moves.
 RolloutProgram drive_alone(const UncertainModel& model);
 
 /// A matrix whose product with its transpose is the covariance.

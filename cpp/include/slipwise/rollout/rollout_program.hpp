@@ -8,7 +8,7 @@
 
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/motion/motion_model.hpp"
-#include "slipwise/rollout/chain_schedule.hpp"
+#include "slipwise/rollout/actuator_schedule.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/slip_program.hpp"
 
@@ -40,7 +40,7 @@ class RolloutProgram {
   const RolloutSetting& setting() const { return setting_; }
   const SlipProgram& slip() const { return slip_; }
   /// Its period is one piece of a control period.
-  const ChainSchedule& chain() const { return chain_; }
+  const ActuatorSchedule& actuator() const { return actuator_; }
   bool limited() const { return !unlimited(setting_.limits); }
   /// Into how many pieces a command is cut, since the drive ramps; 1 where it does not.
   std::size_t pieces() const { return pieces_; }
@@ -54,7 +54,7 @@ class RolloutProgram {
   RolloutSetting setting_;
   SlipProgram slip_;
   std::size_t pieces_;
-  ChainSchedule chain_;
+  ActuatorSchedule actuator_;
   std::optional<LaneQuadratic> quadratic_;
   std::vector<LaneProduct> products_;
   LaneConstants<float> float_;

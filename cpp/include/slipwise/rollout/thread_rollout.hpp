@@ -51,7 +51,7 @@ SLIPWISE_LANES unsigned find_unused_faults(const ThreadJob<Scalar>& given, std::
 }
 
 /// Drives one rollout and says what went wrong, as bits.
-template <Chain kChain, bool kQuadratic, bool kWide, typename Scalar>
+template <Chain kActuator, bool kQuadratic, bool kWide, typename Scalar>
 SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t rollout) {
   LaneJob<Scalar> job = given.job;
   job.parts = given.parts;
@@ -69,12 +69,12 @@ SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t 
   block.first = rollout;
   block.count = 1;
   block.side_by_side = true;
-  return roll_block_as<OneLane<Scalar>, kChain, kQuadratic, kWide>(job, block) | find_unused_faults(given, rollout);
+  return roll_block_as<OneLane<Scalar>, kActuator, kQuadratic, kWide>(job, block) | find_unused_faults(given, rollout);
 }
 
-/// Calls `work.call<kChain, kQuadratic, kWide>()` with what the job needs.
+/// Calls `work.call<kActuator, kQuadratic, kWide>()` with what the job needs.
 template <bool kQuadratic, bool kWide, typename Scalar, class Work>
-void with_thread_chain(const LaneJob<Scalar>& job, const Work& work) {
+void with_thread_actuator(const LaneJob<Scalar>& job, const Work& work) {
   switch (chain_of(job)) {
     case Chain::None:
       return work.template call<Chain::None, kQuadratic, kWide>();
@@ -89,9 +89,9 @@ void with_thread_chain(const LaneJob<Scalar>& job, const Work& work) {
 template <typename Scalar, class Work>
 void with_thread_kernel(const LaneJob<Scalar>& job, bool wide, const Work& work) {
   if (job.is_quadratic) {
-    wide ? with_thread_chain<true, true>(job, work) : with_thread_chain<true, false>(job, work);
+    wide ? with_thread_actuator<true, true>(job, work) : with_thread_actuator<true, false>(job, work);
   } else {
-    wide ? with_thread_chain<false, true>(job, work) : with_thread_chain<false, false>(job, work);
+    wide ? with_thread_actuator<false, true>(job, work) : with_thread_actuator<false, false>(job, work);
   }
 }
 

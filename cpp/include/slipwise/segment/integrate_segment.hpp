@@ -18,12 +18,12 @@ namespace slipwise {
 /// Exact: exponential of each step's mean twist. Rk4: the thesis's Runge-Kutta steps, for comparison.
 enum class Integrator : std::uint8_t { Exact, Rk4 };
 
-/// The robot's path seen from its start.
+/// The robot's path observed from its start.
 struct SegmentPath {
   std::vector<double> times;                        ///< [steps + 1], [s], in pose stamps
   std::vector<Pose2> poses;                         ///< [steps + 1], the first is the origin
   std::vector<Eigen::Vector3d> tangents;            ///< [steps], twist * duration with slip
-  std::vector<DriveStep> drive;                     ///< [steps], the drive without slip
+  std::vector<ActuatorStep> drive;                  ///< [steps], the drive without slip
   Pose2 sensor;                                     ///< pose in base_link of the sensor that measures the path
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
 
@@ -48,7 +48,7 @@ struct SegmentLinearization {
 /// Value and exact derivative in one pass (prefix scan of derivations.md, section 3).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                        const InputTrack& inputs, const Segment& segment);
-/// The same by the slip parameters alone, which come first: cheaper where the chain is learned too.
+/// The same by the slip parameters alone, which come first: cheaper where the actuator is learned too.
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                     const InputTrack& inputs, const Segment& segment);
 /// As `linearize_segment`, of the segment's beginnings: up to the first step's end after each `parts`-th of its time,

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
@@ -25,7 +25,7 @@ struct PathSlip {
 };
 
 /// The mean drive over a step, which its slip depends on.
-inline SlipState slip_state(const DriveStep& step, const BodyGravity& gravity) {
+inline SlipState slip_state(const ActuatorStep& step, const BodyGravity& gravity) {
   const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
   return {.v = step.forward * rate, .omega = step.turn * rate, .gx = gravity.gx, .gy = gravity.gy};
 }
@@ -43,7 +43,7 @@ SlipState slip_state_gained(const Jacobian& jacobian, const BodyGravity& gravity
 }
 
 /// (u_body + du) dt of derivations.md, section 1.
-inline Eigen::Vector3d tangent_of(const DriveStep& step, const Eigen::Vector3d& slip) {
+inline Eigen::Vector3d tangent_of(const ActuatorStep& step, const Eigen::Vector3d& slip) {
   return Eigen::Vector3d(step.forward, step.left, step.turn) + slip * step.duration;
 }
 
@@ -55,7 +55,7 @@ using TangentColumns =
 /// Derivative of a step's tangent by parameters that move its duration and integrals, and through these its slip, which
 /// is `slip` at the step's mean drive.
 template <typename Jacobian>
-TangentColumns<Jacobian> tangent_by(const DriveStep& step, const Jacobian& jacobian, const PathSlip& at,
+TangentColumns<Jacobian> tangent_by(const ActuatorStep& step, const Jacobian& jacobian, const PathSlip& at,
                                     const Eigen::Vector3d& slip) {
   TangentColumns<Jacobian> result = jacobian.template bottomRows<3>();
   if (!(step.duration > 0.0)) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A segment: two measured poses of one drive, and where the second lies as seen from the first.
+// A segment: two measured poses of one drive, and where the second lies as observed from the first.
 #pragma once
 
 #include <array>
 #include <optional>
 
-#include "slipwise/actuator/command_chain.hpp"
+#include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/lie/se2.hpp"
 
@@ -24,7 +24,7 @@ struct Segment {
   std::optional<BodyTwist> initial = {};            ///< the drive's measured twist at the start, or where `known` ends
   double gx = 0.0;                                  ///< body-frame gravity at the start [m/s^2]
   double gy = 0.0;                                  ///< [m/s^2]
-  std::optional<KnownDrive> known = {};             ///< what was measured of the drive; `initial` is where it ends
+  std::optional<MeasuredActuator> known = {};       ///< what was measured of the drive; `initial` is where it ends
   Pose2 sensor = {};                                ///< known pose in base_link of what `measured` is the motion of
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the first and the second pose
 };

@@ -18,7 +18,7 @@ enum class Channel : std::uint8_t { Lon, Lat, Ang };
 inline constexpr std::size_t kChannels = 3;
 inline constexpr std::array<std::string_view, kChannels> kChannelNames{"lon", "lat", "ang"};
 
-/// The features of one state in parameter order (lon terms, lat terms, ang terms), with slopes when linearised.
+/// The features of one state in parameter order (lon terms, lat terms, ang terms), with derivatives when linearised.
 struct SlipFeatures {
   Eigen::VectorXd value;     ///< [parameters]
   Eigen::VectorXd by_v;      ///< [parameters]

@@ -22,8 +22,8 @@ Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::
 
 struct SlipRateLinearization {
   Eigen::Vector3d slip;
-  Eigen::Matrix<double, 3, 2> by_drive;                   ///< slopes by (v, omega)
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< slopes by alpha
+  Eigen::Matrix<double, 3, 2> by_drive;                   ///< derivatives by (v, omega)
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter;  ///< derivatives by alpha
 };
 
 SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,

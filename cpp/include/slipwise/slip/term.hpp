@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slip term: a product of powers of speed, yaw rate, curvature and slope, that vanishes when the robot is parked.
+// A slip term: a product of powers of speed, yaw rate, curvature and derivative, that vanishes when the robot is
+// parked.
 #pragma once
 
 #include <array>
@@ -23,7 +24,7 @@ struct SlipState {
   double gy = 0.0;     ///< gravity along the robot's y axis [m/s^2]
 };
 
-/// The quantities of one state, computed once for all terms, with their slopes by v and omega.
+/// The quantities of one state, computed once for all terms, with their derivatives by v and omega.
 struct SlipQuantities {
   std::array<double, kQuantities> value;
   std::array<double, kQuantities> by_v;
@@ -39,7 +40,7 @@ inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
 inline SlipQuantities::SlipQuantities(const SlipState& state) {
   const auto sign = [](double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); };
   const double v = state.v, w = state.omega;
-  const double moving = v != 0.0 || w != 0.0 ? 1.0 : 0.0;  // a robot parked on a slope does not drift
+  const double moving = v != 0.0 || w != 0.0 ? 1.0 : 0.0;  // a robot parked on a derivative does not drift
   const double norm = v * v + kCurvatureSpeed * kCurvatureSpeed;
   const double per_w = v / norm;
   value = {v, w, std::abs(v), std::abs(w), sign(v), w * per_w, state.gx * moving, state.gy * moving};
@@ -47,7 +48,7 @@ inline SlipQuantities::SlipQuantities(const SlipState& state) {
   by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0};
 }
 
-/// A term with its slopes by speed and yaw rate.
+/// A term with its derivatives by speed and yaw rate.
 struct TermValue {
   double value;
   double by_v;

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning one model segment by segment: prior that follows the speeds, IEKF update, noise that follows the residuals,
+// and refits of the first segments, where noise and linearisation were guesses.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "slipwise/filter/causal_filter_settings.hpp"
+#include "slipwise/filter/filter_refit.hpp"
+#include "slipwise/filter/filter_state.hpp"
+#include "slipwise/filter/iekf.hpp"
+#include "slipwise/filter/noise_scale.hpp"
+#include "slipwise/filter/prior.hpp"
+#include "slipwise/filter/score_covariance.hpp"
+#include "slipwise/filter/speed_range.hpp"
+
+namespace slipwise {
+
+class CausalFilter {
+ public:
+  CausalFilter() : CausalFilter(MotionModel(), {}) {}  ///< of a model without parameters
+  CausalFilter(MotionModel model, const CausalFilterSettings& settings);
+
+  /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
+  /// of all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called
+  /// meanwhile or not. The update returned is that of the segment alone.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
+  /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
+  bool refit_slice();
+  /// Whether a refit took effect with the last segment.
+  bool refitted() const { return refitted_; }
+
+  /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
+  /// robot's, not the ground's: they stay as learned.
+  void forget(double share);
+
+  const MotionModel& model() const { return model_; }
+  /// What learning goes on from: the noise is taken to be of the shape given.
+  const Estimate& estimate() const { return state_.estimate; }
+  /// The same with a covariance that also holds where it is not, or where slip is correlated in time.
+  Estimate stated() const;
+  /// Standard deviations of the prior now in force, [parameters].
+  Eigen::VectorXd prior_std() const;
+  /// Learned factor of the noise variances of (x, y, theta).
+  Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
+  const NoiseSettings& noise() const { return settings_.noise; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
+      self.full_);
+    a(self.slip_std_, self.stated_, self.refit_, self.refitted_);
+  }
+
+ private:
+  void follow(const ReferenceSpeeds& speeds);
+  void keep(const InputTrack& inputs, const Segment& segment);
+  void end_refit();
+
+  /// A refit that is under way.
+  struct Refit {
+    FilterRefit work;
+    Eigen::VectorXd slip_std;  ///< of the prior under which it began
+    std::size_t until;         ///< segments after which it takes effect
+  };
+
+  MotionModel model_;
+  CausalFilterSettings settings_;
+  ReferenceSpeeds speeds_{};
+  bool started_ = false;
+  FilterState state_;
+  Estimate before_;                  ///< what was known before the segments that are kept
+  std::vector<DrivenSegment> kept_;  ///< the first since the start, or since the terrain changed
+  double next_refit_;                ///< segments after which a refit begins, rounded
+  bool full_ = false;                ///< no more are kept
+  Eigen::VectorXd slip_std_;
+  Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
+  std::optional<Refit> refit_;
+  bool refitted_ = false;
+};
+
+/// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                      const Eigen::Vector3d& scale);
+
+}  // namespace slipwise

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The speeds that the robot was driven at so far, as references of the priors.
+#pragma once
+
+#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/filter/prior.hpp"
+#include "slipwise/filter/speed_range.hpp"
+#include "slipwise/segment/segment.hpp"
+
+namespace slipwise {
+
+class DrivenSpeeds {
+ public:
+  /// Adds the inputs of one segment.
+  void see(const InputTrack& inputs, const Segment& segment);
+  /// The 90th percentiles so far, at least 0.05.
+  ReferenceSpeeds reference() const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.speeds_, self.yaw_rates_);
+  }
+
+ private:
+  SpeedRange speeds_;
+  SpeedRange yaw_rates_;
+};
+
+}  // namespace slipwise

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a causal filter has learned of one model: its posterior, the size of the noise, and how scores scatter.
+#pragma once
+
+#include "slipwise/filter/iekf.hpp"
+#include "slipwise/filter/noise_scale.hpp"
+#include "slipwise/filter/score_covariance.hpp"
+
+namespace slipwise {
+
+struct FilterState {
+  Estimate estimate;
+  NoiseScale noise_scale;
+  ScoreCovariance scores;
+
+  FilterState() = default;
+  FilterState(const MotionModel& model, const NoiseSettings& noise) : estimate{}, noise_scale(noise), scores(model) {}
+
+  /// Learns one segment.
+  IekfUpdate learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,
+                   const NoiseSettings& noise, const IekfSettings& iekf);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.estimate, self.noise_scale, self.scores);
+  }
+};
+
+/// Covariance of a segment's measured chart under the noise model alone.
+Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise);
+
+}  // namespace slipwise

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Iterated extended Kalman filter over disjoint segments (derivations.md, sections 6 and 10).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/filter/estimate.hpp"
+#include "slipwise/filter/map_update.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+
+struct IekfSettings {
+  int iterations = 10;      ///< Gauss-Newton iterations per segment, at most; two are nominal once the prior is tight
+  double tolerance = 1e-2;  ///< iterations stop when they lower the MAP cost (in units of NIS) by less than this [-]
+  int halvings = 4;         ///< step halvings per iteration before the iteration is given up
+  double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
+  double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is left out [-]
+
+  MapSettings map() const { return {.iterations = iterations, .tolerance = tolerance, .halvings = halvings}; }
+};
+
+/// One segment's update.
+struct IekfUpdate {
+  Estimate estimate;                      ///< after the segment
+  Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta), before the update
+  Eigen::Matrix3d innovation_covariance;  ///< S = J P J^T + R before the update
+  double nis;                             ///< innovation^T S^-1 innovation
+  double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where left out
+  Status status;
+  SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
+};
+
+/// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings = {});
+/// The same where the segment is linearised at the prior's mean already, as its noise may need.
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
+                       const IekfSettings& settings = {});
+
+}  // namespace slipwise

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far an estimate really scatters where residuals are larger than their noise model says, or correlated in time.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slipwise/filter/estimate.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+
+/// Running sums of the scores J^T R^-1 r of segments: their covariance, and that with the scores before them. Compared
+/// with the information J^T R^-1 J, they give factors for the variances of an estimate (derivations.md, section 6).
+class ScoreCovariance {
+ public:
+  ScoreCovariance() = default;  ///< of a model without parameters
+  explicit ScoreCovariance(const MotionModel& model);
+
+  /// Adds one segment: linearised `at` the estimate whose covariance is given, learned with `noise`. One that says
+  /// nothing of the parameters is passed over.
+  void add(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
+           const Eigen::Matrix3d& noise);
+  /// Forgets all segments.
+  void restart();
+
+  /// Factors of the standard deviations of an estimate of this covariance, learned from the segments added and, before
+  /// them, from a prior of this covariance. What comes from segments has one factor per channel of slip, and one for
+  /// all other parameters; what comes from the prior stays.
+  Eigen::VectorXd std_factors(const Eigen::MatrixXd& prior, const Eigen::MatrixXd& covariance) const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.groups_, self.information_, self.scatter_, self.lagged_, self.earlier_);
+    a(self.segments_, self.earlier_weight_, self.pairs_, self.time_);
+  }
+
+ private:
+  double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const;
+
+  std::vector<std::vector<Eigen::Index>> groups_;  ///< parameters whose factor is one
+  Eigen::MatrixXd information_;                    ///< sum of J^T R^-1 J
+  Eigen::MatrixXd scatter_;  ///< sum of J^T R^-1 (r r^T + J P J^T) R^-1 J: of the scores, were they independent
+  Eigen::MatrixXd lagged_;   ///< sum of each score times the earlier ones, weighted by their age
+  Eigen::VectorXd earlier_;  ///< sum of the scores so far, weighted by their age
+  double segments_ = 0.0;
+  double earlier_weight_ = 0.0;  ///< sum of the weights in `earlier_`
+  double pairs_ = 0.0;           ///< sum of the weights in `lagged_`
+  double time_ = 0.0;            ///< of the last segment's middle [s]
+};
+
+}  // namespace slipwise

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weighing several models by how well they predict, and their average as one model over all their terms.
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/filter/driven_speeds.hpp"
+#include "slipwise/filter/weighting.hpp"
+#include "slipwise/hypotheses/change_detector.hpp"
+
+namespace slipwise {
+
+struct ModelAverageSettings {
+  WeightingSettings weighting = {};
+  double largest_basis =
+      0.4;  ///< weight beforehand of the basis with the most terms: of all, it is best most often [-]
+  ChangeSettings change = {};
+};
+
+/// Parameters, covariance and noise of the average, over the union of all terms.
+struct AverageState {
+  Estimate estimate;
+  Eigen::VectorXd prior_std;
+  /// Posterior / prior variance per parameter over the models that have it; 1: nothing learned, more: they disagree.
+  Eigen::VectorXd variance_ratio;
+  Eigen::Vector3d noise_scale;
+  Eigen::VectorXd weights;  ///< one per model, they sum to 1
+};
+
+/// Runs one causal filter per basis. Slip is linear in its parameters, so that the weighted mean of the models is
+/// again a model of the same kind: the mean parameters over the union of the terms, with the spread in the covariance.
+class ModelAverage {
+ public:
+  ModelAverage() : ModelAverage("none", {MotionModel().basis()}, {}, {}, {}) {}
+  /// \throws std::invalid_argument when there is no basis.
+  ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
+               const CausalFilterSettings& filter, const ModelAverageSettings& settings);
+
+  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
+  /// weighted most before.
+  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+
+  /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
+  void start(const InputTrack& inputs, const Segment& segment);
+
+  /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
+  bool advance();
+  /// Of the last segment that was learned: the update of the model that weighted most before.
+  const IekfUpdate& update() const { return update_; }
+
+  /// Does a bounded slice of the models' refits; whether there was any to do. Results do not depend on it.
+  bool refit_slice();
+  /// Whether a refit took effect with the last segment.
+  bool refitted() const { return std::ranges::any_of(filters_, &CausalFilter::refitted); }
+
+  /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
+  void forget(double fraction);
+
+  const MotionModel& model() const { return model_; }
+  AverageState state() const;
+  /// The test of the last segment for a change of ground.
+  const ChangeTest& change() const { return change_; }
+  ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.observed_,
+      self.speeds_, self.changing_, self.before_);
+    a(self.detector_, self.change_, self.learning_, self.update_, self.on_trial_, self.announced_);
+    self.check_sizes();
+  }
+
+ private:
+  /// A segment that is being learned, and the updates so far.
+  struct Learning {
+    InputTrack inputs;
+    Segment segment;
+    bool tested = false;
+    std::vector<IekfUpdate> updates = {};
+  };
+
+  /// \throws std::invalid_argument unless there are as many filters, weights and places as bases, or twice as many.
+  void check_sizes() const;
+  void look_for_change();
+  void update_next_filter();
+  void reweigh();
+  ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  void doubt();
+  void settle();
+  Eigen::VectorXd basis_weights() const;
+  Eigen::VectorXd variance_ratio() const;
+
+  MotionModel model_;
+  std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
+  std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
+  ModelAverageSettings settings_;
+  Eigen::VectorXd prior_;     ///< weights of the bases beforehand
+  Eigen::VectorXd weights_;   ///< one per filter
+  std::size_t observed_ = 0;  ///< segments weighted by
+  DrivenSpeeds speeds_;
+  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
+  std::deque<AverageState> before_;     ///< before each of the last segments
+  ChangeDetector detector_;
+  ChangeTest change_;
+  std::optional<Learning> learning_;
+  IekfUpdate update_ = {};
+  int on_trial_ = 0;        ///< segments until the models that forgot have to have proved better
+  bool announced_ = false;  ///< whether the test itself raised an alarm for them
+};
+
+}  // namespace slipwise

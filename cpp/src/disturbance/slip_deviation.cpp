@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small Kalman filter over the deviation of slip from what was learned (derivations.md, section 18).
+#include "slipwise/disturbance/slip_deviation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/tuning.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kGate, 16.266);  // 99.9 % of a chi-square of three degrees of freedom
+
+}  // namespace
+
+SlipDeviation::SlipDeviation(const SlipDisturbance& wander, const DisturbedTerms& terms)
+    : time_constant_(wander.time_constant), mean_(State::Zero(terms.size())) {
+  nominal_ = terms.variances(wander).asDiagonal();
+  covariance_ = nominal_;
+}
+
+void SlipDeviation::follow(const ObservedSlip& observed) {
+  decay_to((observed.start + observed.end) / 2.0);
+  const ObservedSlip::ByDeviation& h = observed.by_deviation;
+  const Eigen::Vector3d innovation = observed.innovation - h * mean_;
+  const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + observed.noise;
+  const double nis = normalised_square(innovation, expected);
+  const Eigen::Matrix3d doubted = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
+  const Eigen::MatrixX3d gain = kalman_gain(doubted, h * covariance_);
+  mean_ += gain * innovation;
+  covariance_ -= gain * h * covariance_;
+  covariance_ = (covariance_ + covariance_.transpose()).eval() / 2.0;
+}
+
+std::pair<SlipDeviation::State, SlipDeviation::StateMatrix> SlipDeviation::mean_over(double start, double end) const {
+  const double spans = (end - start) / time_constant_;
+  const double kept = std::exp(-std::max(0.0, start - t_) / time_constant_) * kept_over(spans);
+  return {kept * mean_, kept * kept * (covariance_ - nominal_) + variance_over(spans) * nominal_};
+}
+
+void SlipDeviation::decay_to(double t) {
+  const double kept = known_ ? std::exp(-(t - t_) / time_constant_) : 0.0;
+  mean_ *= kept;
+  covariance_ = kept * kept * covariance_ + (1.0 - kept * kept) * nominal_;
+  t_ = t;
+  known_ = true;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// A bank of small Kalman filters over the deviation of slip from what was learned (derivations.md, section 18).
+#include "slipwise/disturbance/slip_disturbance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+namespace {
+
+ObservedSlip see(const MotionPosterior& posterior, const DisturbedTerms& terms, const DrivenSegment& driven) {
+  const auto& [inputs, segment, known_at] = driven;
+  const auto at = linearize_slip(posterior.model, posterior.estimate.mean, inputs, segment);
+  Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+  innovation.z() = wrap_angle(innovation.z());
+  return {segment.start, segment.end, innovation,
+          segment_noise(at.path, at.predicted, posterior.noise, posterior.noise_scale),
+          at.by_parameter(Eigen::all, terms.places)};
+}
+
+void check_fits(const SlipNow& now, const DisturbanceModel& law, const DisturbedTerms& terms) {
+  const std::size_t expected = terms.places.empty() ? 0 : law.candidates.size();
+  const bool same_terms = std::ranges::all_of(
+      now.of_candidates, [&](const SlipDeviation& deviation) { return deviation.size() == terms.size(); });
+  if (now.of_candidates.size() != expected || !same_terms) {
+    throw std::invalid_argument("where slip is now belongs to another model: it must come from the same law and basis");
+  }
+}
+
+void check_positive(const std::vector<double>& values, const char* what) {
+  if (values.empty()) {
+    throw std::invalid_argument(std::string(what) + " of coloured slip must not be empty");
+  }
+  for (const double value : values) {
+    if (!(value > 0.0) || !std::isfinite(value)) {
+      throw std::invalid_argument(std::string(what) + " of coloured slip must be positive and finite, got " +
+                                  std::to_string(value));
+    }
+  }
+}
+
+}  // namespace
+
+DisturbanceFilter::DisturbanceFilter(const DisturbanceSettings& settings) : weighting_(settings.weighting) {
+  check_positive(settings.fractions, "the fractions");
+  check_positive(settings.time_constants, "the time constants");
+  law_.candidates.push_back({0.0, 0.0, 1.0});
+  std::vector<double> fractions = settings.fractions;
+  fractions.insert(fractions.begin(), 0.0);
+  for (const double time_constant : settings.time_constants) {
+    for (const double drift : fractions) {
+      for (const double turn : fractions) {
+        if (drift > 0.0 || turn > 0.0) {
+          law_.candidates.push_back({drift, turn, time_constant});
+        }
+      }
+    }
+  }
+  const auto count = static_cast<Eigen::Index>(law_.candidates.size());
+  prior_ = Eigen::VectorXd::Constant(count, (1.0 - settings.white) / static_cast<double>(count - 1));
+  prior_[0] = settings.white;
+  law_.weights = prior_;
+}
+
+DisturbanceFilter::DisturbanceFilter(DisturbanceModel law) : law_(std::move(law)) {
+  check_disturbance(law_);
+  prior_ = law_.weights;
+}
+
+void DisturbanceFilter::learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  if (terms.places.empty()) {
+    return;
+  }
+  const ObservedSlip next = see(posterior, terms, segment);
+  Eigen::VectorXd scores(law_.weights.size());
+  for (std::size_t i = 0; i < law_.candidates.size(); ++i) {
+    const auto deviation = now.of_candidates[i].mean_over(next.start, next.end).first;
+    const Eigen::Vector3d innovation = next.innovation - next.by_deviation * deviation;
+    const double nis = normalised_square(innovation, next.noise);
+    scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, next.noise);  // judged by errors, as bases are
+  }
+  law_.weights = updated_weights(law_.weights, scores, prior_, weighting_, observed_);
+  ++observed_;
+}
+
+SlipNow DisturbanceFilter::now(const MotionPosterior& posterior, std::span<const DrivenSegment> recent) const {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  SlipNow now;
+  if (terms.places.empty()) {
+    return now;
+  }
+  for (const SlipDisturbance& wander : law_.candidates) {
+    now.of_candidates.emplace_back(wander, terms);
+  }
+  for (const DrivenSegment& segment : recent) {
+    follow(posterior, now, segment);
+  }
+  return now;
+}
+
+void DisturbanceFilter::follow(const MotionPosterior& posterior, SlipNow& now, const DrivenSegment& segment) const {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  if (terms.places.empty()) {
+    return;
+  }
+  const ObservedSlip observed = see(posterior, terms, segment);
+  for (SlipDeviation& deviation : now.of_candidates) {
+    deviation.follow(observed);
+  }
+}
+
+ExpectedPose DisturbanceFilter::predict(const MotionPosterior& posterior, const SlipNow& now,
+                                        const DrivenSegment& segment) const {
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, segment.inputs, segment.segment);
+  return predict_at(posterior, now, at, segment.segment);
+}
+
+ExpectedPose DisturbanceFilter::predict_at(const MotionPosterior& posterior, const SlipNow& now,
+                                           const SegmentLinearization& at, const Segment& segment) const {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  return expected(posterior, now, terms, at, {segment.start, segment.end});
+}
+
+std::vector<ExpectedPose> DisturbanceFilter::predict_along(const MotionPosterior& posterior, const SlipNow& now,
+                                                           std::span<const SegmentLinearization> beginnings,
+                                                           const Segment& segment) const {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  std::vector<ExpectedPose> along;
+  for (const SegmentLinearization& at : beginnings) {
+    const double end = &at == &beginnings.back() ? segment.end : at.path.times.back();
+    along.push_back(expected(posterior, now, terms, at, {segment.start, end}));
+  }
+  return along;
+}
+
+ExpectedPoses DisturbanceFilter::predict_both(const MotionPosterior& posterior, const SlipNow& now,
+                                              const DrivenSegment& driven) const {
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, driven.inputs, driven.segment);
+  return {.now = predict_at(posterior, now, at, driven.segment),
+          .nominal = predict_at(posterior, this->now(posterior, {}), at, driven.segment)};
+}
+
+/// Adds the mean of the deviation over a time span, and its covariance, as mixed by the candidates' weights.
+ExpectedPose DisturbanceFilter::expected(const MotionPosterior& posterior, const SlipNow& now,
+                                         const DisturbedTerms& terms, const SegmentLinearization& at,
+                                         const std::array<double, 2>& span) const {
+  const auto [start, end] = span;
+  const ObservedSlip::ByDeviation h = at.by_parameter(Eigen::all, terms.places);
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d square = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
+    const auto [deviation, covariance] = now.of_candidates[i].mean_over(start, end);
+    const Eigen::Vector3d shift = h * deviation;
+    const double weight = law_.weights[static_cast<Eigen::Index>(i)];
+    mean += weight * shift;
+    square += weight * (h * covariance * h.transpose() + shift * shift.transpose());
+  }
+  const Eigen::Matrix3d without =
+      prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
+  return {at.predicted.vector() + mean, without + square - mean * mean.transpose()};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// The causal filter of one model.
+#include "slipwise/filter/causal_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+#include <utility>
+
+#include "slipwise/filter/heavy_tails.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kSpeedChange, 0.1);  // the prior follows the speeds when their logarithm moves by more than this
+
+SLIPWISE_TUNING(kFirst, 8.0);  // segments after which the first refit begins, and the last
+SLIPWISE_TUNING(kLast, std::size_t{256});
+SLIPWISE_TUNING(kFactor, std::numbers::sqrt2);  // of the segments, until another begins
+constexpr std::size_t kShortest = 1;            // segments that a refit takes at least
+
+/// Segments after which a refit takes effect that began after so many.
+std::size_t refitted_after(std::size_t segments) { return segments + std::max(kShortest, segments / 16); }
+
+bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedChange; }
+
+}  // namespace
+
+CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
+    : model_(std::move(model)), settings_(settings), state_(model_, settings.noise) {
+  follow({.v = 1.0, .omega = 1.0});
+  started_ = false;
+  stated_ = Eigen::VectorXd::Ones(model_.size());
+  next_refit_ = kFirst;
+}
+
+void CausalFilter::follow(const ReferenceSpeeds& speeds) {
+  Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
+  if (!started_) {
+    state_.estimate = before_ = prior_estimate(model_, speeds, settings_.prior);
+  } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
+    std::optional<Estimate> changed = change_slip_prior(state_.estimate, slip_std_, std);
+    std::optional<Estimate> before = change_slip_prior(before_, slip_std_, std);
+    if (!changed || !before) {
+      return;  // the old prior stays in force
+    }
+    state_.estimate = std::move(*changed);
+    before_ = std::move(*before);
+  } else {
+    return;
+  }
+  started_ = true;
+  speeds_ = speeds;
+  slip_std_ = std::move(std);
+}
+
+Eigen::VectorXd CausalFilter::prior_std() const {
+  Estimate prior = prior_estimate(model_, speeds_, settings_.prior);
+  return prior.covariance.diagonal().cwiseSqrt();
+}
+
+void CausalFilter::forget(double share) {
+  const Eigen::Index slip = model_.slip_size();
+  const double keep = std::sqrt(1.0 - share);
+  Eigen::MatrixXd& covariance = state_.estimate.covariance;
+  covariance.topRows(slip) *= keep;
+  covariance.leftCols(slip) *= keep;
+  covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  state_.scores.restart();
+  stated_.setOnes();
+  state_.noise_scale.hurry();
+  before_ = state_.estimate;
+  refit_.reset();
+  kept_.clear();
+  next_refit_ = kFirst;
+  full_ = false;
+}
+
+Estimate CausalFilter::stated() const {
+  return {state_.estimate.mean, stated_.asDiagonal() * state_.estimate.covariance * stated_.asDiagonal()};
+}
+
+/// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
+void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
+  kept_.push_back({.inputs = inputs, .segment = segment});
+  const std::size_t count = kept_.size();
+  if (refit_ && count == refit_->until) {
+    end_refit();
+  }
+  if (count <= kLast && std::ssize(kept_) == std::lround(next_refit_)) {
+    next_refit_ *= kFactor;
+    refit_.emplace(Refit{
+        .work = {model_, before_, state_, settings_, count}, .slip_std = slip_std_, .until = refitted_after(count)});
+  }
+  if (count >= kLast && !refit_) {
+    kept_ = {};
+    full_ = true;
+  }
+}
+
+bool CausalFilter::refit_slice() { return refit_ && refit_->work.advance(kept_); }
+
+/// What is left of the refit is done; its prior may have followed the speeds meanwhile.
+void CausalFilter::end_refit() {
+  while (refit_slice()) {
+  }
+  Refit& refit = present(refit_);
+  std::optional<FilterState> found = std::move(refit.work).result();
+  const Eigen::VectorXd slip_std = refit.slip_std;
+  refit_.reset();
+  if (!found) {
+    return;
+  }
+  if (slip_std != slip_std_) {
+    std::optional<Estimate> changed = change_slip_prior(found->estimate, slip_std, slip_std_);
+    if (!changed) {
+      return;
+    }
+    found->estimate = std::move(*changed);
+  }
+  state_ = std::move(*found);
+  refitted_ = true;
+}
+
+IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
+  follow(speeds);
+  refitted_ = false;
+  IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
+  if (!full_ && !update.at.by_parameter.isZero(0.0)) {
+    keep(inputs, segment);
+  }
+  if (settings_.noise.adapt) {
+    stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);
+  }
+  return update;
+}
+
+Eigen::Matrix3d prediction_covariance(const SegmentLinearization& at,
+                                      const Eigen::Ref<const Eigen::MatrixXd>& parameters, const MotionNoise& shape,
+                                      const Eigen::Vector3d& scale) {
+  return at.by_parameter * parameters * at.by_parameter.transpose() +
+         segment_noise(at.path, at.predicted, shape, scale);
+}
+
+}  // namespace slipwise

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The phases of a refit.
+#include "slipwise/filter/filter_refit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kSlice = 2;    // segments that are linearised at a time
+SLIPWISE_TUNING(kTolerance, 0.03);   // of -2 log posterior: a sixth of a standard deviation
+constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at one pose
+
+}  // namespace
+
+FilterRefit::FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
+                         std::size_t count)
+    : model_(std::move(model)),
+      before_(std::move(before)),
+      state_(std::move(now)),
+      noise_(settings.noise),
+      iekf_(settings.iekf),
+      count_(count) {}
+
+/// By the rule of the IEKF. From wheels, neighbours share the noise of the pose where they meet; from commands, what is
+/// not known of the actuator there is far more.
+void FilterRefit::weight(const DrivenSegment& driven) {
+  const Segment& segment = driven.segment;
+  const Eigen::Vector3d& scale = state_.noise_scale.value();
+  auto at = linearize_segment(model_, state_.estimate.mean, driven.inputs, segment);
+  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_.shape, scale);
+  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+  const Eigen::Matrix3d covariance = at.by_parameter * state_.estimate.covariance * at.by_parameter.transpose() + noise;
+  const double nis = normalised_square(innovation, covariance);
+  if (!(nis <= iekf_.gate)) {
+    last_.reset();
+    return;
+  }
+  Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
+  if (!model_.learned().dynamics && last_ && std::abs(segment.start - last_->end) < kSameStamp) {
+    const PoseStdRatio& met = segment.pose_std_ratio.front();
+    shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), scale);
+  }
+  const double larger = std::max(std::sqrt(nis) / iekf_.huber, 1.0);
+  data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise * larger, .shared = shared});
+  at_.push_back(std::move(at));
+  places_.push_back(done_);
+  last_ = segment;
+}
+
+void FilterRefit::begin_search() {
+  done_ = 0;
+  if (data_.empty() || !Cholesky(before_.covariance).positive_definite()) {
+    phase_ = Phase::Failed;
+    return;
+  }
+  constexpr double kWeighted = std::numeric_limits<double>::infinity();
+  const double expected_cost = 3.0 * static_cast<double>(data_.size());
+  const BatchSettings settings{
+      .tolerance = kTolerance / expected_cost, .huber = kWeighted, .start = state_.estimate.mean};
+  search_.emplace(model_, before_, data_, settings, std::exchange(at_, {}));
+  phase_ = Phase::Search;
+}
+
+void FilterRefit::end_search() {
+  BatchFit fit = std::move(present(search_)).result();
+  search_.reset();
+  if (fit.status != Status::Converged) {
+    phase_ = Phase::Failed;
+    return;
+  }
+  state_.estimate = std::move(fit.estimate);
+  state_.noise_scale.restart();
+  state_.scores.restart();
+  at_ = std::move(fit.at);
+  phase_ = Phase::Noise;
+}
+
+/// The noise of the segments that are fitted, and of those that the gate rejected.
+void FilterRefit::learn_noise(const DrivenSegment& driven) {
+  const bool fitted = fitted_ < places_.size() && places_[fitted_] == done_;
+  const SegmentLinearization at =
+      fitted ? std::move(at_[fitted_]) : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
+  const Eigen::Matrix3d expected = expected_noise(at, driven.segment, noise_.shape);
+  state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
+  if (fitted) {
+    state_.scores.add(at, state_.estimate.covariance, driven.segment, data_[fitted_].noise);
+    ++fitted_;
+  }
+}
+
+bool FilterRefit::advance(std::span<const DrivenSegment> segments) {
+  switch (phase_) {
+    case Phase::Weight:
+      for (const std::size_t end = std::min(done_ + kSlice, count_); done_ < end; ++done_) {
+        weight(segments[done_]);
+      }
+      if (done_ == count_) {
+        begin_search();
+      }
+      return true;
+    case Phase::Search:
+      if (!present(search_).advance(kSlice)) {
+        end_search();
+      }
+      return true;
+    case Phase::Noise:
+      for (const std::size_t end = std::min(done_ + kSlice, count_); done_ < end; ++done_) {
+        learn_noise(segments[done_]);
+      }
+      phase_ = done_ == count_ ? Phase::Follow : phase_;
+      return true;
+    case Phase::Follow:
+      if (done_ < segments.size()) {
+        state_.learn(model_, segments[done_].inputs, segments[done_].segment, noise_, iekf_);
+        ++done_;
+      }
+      return done_ < segments.size();
+    case Phase::Failed:
+      break;
+  }
+  return false;
+}
+
+std::optional<FilterState> FilterRefit::result() && {
+  return phase_ == Phase::Follow ? std::optional(std::move(state_)) : std::nullopt;
+}
+
+}  // namespace slipwise

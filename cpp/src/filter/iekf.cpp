@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The IEKF update: Gauss-Newton on the MAP cost of one segment, covariance once at the end in Joseph form.
+#include "slipwise/filter/iekf.hpp"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+using Jacobian = Eigen::Matrix<double, 3, Eigen::Dynamic>;
+
+SLIPWISE_TUNING(kUnknown, 1.0);    // [ln s]; a time is known at least to a factor of e before any data
+SLIPWISE_TUNING(kStraight, 0.03);  // [ln s], [s] or [-]; over so little of the actuator a segment is linear
+
+/// A segment's measured chart (x, y, theta) as a measurement of the parameters.
+struct MeasuredSegment {
+  using At = SegmentLinearization;
+  using Innovation = Eigen::Vector3d;
+
+  const MotionModel& model;
+  const InputTrack& inputs;
+  const Segment& segment;
+  const Eigen::Matrix3d& covariance;
+
+  At at(const Eigen::VectorXd& parameters) const { return linearize_segment(model, parameters, inputs, segment); }
+  Innovation innovation(const At& at) const { return segment.measured.vector() - at.predicted.vector(); }
+  static const Jacobian& jacobian(const At& at) { return at.by_parameter; }
+  const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
+};
+
+/// (I - K J) P (I - K J)^T + K R K^T.
+Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
+  if (prior.size() == 0) {
+    return prior;  // the plain model has nothing to learn
+  }
+  const Jacobian spread = jacobian * prior;
+  const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
+  const Eigen::MatrixX3d gain = kalman_gain(s, spread);
+  const Eigen::MatrixXd keep = Eigen::MatrixXd::Identity(prior.rows(), prior.cols()) - gain * jacobian;
+  const Eigen::MatrixXd posterior = keep * prior * keep.transpose() + gain * noise * gain.transpose();
+  return (posterior + posterior.transpose()) / 2.0;
+}
+
+/// How far the segment's chart bends away from its linearisation over what is left open of the actuator: the covariance
+/// of the second-order term along the actuator's principal directions (derivations.md, section 6). The slip is linear
+/// enough.
+Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+                             const Segment& segment, const Eigen::Vector3d& predicted) {
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  const auto rows = Eigen::seqN(model.slip_size(), model.actuator_size());
+  const SymmetricEigen open = symmetric_eigen(estimate.covariance(rows, rows));
+  for (Eigen::Index i = 0; i < model.actuator_size(); ++i) {
+    const double std = std::sqrt(std::max(open.values[i], 0.0));
+    if (std < kStraight) {
+      continue;
+    }
+    const Eigen::VectorXd step = estimate.covariance(Eigen::all, rows) * open.vectors.col(i) / std;
+    const auto at = [&](double sign) {
+      return integrate_segment(model, estimate.mean + sign * step, inputs, segment).sensor_motion().vector();
+    };
+    const Eigen::Vector3d second = (at(1.0) + at(-1.0)) / 2.0 - predicted;
+    spread += 2.0 * second * second.transpose();
+  }
+  return spread;
+}
+
+void check(const MotionModel& model, const Estimate& prior, const Segment& segment, const Eigen::Matrix3d& noise) {
+  model.check(prior.mean);
+  if (prior.covariance.rows() != model.size() || prior.covariance.cols() != model.size()) {
+    throw std::invalid_argument("the prior's covariance must be square with one row per parameter, " +
+                                std::to_string(model.size()) + "; got " + std::to_string(prior.covariance.rows()) +
+                                " x " + std::to_string(prior.covariance.cols()));
+  }
+  if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
+    throw std::invalid_argument("a segment must end after it starts and have finite measurements");
+  }
+  if (!noise.allFinite() || !Cholesky(noise).positive_definite()) {
+    throw std::invalid_argument("a segment's noise covariance must be finite and positive definite");
+  }
+}
+
+}  // namespace
+
+// NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and settings with
+// defaults.
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
+  check(model, prior, segment, noise);
+  return iekf_update(model, prior, inputs, segment, linearize_segment(model, prior.mean, inputs, segment), noise,
+                     settings);
+}
+
+// NOLINTNEXTLINE(readability-function-size): the same, and what is at hand already.
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+                       const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
+                       const IekfSettings& settings) {
+  check(model, prior, segment, noise);
+  IekfUpdate update{.estimate = prior,
+                    .innovation = segment.measured.vector() - at_prior.predicted.vector(),
+                    .innovation_covariance = innovation_covariance(prior.covariance, at_prior.by_parameter, noise),
+                    .nis = 0.0,
+                    .weight = 1.0,
+                    .status = Status::Converged,
+                    .at = at_prior};
+  update.nis = normalised_square(update.innovation, update.innovation_covariance);
+  if (!(update.nis <= settings.gate)) {
+    update.weight = 0.0;
+    update.status = Status::Rejected;
+    return update;
+  }
+  if (const double sigmas = std::sqrt(update.nis); sigmas > settings.huber) {
+    update.weight = settings.huber / sigmas;
+    update.status = Status::Downweighted;
+  }
+  const Eigen::Matrix3d weighted_noise = noise / update.weight;
+  const MeasuredSegment measured{model, inputs, segment, weighted_noise};
+  const MapUpdate problem(prior, measured);
+  auto now = problem.begin(std::move(at_prior));
+  if (!problem.minimize(now, settings.map())) {  // nothing was learned: the prior stands
+    update.weight = 0.0;
+    update.status = Status::NotConverged;
+    return update;
+  }
+  update.estimate.mean = now.state;
+  update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise);
+  if (model.actuator_size() > 0) {
+    const Eigen::Matrix3d bent = second_order(model, update.estimate, inputs, segment, now.at.predicted.vector());
+    update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
+  }
+  const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
+  const Eigen::VectorXd carry =
+      (model.log_time_derivatives(prior.mean).array() / model.log_time_derivatives(now.state).array()).min(most);
+  update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
+  update.at = std::move(now.at);
+  return update;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scoring predictions of segments.
+#include "slipwise/filter/predictive_score.hpp"
+
+#include "slipwise/linear/innovation.hpp"
+
+namespace slipwise {
+
+ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+                                     const Segment& segment) {
+  const auto at = linearize_segment(model, estimate.mean, inputs, segment);
+  const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();
+  const Eigen::Matrix3d expected = slip_covariance(at.path, settings_.shape) +
+                                   pose_noise_covariance(at.predicted, settings_.shape, segment.pose_std_ratio);
+  const Eigen::Matrix3d covariance = open + scaled_covariance(expected, noise_scale_.value());
+  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
+  noise_scale_.learn_prediction(innovation.cwiseAbs2(), open.diagonal(), expected.diagonal());
+  return {innovation, covariance, normalised_square(innovation, covariance)};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tempered, shared Bayes over candidates.
+#include "slipwise/filter/weighting.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "slipwise/filter/heavy_tails.hpp"
+
+namespace slipwise {
+
+Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
+                                const Eigen::VectorXd& prior, const WeightingSettings& settings, std::size_t observed) {
+  if (weights.size() != log_scores.size() || weights.size() != prior.size() || weights.size() == 0) {
+    throw std::invalid_argument("each candidate needs a weight, a log score and a prior weight, got " +
+                                std::to_string(weights.size()) + ", " + std::to_string(log_scores.size()) + " and " +
+                                std::to_string(prior.size()));
+  }
+  // Shared before the segment speaks, not after: what is spread to candidates that it refutes never reaches a
+  // prediction.
+  const double share = std::min(settings.share, 1.0 / static_cast<double>(observed + 1));
+  const Eigen::ArrayXd shared = (1.0 - share) * weights.array() + share * prior.array();
+  const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
+  const Eigen::VectorXd heavier = shared * tempered.exp();
+  return heavier / heavier.sum();
+}
+
+double student_log_score(double nis, const Eigen::Matrix3d& covariance) {
+  return -0.5 * std::log(covariance.determinant()) - 0.5 * (kTailDegrees + 3.0) * std::log1p(nis / kTailDegrees);
+}
+
+Eigen::VectorXd common_log_scores(const Eigen::VectorXd& weights, std::span<const Eigen::Vector3d> innovations,
+                                  std::span<const Eigen::Matrix3d> covariances) {
+  if (std::ssize(innovations) != weights.size() || std::ssize(covariances) != weights.size()) {
+    throw std::invalid_argument("each weight needs an innovation and a covariance");
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    covariance += weights[static_cast<Eigen::Index>(i)] * covariances[i];
+  }
+  const Eigen::Matrix3d precision = covariance.inverse();
+  Eigen::VectorXd scores(weights.size());
+  for (std::size_t i = 0; i < innovations.size(); ++i) {
+    const double nis = innovations[i].dot(precision * innovations[i]);
+    scores[static_cast<Eigen::Index>(i)] = student_log_score(nis, covariance);
+  }
+  return scores;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: Apache-2.0
+// Causal model averaging, and the trial of what forgot against what did not after a change of ground.
+#include "slipwise/hypotheses/model_average.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "slipwise/linear/present.hpp"
+#include "slipwise/linear/tuning.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kChanged, 0.2);  // weight of the models that forgot, at first: most disturbances of real drives pass
+SLIPWISE_TUNING(kActive, 0.01);  // weight from which a model has a say
+
+/// One basis as it is, several as their union.
+Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
+  if (bases.empty()) {
+    throw std::invalid_argument("a model average needs at least one slip basis");
+  }
+  return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
+}
+
+/// Weights beforehand: `largest_basis` for the basis with the most terms, the rest in equal parts.
+Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double largest_basis) {
+  if (!(largest_basis > 0.0) || !(largest_basis < 1.0)) {
+    throw std::invalid_argument("the weight of the largest_basis basis must lie between 0 and 1, got " +
+                                std::to_string(largest_basis));
+  }
+  const auto most = std::ranges::max_element(bases, {}, &Basis::size);
+  if (bases.size() == 1) {
+    return Eigen::VectorXd::Ones(1);
+  }
+  const auto others = static_cast<double>(bases.size() - 1);
+  Eigen::VectorXd weights = Eigen::VectorXd::Constant(std::ssize(bases), (1.0 - largest_basis) / others);
+  weights[most - bases.begin()] = largest_basis;
+  return weights;
+}
+
+std::vector<Eigen::Index> places_of(const MotionModel& part, const MotionModel& whole) {
+  std::vector<Eigen::Index> places;
+  for (const std::size_t place : parameter_places(part.basis(), whole.basis())) {
+    places.push_back(static_cast<Eigen::Index>(place));
+  }
+  for (Eigen::Index i = part.slip_size(); i < part.size(); ++i) {
+    places.push_back(whole.slip_size() + i - part.slip_size());
+  }
+  return places;
+}
+
+bool has_term(const Basis& basis, const std::string& name) {
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    if (basis.parameter_name(i) == name) {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// The terms linear in V or w, which every ground shows; all terms where the basis has none of them.
+std::vector<Eigen::Index> changing_terms(const Basis& basis) {
+  const Basis linear = named_basis("full-linear-6");
+  std::vector<Eigen::Index> all(basis.size());
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> found;
+  std::ranges::copy_if(all, std::back_inserter(found), [&](Eigen::Index i) {
+    return has_term(linear, basis.parameter_name(static_cast<std::size_t>(i)));
+  });
+  return found.empty() ? all : found;
+}
+
+/// Of the changing terms, by their places among these: all, the forward slip that goes with V and the yaw slip that
+/// goes with w together, and each of the two alone.
+ChangeKinds change_kinds(const Basis& basis, const std::vector<Eigen::Index>& changing) {
+  const Basis main = named_basis("edd-2");
+  std::set<std::vector<Eigen::Index>> kinds;
+  std::vector<Eigen::Index> all;
+  std::vector<Eigen::Index> both;
+  for (const Eigen::Index term : changing) {
+    const Eigen::Index place = std::ssize(all);
+    all.push_back(place);
+    if (has_term(main, basis.parameter_name(static_cast<std::size_t>(term)))) {
+      both.push_back(place);
+      kinds.insert({place});
+    }
+  }
+  kinds.insert(both);
+  kinds.insert(all);
+  kinds.erase(std::vector<Eigen::Index>{});
+  return {kinds.begin(), kinds.end()};
+}
+
+}  // namespace
+
+ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
+                           const CausalFilterSettings& filter, const ModelAverageSettings& settings)
+    : model_(averaged_basis(std::move(name), bases), learned),
+      settings_(settings),
+      prior_(prior_weights(bases, settings.largest_basis)),
+      weights_(prior_),
+      changing_(changing_terms(model_.basis())),
+      detector_(settings.change, change_kinds(model_.basis(), changing_)) {
+  for (const Basis& basis : bases) {
+    filters_.emplace_back(MotionModel(basis, learned), filter);
+    places_.push_back(places_of(filters_.back().model(), model_));
+  }
+}
+
+void ModelAverage::check_sizes() const {
+  const auto bases = static_cast<std::size_t>(prior_.size());
+  const std::size_t sides = on_trial_ > 0 ? 2 : 1;
+  bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides * bases &&
+             static_cast<std::size_t>(weights_.size()) == filters_.size();
+  for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
+    fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
+          filters_[i].estimate().mean.size() == filters_[i].model().size();
+  }
+  if (!fit) {
+    throw std::invalid_argument("the filters of a model average are not those of its bases");
+  }
+}
+
+IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
+  start(inputs, segment);
+  while (advance()) {
+  }
+  return update_;
+}
+
+void ModelAverage::start(const InputTrack& inputs, const Segment& segment) {
+  while (advance()) {
+  }
+  learning_ = Learning{.inputs = inputs, .segment = segment};
+}
+
+bool ModelAverage::advance() {
+  if (!learning_) {
+    return false;
+  }
+  if (!present(learning_).tested) {
+    look_for_change();
+    return true;
+  }
+  update_next_filter();
+  if (present(learning_).updates.size() < filters_.size()) {
+    return true;
+  }
+  reweigh();
+  learning_.reset();
+  return false;
+}
+
+bool ModelAverage::refit_slice() {
+  return std::ranges::any_of(filters_, [](CausalFilter& filter) { return filter.refit_slice(); });
+}
+
+void ModelAverage::look_for_change() {
+  Learning& now = present(learning_);
+  speeds_.see(now.inputs, now.segment);
+  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
+  if (change_.suspicion) {
+    doubt();
+    announced_ = change_.alarm;
+  }
+  now.tested = true;
+}
+
+void ModelAverage::update_next_filter() {
+  Learning& now = present(learning_);
+  const std::size_t i = now.updates.size();
+  now.updates.push_back(filters_[i].learn(now.inputs, now.segment, speeds_.reference()));
+}
+
+void ModelAverage::reweigh() {
+  const std::vector<IekfUpdate>& updates = present(learning_).updates;
+  std::vector<Eigen::Vector3d> innovations;
+  std::vector<Eigen::Matrix3d> covariances;
+  for (const IekfUpdate& update : updates) {
+    innovations.push_back(update.innovation);
+    covariances.push_back(update.innovation_covariance);
+  }
+  Eigen::Index heaviest = 0;
+  weights_.maxCoeff(&heaviest);
+  update_ = updates[static_cast<std::size_t>(heaviest)];
+  const Eigen::Index sides = weights_.size() / prior_.size();
+  const Eigen::VectorXd prior = prior_.replicate(sides, 1) / static_cast<double>(sides);
+  weights_ = updated_weights(weights_, common_log_scores(weights_, innovations, covariances), prior,
+                             settings_.weighting, observed_);
+  ++observed_;
+  if (on_trial_ > 0) {
+    --on_trial_;
+    if (on_trial_ == 0) {
+      settle();
+    }
+  }
+}
+
+/// By what the average predicted as it was before the segments that are tested together: the noise factors and the
+/// weights follow a change at once, and would hide it.
+ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment& segment) {
+  const ChangeSettings& change = settings_.change;
+  if (!change.detect) {
+    return {};
+  }
+  before_.push_back(state());
+  if (std::ssize(before_) > change.longest) {
+    before_.pop_front();
+  }
+  const AverageState& known = before_.front();
+  const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
+  const Eigen::Matrix3d covariance =
+      prediction_covariance(at, known.estimate.covariance, filters_.front().noise().shape, known.noise_scale);
+  const Eigen::VectorXd nominal = slip_prior_std(model_.basis(), speeds_.reference(), change.fraction);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> by_change =
+      at.by_parameter(Eigen::all, changing_) * nominal(changing_).asDiagonal();
+  return detector_.see(segment.measured.vector() - at.predicted.vector(), covariance, by_change);
+}
+
+/// Every model once as if the ground had changed and once as it was: what follows decides between them, so that a
+/// passing disturbance costs little, and the old ground is known at once where it comes back soon.
+void ModelAverage::doubt() {
+  before_.clear();
+  detector_.restart();
+  const std::vector<CausalFilter> as_before = filters_;
+  for (CausalFilter& filter : filters_) {
+    filter.forget(settings_.change.forget);
+  }
+  filters_.insert(filters_.end(), as_before.begin(), as_before.end());
+  const Eigen::VectorXd weights = weights_;
+  weights_.resize(2 * weights.size());
+  weights_ << kChanged * weights, (1.0 - kChanged) * weights;
+  on_trial_ = settings_.change.trial;
+}
+
+void ModelAverage::forget(double fraction) {
+  for (CausalFilter& filter : filters_) {
+    filter.forget(fraction);
+  }
+}
+
+/// Keeps the models of the ground that predicted better.
+void ModelAverage::settle() {
+  const auto bases = static_cast<std::ptrdiff_t>(places_.size());
+  const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
+  change_.alarm = changed && !announced_;
+  observed_ = changed ? 0 : observed_;  // of a new ground, few data have spoken
+  weights_ = basis_weights();
+  filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
+                 changed ? filters_.end() : filters_.begin() + bases);
+}
+
+Eigen::VectorXd ModelAverage::basis_weights() const {
+  const auto bases = static_cast<Eigen::Index>(places_.size());
+  return weights_.reshaped(bases, weights_.size() / bases).rowwise().sum();
+}
+
+AverageState ModelAverage::state() const {
+  const Eigen::Index size = model_.size();
+  AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
+                     Eigen::VectorXd::Zero(size),
+                     variance_ratio(),
+                     Eigen::Vector3d::Zero(),
+                     basis_weights()};
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const double weight = weights_[static_cast<Eigen::Index>(i)];
+    const std::vector<Eigen::Index>& places = places_[i % places_.size()];
+    state.noise_scale += weight * filters_[i].noise_scale();
+    if (places.empty()) {
+      continue;  // the plain model: it has no parameters, and adds nothing to any mean
+    }
+    Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
+    mean(places) = filters_[i].estimate().mean;
+    state.estimate.mean += weight * mean;
+    state.estimate.covariance(places, places) += weight * filters_[i].stated().covariance;
+    state.estimate.covariance += weight * mean * mean.transpose();
+    state.prior_std(places) = filters_[i].prior_std();
+  }
+  state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
+  return state;
+}
+
+/// Over the models that have the parameter: their variances and the spread of their means, against the prior's
+/// variance.
+Eigen::VectorXd ModelAverage::variance_ratio() const {
+  Eigen::VectorXd having = Eigen::VectorXd::Zero(model_.size());
+  Eigen::VectorXd mean = having;
+  Eigen::VectorXd square = having;
+  Eigen::VectorXd prior = having;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    const std::vector<Eigen::Index>& places = places_[i % places_.size()];
+    if (places.empty()) {
+      continue;
+    }
+    const double weight = weights_[static_cast<Eigen::Index>(i)];
+    const Estimate estimate = filters_[i].stated();
+    having(places).array() += weight;
+    mean(places) += weight * estimate.mean;
+    square(places) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());
+    prior(places) = filters_[i].prior_std().cwiseAbs2();
+  }
+  const Eigen::VectorXd variance = square.cwiseQuotient(having) - mean.cwiseQuotient(having).cwiseAbs2();
+  return variance.cwiseQuotient(prior);
+}
+
+}  // namespace slipwise

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// The damped, weighted step of (6.12).
+#include "slipwise/thesis/gradient_descent.hpp"
+
+#include <utility>
+
+#include "slipwise/linear/innovation.hpp"
+
+namespace slipwise {
+
+GradientDescent::GradientDescent(MotionModel model, Estimate prior, const EstimatorSettings& settings)
+    : model_(std::move(model)), settings_(settings.gradient_descent), estimate_(std::move(prior)) {}
+
+IekfUpdate GradientDescent::learn(const InputTrack& inputs, const Segment& segment) {
+  const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
+  const auto jacobian = segment_jacobian(settings_.jacobian, model_, at, segment);
+  const Eigen::VectorXd metric = estimate_.covariance.diagonal();
+  const Eigen::Matrix3d damped =
+      jacobian * metric.asDiagonal() * jacobian.transpose() + settings_.damping * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();  // (6.4)
+  const Eigen::Vector3d solved = solve_innovation(damped, residual);
+  estimate_.mean += settings_.learning_rate * metric.asDiagonal() * (jacobian.transpose() * solved);  // (6.12)
+  return {.estimate = estimate_,
+          .innovation = residual,
+          .innovation_covariance = damped,
+          .nis = residual.dot(solved),
+          .weight = settings_.learning_rate,
+          .status = Status::Converged};
+}
+
+bool GradientDescent::change_prior(const Eigen::VectorXd& /*old_std*/, const Eigen::VectorXd& new_std) {
+  estimate_.covariance.diagonal().head(new_std.size()) = new_std.cwiseAbs2();
+  return true;
+}
+
+}  // namespace slipwise

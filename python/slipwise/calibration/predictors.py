@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Prequential prediction by other methods than the learner: from what was known an embargo before a start."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.calibration.learner import Posterior
+from slipwise.calibration.predictions import Predictions, normalised_squared, residual
+from slipwise.calibration.prepared_run import WindowSet
+from slipwise.models.schema import Tail
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Predictor:
+    """One method at work: the posterior after any number of learned windows."""
+
+    method: str
+    noise: _core.MotionNoise
+    posterior: Callable[[int], Posterior]  # requested in the order learned: windows never decrease
+    starts_from_wheels: bool  # the actuator's measured twist at the start is used
+    causal: bool = True  # False: it learned from the whole log, the windows to predict included
+
+
+def learned_counts(learned: WindowSet, targets: WindowSet) -> tuple[Ints, Ints]:
+    """Return how many windows count as learned for each target: after the embargo, and in-sample."""
+    embargoed = learned.count_until(targets.position, targets.start - targets.length)
+    in_sample = learned.count_until(targets.position, targets.end)
+    return embargoed, in_sample
+
+
+@dataclass(frozen=True, eq=False)
+class _Draft:
+    """The predictions of one set of targets while they are being made, [N] each."""
+
+    targets: WindowSet
+    counts: Ints  # windows learned before the prediction
+    in_sample_counts: Ints
+    pose: Floats
+    covariance: Floats
+    in_sample: Floats
+    structure: Ints  # that predicted
+
+
+def predictions_of(predictor: Predictor, learned: WindowSet, targets: WindowSet) -> Predictions:
+    """Predict every target window causally, and once more after having learned it (the thesis's residual)."""
+    return predict_all(predictor, learned, [targets])[0]
+
+
+def predict_all(
+    predictor: Predictor, learned: WindowSet, sets: Sequence[WindowSet]
+) -> tuple[Predictions, ...]:
+    """Predict the targets of several horizons in one run over what is learned, and keep no posterior."""
+    drafts = [_draft(learned, targets) for targets in sets]
+    moments = [c for draft in drafts for c in (draft.counts, draft.in_sample_counts)]
+    kind = np.repeat(np.arange(len(moments)), [len(counts) for counts in moments])
+    index = np.concatenate([np.arange(len(counts)) for counts in moments])
+    count = np.concatenate(moments)
+    for k in np.argsort(count, kind="stable").tolist():
+        posterior, draft = predictor.posterior(int(count[k])), drafts[kind[k] // 2]
+        if kind[k] % 2 == 0:
+            _predict(predictor, posterior, draft, int(index[k]))
+        else:
+            _predict_in_sample(posterior, draft, int(index[k]))
+    return tuple(_finished(predictor, learned, draft) for draft in drafts)
+
+
+def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
+    counts, in_sample_counts = learned_counts(learned, targets)
+    size = len(targets)
+    return _Draft(
+        targets,
+        counts,
+        in_sample_counts,
+        np.empty((size, 3)),
+        np.empty((size, 3, 3)),
+        np.empty((size, 3)),
+        np.zeros(size, dtype=np.int64),
+    )
+
+
+def _predict(predictor: Predictor, posterior: Posterior, draft: _Draft, i: int) -> None:
+    known = posterior.for_core(predictor.noise)
+    disturbance = posterior.disturbance or _core.DisturbanceFilter(_core.DisturbanceModel([], np.empty(0)))
+    track, segment = draft.targets.track(i, posterior.limits), draft.targets.segments[i]
+    expected = disturbance.predict(known, track, disturbance.now(known, track, []), segment)
+    draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
+    draft.structure[i] = posterior.structure
+
+
+def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
+    track, segment = draft.targets.track(i, posterior.limits), draft.targets.segments[i]
+    path = _core.integrate_segment(posterior.motion, posterior.mean, track, segment, _core.Integrator.Exact)
+    draft.in_sample[i] = path.sensor_poses[-1]
+
+
+def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predictions:
+    targets, pose = draft.targets, draft.pose
+    known = targets.count_until(targets.position, targets.start - targets.length)
+    squared = normalised_squared(residual(targets.measured, pose), draft.covariance)
+    tails = _tails(known, squared)
+    inflation = np.array([tail.inflation for tail in tails])
+    left = residual(targets.measured, draft.in_sample)
+    return Predictions(
+        method=predictor.method,
+        horizon=targets.length,
+        run=np.array([targets.drive[p].index for p in targets.position], dtype=np.int64),
+        t_start=targets.start,
+        t_end=targets.end,
+        pose=pose,
+        covariance=draft.covariance * inflation[:, None, None],
+        growth=inflation,
+        dof=np.array([tail.dof for tail in tails]),
+        usual_nis=squared,
+        structure=draft.structure,
+        measured=targets.measured,
+        learned_until=_learned_until(predictor, ((learned, draft.counts), (targets, known)), targets),
+        in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
+    )
+
+
+def _tails(known: Ints, squared: Floats) -> list[_core.StudentT]:
+    """The Student t of each prediction, from the errors known before it; their number never decreases."""
+    calibration = _core.StudentCalibration()
+    taken, found = 0, [calibration.fitted()]
+    for count in known.tolist():
+        for value in squared[taken:count].tolist():
+            calibration.learn(value)
+        found.append(calibration.fitted() if count > taken else found[-1])
+        taken = max(taken, count)
+    return found[1:]
+
+
+def final_tail(predictions: Predictions) -> Tail:
+    """Inflation and degrees of freedom at this horizon from all held-out windows.
+
+    They go with a model file, which does not know the slip disturbance of the moment.
+    """
+    calibration = _core.StudentCalibration()
+    for value in predictions.usual_nis.tolist():
+        calibration.learn(value)
+    return tail_of(calibration.fitted())
+
+
+def tail_of(student: _core.StudentT) -> Tail:
+    """Return a Student t as the model file has it."""
+    return Tail(growth=student.inflation, dof=student.dof)
+
+
+def _learned_until(
+    predictor: Predictor, used: Sequence[tuple[WindowSet, Ints]], targets: WindowSet
+) -> Floats:
+    """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
+    if not predictor.causal:
+        return np.array([run.run.poses.t[-1] for run in targets.drive])[targets.position]
+    begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])
+    until = np.minimum(begin[targets.position], targets.start)
+    for windows, counts in used:
+        last = np.maximum(counts - 1, 0)
+        if len(windows):
+            same_run = (counts > 0) & (windows.position[last] == targets.position)
+            until = np.where(same_run, np.maximum(until, windows.end[last]), until)
+    has_wheels = np.array([run.wheels is not None for run in targets.drive])
+    from_wheels = predictor.starts_from_wheels & has_wheels[targets.position]
+    return np.where(from_wheels, targets.start, until)

@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log made ready for learning: the inputs of each run, and its windows in the order they are learned."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.errors import LogError, SettingsError
+from slipwise.logs.held import HeldSum
+from slipwise.logs.log import Inputs, LeftOut, Log, Run
+from slipwise.segments import WindowRules, cut_windows
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+INPUT_NAMES = ("command", "wheel")
+EPOCH_STAMPS = 1e8  # s; stamps beyond this count from 1970, smaller ones from some start of their own
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedRun:
+    """A run with the inputs to predict from."""
+
+    index: int  # of the run in the log
+    run: Run
+    inputs: Inputs
+    wheels: Inputs | None  # measured at the start of a prediction from commands
+    input_name: str = "command"  # or "wheel": of `inputs`
+
+
+@dataclass(frozen=True, eq=False)
+class WindowSet:
+    """The windows of all runs, in order, [N] each."""
+
+    length: float  # s, as asked for
+    drive: tuple[PreparedRun, ...]
+    position: Ints  # of the window's run in `drive`
+    start: Floats  # s
+    end: Floats  # s
+    measured: Floats  # [N, 3]
+    segments: tuple[_core.Segment, ...]
+    tracks: tuple[_core.InputTrack, ...]  # the inputs that act in each, or before it
+    unknown_after: float  # s; an input is unknown once it is older than this
+    left_out: tuple[LeftOut, ...]
+
+    def __len__(self) -> int:
+        return len(self.start)
+
+    def track(self, i: int, limits: _core.CommandLimits | None = None) -> _core.InputTrack:
+        """Return the inputs of window i, behind the limits of the actuator where there are some."""
+        track = self.tracks[i]
+        return track if limits is None else _core.limited_track(track, limits, _core.RAMP_PIECE)
+
+    def distances(self) -> Floats:
+        """Return how far the robot was driven in each window, by its inputs, [N] m."""
+        distances = np.empty(len(self))
+        for k, run in enumerate(self.drive):
+            at = self.position == k
+            driven = HeldSum.of(run.inputs, np.hypot(run.inputs.v, run.inputs.vy), self.unknown_after)
+            distances[at] = driven.between(self.start[at], self.end[at])
+        return distances
+
+    def count_until(self, position: Ints, time: Floats) -> Ints:
+        """Return how many windows had ended by `time` of run `position`, [M] each.
+
+        Earlier runs on another clock count whole. Runs whose stamps follow each other are on one clock.
+        """
+        clocks = self._clocks[position]
+        counts = np.empty(len(time), dtype=np.int64)
+        for clock in np.unique(clocks).tolist():
+            first, last = np.searchsorted(self._clock_of_each, (clock, clock + 1)).tolist()
+            at = clocks == clock
+            counts[at] = first + np.searchsorted(self.end[first:last], time[at] + 1e-9, side="right")
+        return counts
+
+    def passed(self, pace: WindowSet) -> Ints:
+        """Return how many windows had ended when each window of `pace` did, [len(pace)]."""
+        return self.count_until(pace.position, pace.end)
+
+    @cached_property
+    def _clock_of_each(self) -> Ints:
+        """Number of each window's clock, [N]."""
+        return self._clocks[self.position]
+
+    @cached_property
+    def _clocks(self) -> Ints:
+        """Number of each run's clock, [runs]."""
+        runs = [run.run for run in self.drive]
+        restarts = [earlier.poses.t[-1] > later.poses.t[0] for earlier, later in itertools.pairwise(runs)]
+        return np.cumsum([0, *restarts], dtype=np.int64)
+
+
+def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
+    """Choose the inputs of every run.
+
+    Raises:
+        LogError: no run has such inputs, or no run has poses.
+        SettingsError: there is no such input.
+    """
+    if input_name not in INPUT_NAMES:
+        raise SettingsError(
+            f"unknown input '{input_name}'", where="--input", advice=f"use {' or '.join(INPUT_NAMES)}"
+        )
+    drive = []
+    for index, run in enumerate(log.runs):
+        inputs = run.commands if input_name == "command" else run.wheels
+        if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
+            continue
+        wheels = run.wheels if input_name == "command" else None
+        drive.append(PreparedRun(index, run, inputs, wheels, input_name))
+    if not drive:
+        raise LogError(_nothing_to_use(log, input_name), where=_where(log), advice=_advice(log, input_name))
+    return tuple(_in_time(drive))
+
+
+def _in_time(drive: list[PreparedRun]) -> list[PreparedRun]:
+    """Order runs by their start where all stamps are times of day: files may come in any order."""
+    if all(float(run.run.poses.t[0]) > EPOCH_STAMPS for run in drive):
+        return sorted(drive, key=lambda run: float(run.run.poses.t[0]))
+    return drive
+
+
+def choose_input(log: Log) -> str:
+    """Return "command" where the log has commands, otherwise "wheel"."""
+    return next(iter(_input_names(log)), "wheel")
+
+
+def collect_windows(drive: tuple[PreparedRun, ...], length: float, rules: WindowRules) -> WindowSet:
+    """Cut all runs into windows of `length` [s]."""
+    settings = rules.stream_settings(length, from_commands=drive[0].input_name == "command")
+    cut = cut_windows([run.run for run in drive], settings)
+    return WindowSet(
+        length=length,
+        drive=drive,
+        position=cut.run,
+        start=cut.start,
+        end=cut.end,
+        measured=cut.measured,
+        segments=cut.segments,
+        tracks=cut.tracks,
+        unknown_after=rules.unknown_after,
+        left_out=cut.left_out,
+    )
+
+
+def has_wheels(drive: tuple[PreparedRun, ...]) -> bool:
+    """Whether every run has wheel speeds beside its commands."""
+    return all(run.wheels is not None and len(run.wheels) > 1 for run in drive)
+
+
+def _nothing_to_use(log: Log, input_name: str) -> str:
+    if all(len(run.poses) < 2 for run in log.runs):
+        still = any(len(run.poses) == 1 for run in log.runs)
+        return (
+            "the robot never moves in this log: all its poses are the same"
+            if still
+            else "the log has no poses"
+        )
+    if not _input_names(log):
+        return "the log has no commands and no wheel speeds"
+    return f"the log has no {input_name} input" if input_name == "wheel" else "the log has no commands"
+
+
+def _advice(log: Log, input_name: str) -> str:
+    """Say what to do; another input is proposed only where the log has it."""
+    if all(len(run.poses) < 2 for run in log.runs):
+        return "record where the robot went (RTK, lidar, mocap), or name the pose topic with --pose-topic"
+    if input_name in log.advice:
+        return log.advice[input_name]
+    name = f"name the topic with --{input_name}-topic, or the columns (see `slipwise inspect`)"
+    others = [other for other in _input_names(log) if other != input_name]
+    if others:
+        return f"use --input {others[0]}, or {name}"
+    if not _input_names(log):
+        return "record commands or wheel speeds; name their topic with --command-topic or --wheel-topic"
+    return f"record poses in the runs that have {input_name}s"
+
+
+def _input_names(log: Log) -> tuple[str, ...]:
+    """Return the kinds of input that the log has."""
+    found = {"command": [run.commands for run in log.runs], "wheel": [run.wheels for run in log.runs]}
+    return tuple(
+        name for name, series in found.items() if any(inputs is not None and len(inputs) for inputs in series)
+    )
+
+
+def _where(log: Log) -> str:
+    return ", ".join(source.path for source in log.sources[:3])

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The actuator model of a model in learned numbers: the one place where exporters read it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.errors import ModelError
+from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
+from slipwise.models.model import Model
+
+_KNOWN = {"clock_offset"} | {
+    f"{name}_{place}"
+    for name in ("log_lag", "log_delay", "delay", "gain", "slow_share", "log_slow_lag")
+    for place in ("v", "omega")
+}
+
+
+@dataclass(frozen=True, eq=False)
+class ChannelResponse:
+    """How one channel answers a command: delay, gain, and two lags side by side."""
+
+    lag: LearnedNumber  # s
+    delay: LearnedNumber  # s
+    gain: LearnedNumber
+    slow_share: LearnedNumber  # of the answer that follows by the slow lag
+    slow_lag: LearnedNumber  # s; zero where there is no slow part
+
+    @property
+    def mean_lag(self) -> LearnedNumber:
+        """The time constant of one lag that loses as much distance [s]."""
+        return self.lag + self.slow_share * (self.slow_lag + self.lag * -1.0)
+
+    @property
+    def mean_delay(self) -> LearnedNumber:
+        """How late the channel is in all [s]: a lag loses the distance that a delay of its length does.
+
+        Never less than nothing, which only an offset of the clocks can make of a delay.
+        """
+        late = self.delay + self.mean_lag
+        return late if late.value > 0.0 else late * 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Actuator:
+    """The channels, and how much later than the inputs poses are stamped [s]."""
+
+    v: ChannelResponse
+    omega: ChannelResponse
+    clock_offset: LearnedNumber
+
+
+def actuator_of(model: Model) -> Actuator:
+    """Return the model's actuator.
+
+    Raises:
+        ModelError: the actuator has a part that the exporters do not know, and would leave out.
+    """
+    parameters = model.body.content.parameters
+    places = {p.name: i for i, p in enumerate(parameters) if i >= model.motion.slip_size}
+    unknown = sorted(set(places) - _KNOWN)
+    if unknown:
+        raise ModelError(
+            f"the actuator model has {', '.join(unknown)}, which cannot be exported",
+            advice="calibrate without it",
+        )
+    numbers = LearnedNumbers(model.body)
+
+    def seconds(name: str) -> LearnedNumber:
+        if name not in places:
+            return numbers.exactly(0.0)
+        return numbers.seconds(places[name], parameters[places[name]].value)
+
+    def plain(name: str, absent: float) -> LearnedNumber:
+        if name not in places:
+            return numbers.exactly(absent)
+        return numbers.of_parameters(parameters[places[name]].value, np.eye(len(parameters))[places[name]])
+
+    def channel(place: str) -> ChannelResponse:
+        return ChannelResponse(
+            lag=seconds(f"log_lag_{place}"),
+            delay=plain(f"delay_{place}", 0.0) + seconds(f"log_delay_{place}"),
+            gain=plain(f"gain_{place}", 1.0),
+            slow_share=plain(f"slow_share_{place}", 0.0),
+            slow_lag=seconds(f"log_slow_lag_{place}"),
+        )
+
+    return Actuator(channel("v"), channel("omega"), plain("clock_offset", 0.0))

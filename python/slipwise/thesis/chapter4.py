@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 4: the steady state of held commands."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from slipwise.thesis.bench import Bench
+from slipwise.thesis.chapter4_draws import drawn_paths
+from slipwise.thesis.chapter4_fits import fitted_curves
+from slipwise.thesis.chapter4_husky import husky_curves, husky_rates
+from slipwise.thesis.chapter4_paths import collected_paths
+from slipwise.thesis.chapter4_rates import angular_rates, translational_rates
+from slipwise.thesis.chapter4_recovery import recovered_noise
+from slipwise.thesis.chapter4_scatter import learned_scatter
+from slipwise.thesis.chapter4_setup import commands, vehicle
+from slipwise.thesis.chapter4_weights import compared_weights
+from slipwise.thesis.exhibit import Exhibit, exhibit_of_log
+
+
+def chapter4_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
+    """Make the exhibits of the steady state, in the thesis's order."""
+    steps: tuple[tuple[str, Callable[[Bench], list[Exhibit]]], ...] = (
+        ("path segments", lambda b: [collected_paths(b)]),
+        ("slip curves", lambda b: [fitted_curves(b)]),
+        ("weights", lambda b: [compared_weights(b)]),
+        ("scatter", lambda b: [learned_scatter(b)]),
+        ("drawn segments", drawn_paths),
+        ("recovered noise", lambda b: [recovered_noise(b)]),
+        ("commands", lambda b: [commands(b), vehicle()]),
+        ("slip rates", lambda b: [angular_rates(b), translational_rates(b)]),
+        ("a real Husky", _husky),
+    )
+    exhibits = []
+    for done, (what, make) in enumerate(steps):
+        progress(what, done / len(steps))
+        exhibits += make(bench)
+    return exhibits
+
+
+def _husky(bench: Bench) -> list[Exhibit]:
+    return [
+        exhibit_of_log(
+            "figure-4-2-husky", "Figure 4.2", "Slip curves of a real Husky", lambda: husky_curves(bench)
+        ),
+        exhibit_of_log(
+            "figure-4-9-husky",
+            "Figures 4.9 and 4.10",
+            "Slip rates of a real Husky",
+            lambda: husky_rates(bench),
+        ),
+    ]

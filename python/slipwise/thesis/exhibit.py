@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One figure or table of the thesis made again, with what agrees, what differs and why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from slipwise.thesis.bench import MissingLogError
+from slipwise.thesis.grid import Grid
+from slipwise.thesis.panel import Panel
+
+
+@dataclass(frozen=True, eq=False)
+class Exhibit:
+    """Numbers in the sentences are those of this run: build the sentences from results."""
+
+    key: str  # lower case, digits and hyphens, unique: name of the picture and anchor, as "figure-4-2"
+    thesis: str  # what it is called there, as "Figure 4.2"; "Not in the thesis" where it is an addition
+    title: str
+    shows: str = ""  # what is drawn, one or two sentences
+    agrees: str = ""  # with the thesis
+    differs: str = ""  # from the thesis, and why
+    source: str = ""  # which simulated ground, or which log
+    parts: tuple[Panel | Grid, ...] = ()
+    missing: str = ""  # what is missing and how to give it; then there is nothing else to show
+
+    def __post_init__(self) -> None:
+        """Refuse an exhibit that shows something and does not say what."""
+        told = {"shows": self.shows, "agrees": self.agrees, "differs": self.differs, "source": self.source}
+        empty = [name for name, text in told.items() if not text.strip()]
+        if not self.missing and (empty or not self.parts):
+            raise ValueError(f"exhibit {self.key}: empty {', '.join([*empty, 'parts' * (not self.parts)])}")
+
+    @property
+    def panels(self) -> tuple[Panel, ...]:
+        """The parts that are drawn."""
+        return tuple(part for part in self.parts if isinstance(part, Panel))
+
+    @property
+    def grids(self) -> tuple[Grid, ...]:
+        """The parts that are tables."""
+        return tuple(part for part in self.parts if isinstance(part, Grid))
+
+
+def exhibit_of_log(key: str, thesis: str, title: str, make: Callable[[], Exhibit]) -> Exhibit:
+    """Return what `make` makes from a real log, or an exhibit that says which log is missing."""
+    try:
+        return make()
+    except MissingLogError as error:
+        return Exhibit(key, thesis, title, missing=str(error))

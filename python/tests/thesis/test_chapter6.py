@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chapter 6 on small drives: what is recorded is what is evaluated, and exhibits hold what they claim."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from slipwise import _core
+from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.plain import baseline_predictor
+from slipwise.calibration.predictors import predictions_of
+from slipwise.logs import Log
+from slipwise.thesis import SMALL, Bench, Exhibit, Heat, Line
+from slipwise.thesis.chapter6 import chapter6_exhibits
+from slipwise.thesis.chapter6_circling import circling
+from slipwise.thesis.chapter6_convergence import without_slip
+from slipwise.thesis.chapter6_jacobian import shares_wrong
+from slipwise.thesis.chapter6_recording import EXACT, Course, drive_windows, record
+from slipwise.thesis.chapter6_smoothing import drifting_drive
+from slipwise.thesis.chapter6_table import (
+    METHODS,
+    PRINTED,
+    Contest,
+    Errors,
+    gain_findings,
+    order_findings,
+)
+
+pytestmark = pytest.mark.slow
+
+pytest.importorskip("mujoco")
+
+Exhibits = dict[str, Exhibit]
+
+
+@pytest.fixture(scope="module")
+def bench() -> Bench:
+    return Bench(size=SMALL)
+
+
+@pytest.fixture(scope="module")
+def exhibits(bench: Bench) -> Exhibits:
+    told: list[float] = []
+    made = chapter6_exhibits(bench, lambda _what, share: told.append(share))
+    assert told == sorted(told)
+    assert all(0.0 <= share < 1.0 for share in told)
+    return {exhibit.key: exhibit for exhibit in made}
+
+
+@pytest.fixture(scope="module")
+def circles(bench: Bench) -> Log:
+    return circling(bench, "tyre-force")
+
+
+def test_every_figure_and_table_is_there_and_told_with_finite_numbers(exhibits: Exhibits) -> None:
+    names = {exhibit.thesis for exhibit in exhibits.values()}
+    assert {f"Figure 6.{place}" for place in range(1, 8)} | {"Table 6.2"} <= names
+    for exhibit in exhibits.values():
+        text = f"{exhibit.shows} {exhibit.agrees} {exhibit.differs}"
+        assert not re.search(r"\bnan\b|\binf\b|–", text), exhibit.key
+        assert not re.search(r"[.:] [a-z]\w* is best", text), exhibit.key
+
+
+def test_slip_surfaces_bring_a_drive_near_to_physics(exhibits: Exhibits) -> None:
+    lines = {line.label: line for line in exhibits["figure-6-1"].panels[0].series if isinstance(line, Line)}
+    ends = {label: np.array([line.x[-1], line.y[-1]]) for label, line in lines.items()}
+    physics = ends["rigid-body physics"]
+    ideal = np.linalg.norm(ends["ideal: commands without slip"] - physics)
+    assert np.linalg.norm(ends["mean surfaces"] - physics) < 0.2 * ideal
+
+
+def test_table_has_every_estimator_and_learning_beats_no_slip(exhibits: Exhibits) -> None:
+    for ground in ("tyre-force", "contact-friction"):
+        for grid in exhibits[f"table-6-2-{ground}"].grids[:2]:
+            rows = {row[0]: row for row in grid.rows}
+            assert set(METHODS) < set(rows)
+            place = grid.columns.index("honest position [m]")
+            honest = {name: float(row[place].split(" ±")[0]) for name, row in rows.items()}
+            assert max(honest[name] for name in ("iekf", "delayed-state", "auto")) < 0.5 * honest["none"]
+
+
+def test_ratios_of_the_thesis_are_those_of_its_errors() -> None:
+    errors = {name: (float(position[:4]), float(heading[:4])) for name, position, heading, _ in PRINTED}
+    for name, _, _, told in PRINTED:
+        ratios = [plain / mine for plain, mine in zip(errors["None"], errors[name], strict=True)]
+        np.testing.assert_allclose([float(value) for value in told.split(", ")], ratios, rtol=0.02)
+
+
+def contest_of(**in_sample: tuple[float, float]) -> Contest:
+    """Return errors of two segments each, with these means, position [m] and heading [rad]."""
+    return {name.replace("_", "-"): Errors(*[np.array([mean, mean])] * 2) for name, mean in in_sample.items()}
+
+
+def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
+    plain, default = (1.0, 0.8), (0.1, 0.02)
+    as_printed = contest_of(none=plain, auto=default, gradient_descent=(0.4, 0.08), ekf_thesis=(0.2, 0.04))
+    turned = contest_of(none=plain, auto=(0.3, 0.02), gradient_descent=(0.2, 0.08), ekf_thesis=(0.4, 0.04))
+    contests = {"wheel": as_printed, "command": turned}
+    gained, ordered = gain_findings(contests), order_findings(contests)
+    assert [finding.same for finding in gained] == [True, True, False, False]
+    assert [finding.same for finding in ordered] == [True, True, False, True]
+    assert gained[3].text == "the thesis's own filter from commands (2.5 and 20 times)"
+    assert ordered[2].text == "from commands in position (0.400 beside 0.200 m)"
+
+
+def test_the_table_says_where_it_contradicts_the_thesis(exhibits: Exhibits) -> None:
+    """Each in-sample comparison of its own rows stands once, on the side where it belongs."""
+    for ground in ("tyre-force", "contact-friction"):
+        exhibit = exhibits[f"table-6-2-{ground}"]
+        for grid, name in zip(exhibit.grids, ("commands", "wheel speeds"), strict=False):
+            rows = {row[0]: row for row in grid.rows}
+            for what, unit in (("position", "m"), ("heading", "rad")):
+                place = grid.columns.index(f"in-sample {what} [{unit}]")
+                kalman, descent = (rows[n][place].split(" ±")[0] for n in ("ekf-thesis", "gradient-descent"))
+                text = f"from {name} in {what} ({kalman} beside {descent} {unit})"
+                agrees = float(kalman) < float(descent)
+                assert (text in exhibit.agrees) is agrees
+                assert (text in exhibit.differs) is not agrees
+
+
+def test_correlations_are_ones_on_the_diagonal(exhibits: Exhibits) -> None:
+    for panel in exhibits["figure-6-6"].panels:
+        (heat,) = panel.series
+        assert isinstance(heat, Heat)
+        np.testing.assert_allclose(np.diag(heat.values), 1.0)
+        assert np.abs(heat.values).max() <= 1.0 + 1e-9
+
+
+@pytest.mark.parametrize("name", ["gradient-descent", "ekf-thesis", "iekf", "delayed-state"])
+def test_a_recording_believes_what_the_evaluation_does(name: str, circles: Log) -> None:
+    course = Course(name)
+    recording = record(circles, course)
+    settings = course.settings.model_copy(update={"estimator": name})
+    run = run_estimator(settings, course.input_name, recording.windows)
+    for count in (0, 7, len(recording.windows)):
+        mine, theirs = recording.posterior(count), run.posterior(count)
+        np.testing.assert_array_equal(mine.mean, theirs.mean)
+        np.testing.assert_array_equal(mine.covariance, theirs.covariance)
+        np.testing.assert_array_equal(mine.noise_scale, theirs.noise_scale)
+
+
+def test_the_exact_jacobian_changes_what_the_filter_learns(circles: Log) -> None:
+    thesis, exact = (
+        record(circles, course) for course in (Course("ekf-thesis"), Course("ekf-thesis", jacobian=EXACT))
+    )
+    assert not np.allclose(thesis.mean[-1], exact.mean[-1])
+
+
+def test_residuals_without_slip_are_those_of_the_plain_model(circles: Log) -> None:
+    recording = record(circles, Course("iekf"))
+    plain = baseline_predictor(recording.course.settings)
+    predictions = predictions_of(plain, recording.windows, recording.fed)
+    np.testing.assert_allclose(without_slip(recording), predictions.residual, atol=1e-12)
+
+
+def test_the_thesis_jacobian_is_worse_over_longer_segments(circles: Log) -> None:
+    shares = [shares_wrong(circles, length)[0] for length in (0.5, 2.0, 5.0)]
+    assert shares == sorted(shares)
+    assert shares[-1] > 0.4
+    windows = drive_windows(circles, Course("iekf"), 5.0)
+    motion = _core.MotionModel(_core.named_basis("thesis-15"), False, False)
+    at = _core.linearize_segment(motion, np.zeros(15), windows.track(0), windows.segments[0])
+    thesis, exact = (
+        np.array(_core.segment_jacobian(kind, motion, at, windows.segments[0]))
+        for kind in (_core.SegmentJacobian.Thesis, EXACT)
+    )
+    np.testing.assert_allclose(thesis[2], exact[2], atol=1e-12)
+
+
+def test_smoothing_comes_nearer_to_the_truth_than_filtering_and_ends_where_it_does() -> None:
+    found = drifting_drive(3, 300.0)
+    errors = [np.mean(np.square(mean - found.truth), axis=0) for mean, _ in (found.filtered, found.smoothed)]
+    assert np.all(errors[1] < 0.8 * errors[0])
+    np.testing.assert_allclose(found.smoothed[0][-1], found.filtered[0][-1], rtol=1e-9)
+    assert np.all(found.smoothed[1] <= found.filtered[1] + 1e-12)
