@@ -25,22 +25,22 @@ PYTHON_CHECKED := python/slipwise tools
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 .PHONY: help env build demo fuzz test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
-  lint-format lint-headers lint-tidy format bench thesis clean distclean FORCE
+  lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' Makefile
 
 env: $(STAMPS)/native ## create .venv and install what building slipwise needs
 
-build: $(STAMPS)/slipwise ## build the C++ core and install slipwise into .venv, editable
+build: $(STAMPS)/slipwise ## build the C++ core and install slipwise into .venv
 
-demo: build ## simulate a robot, learn its motion model, score it, write a report
+demo: build ## simulate a robot, learn its model, score it, write a report
 	@$(VENV)/bin/slipwise demo $(ARGS)
 
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ## run the slow tests: coverage, physics, browsers, compilers, the thesis
+test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ## run the slow tests: coverage, physics, browsers, compilers
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
 
 test-cpp: build $(STAMPS)/doctest ## run the C++ tests
@@ -51,7 +51,7 @@ test-cpp: build $(STAMPS)/doctest ## run the C++ tests
 test-python: build $(STAMPS)/dev ## run the quick Python tests; ARGS="-k name" chooses
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m "not slow" $(ARGS)
 
-asan: build $(STAMPS)/doctest ## run the C++ tests under the address and undefined-behaviour sanitizers
+asan: build $(STAMPS)/doctest ## run the C++ tests under sanitizers of memory and behaviour
 	@cmake --preset asan > /dev/null
 	@cmake --build --preset asan
 	@ctest --preset asan
@@ -96,9 +96,23 @@ fuzz: build $(STAMPS)/fuzz ## fuzz every reader; ARGS=60 for 60 s each
 bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
 	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
 
-thesis: $(STAMPS)/thesis ## make the thesis's figures and tables again, and docs/thesis from them
+thesis: $(STAMPS)/thesis ## make the thesis's figures and tables, and docs/thesis, again
 	@$(VENV)/bin/slipwise reproduce thesis -o build/thesis $(ARGS)
 	@rm -rf docs/thesis && cp -r build/thesis/markdown docs/thesis
+
+# It is compiled from an empty environment too, so that what pyproject.toml names must do. Versions of pip differ in which
+# of the two variables holds for the tools of a build.
+wheel: $(STAMPS)/env ## build a plain wheel into build/dist and try it
+	@echo "building a plain wheel, for this system alone; where docker or podman is, cibuildwheel makes manylinux wheels"
+	@rm -rf build/wheel build/dist
+	@$(PYTHON_IN) -m venv build/wheel/empty
+	@PIP_CONSTRAINT=constraints.txt PIP_BUILD_CONSTRAINT=constraints.txt build/wheel/empty/bin/python -m pip wheel --quiet \
+	  --no-deps --config-settings=build-dir=build/wheel/cmake --wheel-dir build/dist .
+	@$(PYTHON_IN) tools/try_wheel.py build/dist
+
+docs: $(STAMPS)/docs ## build the pages as a site into build/site
+	@NO_MKDOCS_2_WARNING=1 mkdocs build --quiet --strict
+	@echo "docs: open build/site/index.html"
 
 clean: ## remove build results and caches; .venv stays
 	rm -rf build .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
@@ -122,7 +136,7 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 
 $(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev thesis > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev docs thesis > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 
@@ -136,6 +150,12 @@ $(STAMPS)/thesis: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the thesis's figures need"
 	@$(PYTHON_IN) tools/requirements.py thesis > $(STAMPS)/thesis.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/thesis.txt
+	@touch $@
+
+$(STAMPS)/docs: $(STAMPS)/env pyproject.toml constraints.txt
+	@echo "installing what the site needs"
+	@$(PYTHON_IN) tools/requirements.py docs > $(STAMPS)/docs.txt
+	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/docs.txt
 	@touch $@
 
 $(STAMPS)/fuzz: pyproject.toml constraints.txt | $(STAMPS)/slipwise

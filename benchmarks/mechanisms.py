@@ -86,7 +86,7 @@ MECHANISMS = (
     Mechanism(
         Variant("change detector", settings={"change": {"detect": False}}),
         ("hypotheses/change_detector",),
-        (("hypotheses/model_average", r"change|[dD]oubt|settle|trial|before_|kChanged"),),
+        (("hypotheses/model_average", r"change|[bB]ranch|resolve|trial|before_|kChanged"),),
     ),
     Mechanism(
         Variant("slip disturbance", settings={"slip_disturbance": {"learn": False}}),
@@ -138,7 +138,7 @@ MECHANISMS = (
             constants={"score_covariance.kModelSegments": NEVER, "score_covariance.kKernelTime": ALMOST_NONE},
         ),
         ("filter/score_covariance",),
-        (("filter/causal_filter", "stated|scores"),),
+        (("filter/causal_filter", "reported|scores"),),
     ),
 )
 CALIBRATION = Mechanism(Variant(), ("online/student_calibration", "online/student_t"))

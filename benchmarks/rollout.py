@@ -59,7 +59,7 @@ def commands() -> NDArray[np.float32]:
 
 
 def learned() -> Model:
-    """Learn the thesis's 15 parameters from a simulated log of wheel speeds, without a actuator."""
+    """Learn the thesis's 15 parameters from a simulated log of wheel speeds, without an actuator."""
     settings = make_settings({"basis": "thesis-15", "learn_clock_offset": False})
     return calibrate(simulated_log(3.0, seed=1), input="wheel", settings=settings).model
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks every tracked source file: its length, its licence line and its name."""
+"""Checks every tracked source file: its length, its licence line, its name and its words."""
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path, PurePosixPath
@@ -12,6 +13,25 @@ ROOT = Path(__file__).resolve().parent.parent
 MAX_LINES = 400
 VAGUE_NAMES = frozenset({"util", "utils", "helper", "helpers", "common", "misc", "base", "manager"})
 LICENCE = "SPDX-License-Identifier: Apache-2.0"
+#: Words that a term of the field has replaced in the product, by how they begin (docs/notation.md).
+RETIRED = {
+    "anew": "again",
+    "belief": "posterior",
+    "colouredslip": "slip disturbance",
+    "commandchain": "actuator model",
+    "contender": "candidate, or baseline in evaluations",
+    "exhibit": "figure or table",
+    "forecaster": "predictor",
+    "foretell": "predict",
+    "foretold": "predicted",
+    "knowndrive": "measured actuator",
+    "lanelimits": "axis limits",
+    "reweighed": "updated weights",
+    "richest": "largest basis",
+    "wander": "slip disturbance",
+    "weighing": "weighting",
+}
+PRODUCT = ("cpp/include/", "cpp/src/", "python/bindings/", "python/slipwise/")
 #: How the licence line starts, by the ending or the name of a file; files of other kinds are not looked at.
 COMMENTS = {
     ".py": "# ",
@@ -47,7 +67,18 @@ def faults_of(path: str, text: str) -> list[str]:
         faults.append(f"{path}: does not start with '{comment}{LICENCE}'")
     if PurePosixPath(path).stem.lower() in VAGUE_NAMES:
         faults.append(f"{path}: name the file after the concept it holds")
+    if path.startswith(PRODUCT):
+        faults += [f"{path}: '{word}' is retired; write {RETIRED[word]}" for word in retired_words(text)]
     return faults
+
+
+def retired_words(text: str) -> list[str]:
+    """Return the retired words that words or parts of identifiers in `text` begin with, each once."""
+    found: set[str] = set()
+    for name in set(re.findall(r"[A-Za-z_]+", text)):
+        parts = [part.lower() for part in re.findall(r"[A-Z]?[a-z]+", name)]
+        found |= {"".join(parts[i:]) for i in range(len(parts))}
+    return [word for word in RETIRED if any(part.startswith(word) for part in found)]
 
 
 def tracked(root: Path) -> list[str]:

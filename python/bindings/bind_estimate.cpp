@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of cpp/include/slipwise/estimate.
+// Bindings of cpp/include/slipwise/filter, hypotheses and identify.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -149,7 +149,7 @@ void bind_slip_ratios(nb::module_& m) {
   nb::class_<SlipRatioFilter>(m, "SlipRatioFilter", "Slip ratios and slip angle by an EKF.")
       .def(nb::init<const SlipRatioFilterSettings&>(), "settings"_a)
       .def("learn", &SlipRatioFilter::learn, "wheels"_a, "segment"_a)
-      .def_prop_ro("estimate", &SlipRatioFilter::estimate, "Belief about (left, right, angle).")
+      .def_prop_ro("estimate", &SlipRatioFilter::estimate, "Posterior of (left, right, angle).")
       .def("linear_estimate", &SlipRatioFilter::linear_estimate, "The same about full-linear-6.");
   nb::class_<SlidingModeSettings>(m, "SlidingModeSettings")
       .def(nb::init<>())
@@ -291,7 +291,7 @@ void bind_estimate(nb::module_& m) {
       "weights"_a, "log_scores"_a, "prior"_a, "settings"_a, "seen"_a,
       "The weights after models predicted with these log scores, [M], `seen` segments having spoken before; `prior` "
       "are "
-      "those beforehand.");
+      "the prior ones.");
   m.def(
       "common_log_scores",
       [](const Eigen::VectorXd& weights, const std::vector<Eigen::Vector3d>& innovations,

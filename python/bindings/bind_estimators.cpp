@@ -97,8 +97,8 @@ void bind_estimators(nb::module_& m) {
       .def_prop_ro("model", &FollowingEstimator::model)
       .def_prop_ro("prior_std", &FollowingEstimator::prior_std)
       .def_prop_ro("noise_scale", &FollowingEstimator::noise_scale);
-  nb::class_<ChainUpdate>(m, "ChainUpdate", "How a window of wheel speeds was foretold.")
-      .def_ro("nis", &ChainUpdate::nis);
+  nb::class_<ActuatorUpdate>(m, "ActuatorUpdate", "How a window of wheel speeds was predicted.")
+      .def_ro("nis", &ActuatorUpdate::nis);
   nb::class_<ActuatorFilter>(m, "ActuatorFilter", "The actuator, learned from commands and wheel speeds.")
       .def(nb::init<const CausalFilterSettings&>(), "settings"_a)
       .def("learn", &ActuatorFilter::learn, "inputs"_a, "wheels"_a, "start"_a, "end"_a,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of cpp/include/slipwise/estimate, the search for a drive's limits.
+// Bindings of cpp/include/slipwise/identify, the search for a drive's limits.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
@@ -48,7 +48,7 @@ void bind_limits(nb::module_& m) {
       .def_ro("value", &FoundLimit::value)
       .def_ro("std", &FoundLimit::std)
       .def_ro("gain", &FoundLimit::gain);
-  nb::class_<AxisReach>(m, "AxisReach", "What the commands reached in a axis.")
+  nb::class_<AxisReach>(m, "AxisReach", "What the commands reached in an axis.")
       .def_ro("slowest", &AxisReach::slowest)
       .def_ro("fastest", &AxisReach::fastest)
       .def_ro("step", &AxisReach::step);

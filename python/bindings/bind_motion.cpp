@@ -19,7 +19,7 @@ void bind_motion(nb::module_& m) {
       .def_ro("name", &ParameterInfo::name)
       .def_ro("unit", &ParameterInfo::unit)
       .def_ro("description", &ParameterInfo::description);
-  nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind a actuator model.")
+  nb::class_<MotionModel>(m, "MotionModel", "A slip basis behind an actuator model.")
       .def(
           "__init__",
           [](MotionModel* self, const Basis& basis, bool dynamics, bool clock_offset) {

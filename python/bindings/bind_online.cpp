@@ -139,7 +139,7 @@ void bind_recordings(nb::module_& m) {
       .def_prop_ro("outliers", [](const GatedPoses& gated) { return pose_rows(gated.outliers); })
       .def_prop_ro("jumps", [](const GatedPoses& gated) { return pose_rows(gated.jumps); });
   m.def("gate_poses", &gate_poses, "run"_a, "unknown_after"_a,
-        "The poses of a recorded run as a learner uses them: outliers rejected, frames numbered anew at jumps.");
+        "The poses of a recorded run as a learner uses them: outliers rejected, frames numbered again at jumps.");
 }
 
 void bind_results(nb::module_& m) {

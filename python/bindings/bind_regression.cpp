@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of the regressions on slip surfaces in cpp/include/slipwise/estimate.
+// Bindings of the regressions on slip surfaces in cpp/include/slipwise/filter and thesis.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>

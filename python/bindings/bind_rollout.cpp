@@ -121,14 +121,14 @@ void bind_uncertain(nb::module_& m) {
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             const DisturbanceModel& wander, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
+             const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
              const CommandLimits* limits) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
             check_size(prior_std, model.size(), "the prior of a model");
             new (self) UncertainModel{model,
                                       parameters,
-                                      {covariance, noise, scale, growth, wander, prior_std},
+                                      {covariance, noise, scale, growth, disturbance, prior_std},
                                       setting(period, gx, gy, limits)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "disturbance"_a, "prior_std"_a,

@@ -84,7 +84,7 @@ void bind_segment(nb::module_& m) {
           },
           "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
       .def(
-          "with_known_drive",
+          "with_measured_actuator",
           [](const Segment& segment, std::shared_ptr<const InputTrack> twist, double until, const BodyTwist& initial) {
             Segment known = segment;
             known.initial = initial;
@@ -108,7 +108,7 @@ void bind_segment(nb::module_& m) {
       .def_ro("gx", &Segment::gx)
       .def_ro("gy", &Segment::gy)
       .def_prop_ro(
-          "known_drive", [](const Segment& segment) { return segment.known ? segment.known->twist : nullptr; },
+          "measured_actuator", [](const Segment& segment) { return segment.known ? segment.known->twist : nullptr; },
           "What was measured of the drive's twist, None where it was not.");
   nb::enum_<Integrator>(m, "Integrator").value("Exact", Integrator::Exact).value("Rk4", Integrator::Rk4);
   nb::class_<SegmentPath>(m, "SegmentPath", "The robot's path seen from its start.")

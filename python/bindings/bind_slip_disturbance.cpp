@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of slip that wanders about what was learned.
+// Bindings of the slip disturbance.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/vector.h>
 

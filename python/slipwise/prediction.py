@@ -107,7 +107,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
         _check_speeds("initial speeds", np.asarray(initial))
     given = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    known = _known_drive(begin, initial)
+    known = _measured_actuator(begin, initial)
     track = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, track, []) if slip_now is None else slip_now
@@ -116,7 +116,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
         if known is not None:
-            segment = segment.with_known_drive(*known)
+            segment = segment.with_measured_actuator(*known)
         expected = disturbance.predict(model.posterior, track, now, segment)
         poses.append(expected.pose)
         covariance.append(expected.covariance * tail_at(model, seconds).growth)
@@ -137,7 +137,7 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
     return _core.DisturbanceFilter(model.disturbance).now(model.posterior, track, list(windows))
 
 
-def _known_drive(
+def _measured_actuator(
     begin: float, initial: tuple[float, float] | None
 ) -> tuple[_core.InputTrack, float, _core.BodyTwist] | None:
     """Speeds measured at `begin`, held while the poses, stamped late, were under way."""

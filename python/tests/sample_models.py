@@ -135,7 +135,7 @@ def make_model(made: Made) -> Model:
         "coloured": None if made.disturbance is None else _coloured(*made.disturbance),
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {
-            "slipwise_version": "0.1.0",
+            "slipwise_version": "0.2.0",
             "logs": [{"path": made.log, "sha256": "ab" * 32}],
             "settings": {},
             "learned_seconds": 600.0,

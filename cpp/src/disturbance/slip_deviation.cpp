@@ -15,9 +15,9 @@ SLIPWISE_TUNING(kGate, 16.266);  // 99.9 % of a chi-square of three degrees of f
 
 }  // namespace
 
-SlipDeviation::SlipDeviation(const SlipDisturbance& wander, const DisturbedTerms& terms)
-    : time_constant_(wander.time_constant), mean_(State::Zero(terms.size())) {
-  nominal_ = terms.variances(wander).asDiagonal();
+SlipDeviation::SlipDeviation(const SlipDisturbance& disturbance, const DisturbedTerms& terms)
+    : time_constant_(disturbance.time_constant), mean_(State::Zero(terms.size())) {
+  nominal_ = terms.variances(disturbance).asDiagonal();
   covariance_ = nominal_;
 }
 
@@ -27,8 +27,8 @@ void SlipDeviation::follow(const ObservedSlip& observed) {
   const Eigen::Vector3d innovation = observed.innovation - h * mean_;
   const Eigen::Matrix3d expected = h * covariance_ * h.transpose() + observed.noise;
   const double nis = normalised_square(innovation, expected);
-  const Eigen::Matrix3d doubted = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
-  const Eigen::MatrixX3d gain = kalman_gain(doubted, h * covariance_);
+  const Eigen::Matrix3d inflated = std::max(1.0, nis / kGate) * expected;  // an outlier moves it no further
+  const Eigen::MatrixX3d gain = kalman_gain(inflated, h * covariance_);
   mean_ += gain * innovation;
   covariance_ -= gain * h * covariance_;
   covariance_ = (covariance_ + covariance_.transpose()).eval() / 2.0;

@@ -37,11 +37,11 @@ void check_fits(const SlipNow& now, const DisturbanceModel& law, const Disturbed
 
 void check_positive(const std::vector<double>& values, const char* what) {
   if (values.empty()) {
-    throw std::invalid_argument(std::string(what) + " of coloured slip must not be empty");
+    throw std::invalid_argument(std::string(what) + " of the slip disturbance must not be empty");
   }
   for (const double value : values) {
     if (!(value > 0.0) || !std::isfinite(value)) {
-      throw std::invalid_argument(std::string(what) + " of coloured slip must be positive and finite, got " +
+      throw std::invalid_argument(std::string(what) + " of the slip disturbance must be positive and finite, got " +
                                   std::to_string(value));
     }
   }
@@ -99,8 +99,8 @@ SlipNow DisturbanceFilter::now(const MotionPosterior& posterior, std::span<const
   if (terms.places.empty()) {
     return now;
   }
-  for (const SlipDisturbance& wander : law_.candidates) {
-    now.of_candidates.emplace_back(wander, terms);
+  for (const SlipDisturbance& disturbance : law_.candidates) {
+    now.of_candidates.emplace_back(disturbance, terms);
   }
   for (const DrivenSegment& segment : recent) {
     follow(posterior, now, segment);

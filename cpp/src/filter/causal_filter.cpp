@@ -73,7 +73,7 @@ void CausalFilter::forget(double share) {
   covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
   state_.scores.restart();
   stated_.setOnes();
-  state_.noise_scale.hurry();
+  state_.noise_scale.reset_gain();
   before_ = state_.estimate;
   refit_.reset();
   kept_.clear();
@@ -81,7 +81,7 @@ void CausalFilter::forget(double share) {
   full_ = false;
 }
 
-Estimate CausalFilter::stated() const {
+Estimate CausalFilter::reported() const {
   return {state_.estimate.mean, stated_.asDiagonal() * state_.estimate.covariance * stated_.asDiagonal()};
 }
 

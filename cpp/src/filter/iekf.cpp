@@ -40,7 +40,7 @@ struct MeasuredSegment {
 /// (I - K J) P (I - K J)^T + K R K^T.
 Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobian, const Eigen::Matrix3d& noise) {
   if (prior.size() == 0) {
-    return prior;  // the plain model has nothing to learn
+    return prior;  // the kinematic baseline has nothing to learn
   }
   const Jacobian spread = jacobian * prior;
   const Eigen::Matrix3d s = spread.lazyProduct(jacobian.transpose()) + noise;
@@ -137,9 +137,10 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
     update.estimate.covariance = joseph_form(prior.covariance, now.at.by_parameter, weighted_noise + bent);
   }
   const Eigen::ArrayXd most = (kUnknown / update.estimate.covariance.diagonal().array().sqrt()).max(1.0);
-  const Eigen::VectorXd carry =
+  const Eigen::VectorXd reparametrised =
       (model.log_time_derivatives(prior.mean).array() / model.log_time_derivatives(now.state).array()).min(most);
-  update.estimate.covariance = (carry.asDiagonal() * update.estimate.covariance * carry.asDiagonal()).eval();
+  update.estimate.covariance =
+      (reparametrised.asDiagonal() * update.estimate.covariance * reparametrised.asDiagonal()).eval();
   update.at = std::move(now.at);
   return update;
 }

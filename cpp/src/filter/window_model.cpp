@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The MAP update of a passage's start, and conditioning of its end.
+// The MAP update of a model's start, and conditioning of its end.
 #include "slipwise/filter/window_model.hpp"
 
 #include <utility>
@@ -11,7 +11,7 @@
 namespace slipwise {
 namespace {
 
-/// What a passage measures on its way.
+/// What a model measures on its way.
 struct MeasuredWindow {
   using At = WindowModel;
   using Innovation = Eigen::VectorXd;
@@ -31,10 +31,10 @@ Eigen::MatrixXd innovation_covariance(const Estimate& prior, const WindowModel& 
   return innovation_covariance(prior.covariance, at.observed_jacobian(), at.observed_noise());
 }
 
-WindowPoint settle(const Estimate& prior, WindowModel expected, const MeasurementFunction& predict,
-                   const Eigen::VectorXd& measured, const IekfSettings& settings) {
-  const MeasuredWindow passage{predict, measured};
-  const MapUpdate problem(prior, passage);
+WindowPoint most_probable_start(const Estimate& prior, WindowModel expected, const MeasurementFunction& predict,
+                                const Eigen::VectorXd& measured, const IekfSettings& settings) {
+  const MeasuredWindow model{predict, measured};
+  const MapUpdate problem(prior, model);
   auto now = problem.begin(std::move(expected));
   problem.minimize(now, settings.map());
   return {std::move(now.state), std::move(now.at)};

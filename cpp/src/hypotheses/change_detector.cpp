@@ -19,7 +19,7 @@ namespace {
 constexpr int kIterations = 4;            // of iteratively reweighted least squares; more change nothing that matters
 constexpr double kStart = 1e-3;           // weight of the change's prior in the first iteration, which has to get far
 SLIPWISE_TUNING(kLargestRatio, 6.0);      // a gain counts at most this many times what is nominal
-SLIPWISE_TUNING(kNominalSegments, 20.0);  // whiteness is believed as if it had been observed over this many segments
+SLIPWISE_TUNING(kNominalSegments, 20.0);  // whiteness counts as if it had been observed over this many segments
 SLIPWISE_TUNING(kSizeSegments, 5.0);      // and the size that was predicted over this many
 SLIPWISE_TUNING(kLargestSquare, 9.0);     // a squared residual counts at most this many times its size
 SLIPWISE_TUNING(kLeastSize, 0.1);         // smaller residuals count as of this square size

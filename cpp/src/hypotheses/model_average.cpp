@@ -28,7 +28,7 @@ Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
   return bases.size() == 1 ? bases.front() : union_basis(std::move(name), bases);
 }
 
-/// Weights beforehand: `largest_basis` for the basis with the most terms, the rest in equal parts.
+/// Prior weights: `largest_basis` for the basis with the most terms, the rest in equal parts.
 Eigen::VectorXd prior_weights(const std::vector<Basis>& bases, double largest_basis) {
   if (!(largest_basis > 0.0) || !(largest_basis < 1.0)) {
     throw std::invalid_argument("the weight of the largest_basis basis must lie between 0 and 1, got " +
@@ -115,7 +115,7 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
 
 void ModelAverage::check_sizes() const {
   const auto bases = static_cast<std::size_t>(prior_.size());
-  const std::size_t sides = on_trial_ > 0 ? 2 : 1;
+  const std::size_t sides = undecided_ > 0 ? 2 : 1;
   bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides * bases &&
              static_cast<std::size_t>(weights_.size()) == filters_.size();
   for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
@@ -164,9 +164,9 @@ bool ModelAverage::refit_slice() {
 void ModelAverage::look_for_change() {
   Learning& now = present(learning_);
   speeds_.see(now.inputs, now.segment);
-  change_ = on_trial_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
+  change_ = undecided_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
   if (change_.suspicion) {
-    doubt();
+    branch();
     announced_ = change_.alarm;
   }
   now.tested = true;
@@ -194,10 +194,10 @@ void ModelAverage::reweigh() {
   weights_ = updated_weights(weights_, common_log_scores(weights_, innovations, covariances), prior,
                              settings_.weighting, observed_);
   ++observed_;
-  if (on_trial_ > 0) {
-    --on_trial_;
-    if (on_trial_ == 0) {
-      settle();
+  if (undecided_ > 0) {
+    --undecided_;
+    if (undecided_ == 0) {
+      resolve();
     }
   }
 }
@@ -225,7 +225,7 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
 
 /// Every model once as if the ground had changed and once as it was: what follows decides between them, so that a
 /// passing disturbance costs little, and the old ground is known at once where it comes back soon.
-void ModelAverage::doubt() {
+void ModelAverage::branch() {
   before_.clear();
   detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
@@ -236,7 +236,7 @@ void ModelAverage::doubt() {
   const Eigen::VectorXd weights = weights_;
   weights_.resize(2 * weights.size());
   weights_ << kChanged * weights, (1.0 - kChanged) * weights;
-  on_trial_ = settings_.change.trial;
+  undecided_ = settings_.change.trial;
 }
 
 void ModelAverage::forget(double fraction) {
@@ -246,7 +246,7 @@ void ModelAverage::forget(double fraction) {
 }
 
 /// Keeps the models of the ground that predicted better.
-void ModelAverage::settle() {
+void ModelAverage::resolve() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
   change_.alarm = changed && !announced_;
@@ -273,12 +273,12 @@ AverageState ModelAverage::state() const {
     const std::vector<Eigen::Index>& places = places_[i % places_.size()];
     state.noise_scale += weight * filters_[i].noise_scale();
     if (places.empty()) {
-      continue;  // the plain model: it has no parameters, and adds nothing to any mean
+      continue;  // the kinematic baseline: it has no parameters, and adds nothing to any mean
     }
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
     mean(places) = filters_[i].estimate().mean;
     state.estimate.mean += weight * mean;
-    state.estimate.covariance(places, places) += weight * filters_[i].stated().covariance;
+    state.estimate.covariance(places, places) += weight * filters_[i].reported().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
     state.prior_std(places) = filters_[i].prior_std();
   }
@@ -299,7 +299,7 @@ Eigen::VectorXd ModelAverage::variance_ratio() const {
       continue;
     }
     const double weight = weights_[static_cast<Eigen::Index>(i)];
-    const Estimate estimate = filters_[i].stated();
+    const Estimate estimate = filters_[i].reported();
     having(places).array() += weight;
     mean(places) += weight * estimate.mean;
     square(places) += weight * (estimate.covariance.diagonal() + estimate.mean.cwiseAbs2());

@@ -53,7 +53,7 @@ bool ActuatorChannel::begin(const ChannelWindow& window) {
       continue;
     }
     const ActuatorAxis its = axis_of(model_.parts[i], joint_.mean.head<kChannelParameters>());
-    if (const auto first = first_state(window, its, model_.noise.wander * size_)) {
+    if (const auto first = first_state(window, its, model_.noise.deviation * size_)) {
       live_.push_back(i);
       const Eigen::Index n = joint_.mean.size() + kAxisStates;
       joint_.mean.conservativeResize(n);
@@ -75,30 +75,30 @@ WindowModel ActuatorChannel::predict(const ChannelWindow& window, const Actuator
   const auto k = std::ssize(window.observed.samples);
   const Eigen::Index n = state.size();
   const Eigen::Index m = std::ssize(live_) * k;
-  WindowModel passage{.measured = m,
-                      .value = Eigen::VectorXd::Zero(m + n),
-                      .derivative = Eigen::MatrixXd::Zero(m + n, n),
-                      .noise = Eigen::MatrixXd::Zero(m + n, m + n)};
-  passage.value.segment(m, kChannelParameters) = state.head(kChannelParameters);
-  passage.derivative.block(m, 0, kChannelParameters, kChannelParameters).setIdentity();
+  WindowModel model{.measured = m,
+                    .value = Eigen::VectorXd::Zero(m + n),
+                    .derivative = Eigen::MatrixXd::Zero(m + n, n),
+                    .noise = Eigen::MatrixXd::Zero(m + n, m + n)};
+  model.value.segment(m, kChannelParameters) = state.head(kChannelParameters);
+  model.derivative.block(m, 0, kChannelParameters, kChannelParameters).setIdentity();
   for (std::size_t i = 0; i < live_.size(); ++i) {
     const Eigen::Index own = place(i);
     const AxisWindow its = axis_window(window, axis(state, i), state.segment<kAxisStates>(own), noise);
     const Eigen::Index from = static_cast<Eigen::Index>(i) * k;
     const Eigen::Index end = m + own;
     const Eigen::Index deviation = end + 2;
-    passage.value.segment(from, k) = its.value.head(k);
-    passage.value.segment<kAxisStates>(end) = its.value.tail<kAxisStates>();
-    passage.derivative.block(from, 0, k, kChannelParameters) = its.by_chain.topRows(k);
-    passage.derivative.block(end, 0, kAxisStates, kChannelParameters) = its.by_chain.bottomRows<kAxisStates>();
-    passage.derivative.block(from, own, k, kAxisStates) = its.by_state.topRows(k);
-    passage.derivative.block(end, own, kAxisStates, kAxisStates) = its.by_state.bottomRows<kAxisStates>();
-    passage.noise.block(from, from, k, k) = size_ * noise.covariance.topLeftCorner(k, k);
-    passage.noise.col(deviation).segment(from, k) = size_ * noise.covariance.col(k).head(k);
-    passage.noise.row(deviation).segment(from, k) = passage.noise.col(deviation).segment(from, k).transpose();
-    passage.noise(deviation, deviation) = size_ * noise.covariance(k, k);
+    model.value.segment(from, k) = its.value.head(k);
+    model.value.segment<kAxisStates>(end) = its.value.tail<kAxisStates>();
+    model.derivative.block(from, 0, k, kChannelParameters) = its.by_actuator.topRows(k);
+    model.derivative.block(end, 0, kAxisStates, kChannelParameters) = its.by_actuator.bottomRows<kAxisStates>();
+    model.derivative.block(from, own, k, kAxisStates) = its.by_state.topRows(k);
+    model.derivative.block(end, own, kAxisStates, kAxisStates) = its.by_state.bottomRows<kAxisStates>();
+    model.noise.block(from, from, k, k) = size_ * noise.covariance.topLeftCorner(k, k);
+    model.noise.col(deviation).segment(from, k) = size_ * noise.covariance.col(k).head(k);
+    model.noise.row(deviation).segment(from, k) = model.noise.col(deviation).segment(from, k).transpose();
+    model.noise(deviation, deviation) = size_ * noise.covariance(k, k);
   }
-  return passage;
+  return model;
 }
 
 /// The value of what `predict` returns.
@@ -173,13 +173,13 @@ Eigen::MatrixXd ActuatorChannel::second_order(const Values& values, const Window
 }
 
 /// As in iekf_update: covariances are carried in coordinates in which times act evenly.
-void ActuatorChannel::carry_times(const Estimate& before) {
+void ActuatorChannel::reparametrise_times(const Estimate& before) {
   for (const Eigen::Index i : kTimes) {
     const double most = std::max(kUnknown / std::sqrt(joint_.covariance(i, i)), 1.0);
-    const double carry =
+    const double reparametrised =
         std::min(log_time_derivative(std::exp(before.mean[i])) / log_time_derivative(std::exp(joint_.mean[i])), most);
-    joint_.covariance.row(i) *= carry;
-    joint_.covariance.col(i) *= carry;
+    joint_.covariance.row(i) *= reparametrised;
+    joint_.covariance.col(i) *= reparametrised;
   }
 }
 
@@ -201,9 +201,9 @@ ChannelUpdate ActuatorChannel::learn(const ChannelWindow& window, bool carefully
   const double larger = noise_inflation(nis, z.size(), model_.iekf);
   const Eigen::MatrixXd nominal = expected.observed_noise();
   const MeasurementFunction weighted = [&](const Eigen::VectorXd& state) {
-    WindowModel passage = predict(window, noise, state);
-    passage.noise *= larger;
-    return passage;
+    WindowModel model = predict(window, noise, state);
+    model.noise *= larger;
+    return model;
   };
   const Values values = [&](const Eigen::VectorXd& state) { return predict_values(window, noise, state); };
   if (larger > 0.0) {
@@ -211,12 +211,12 @@ ChannelUpdate ActuatorChannel::learn(const ChannelWindow& window, bool carefully
     expected.noise *= larger;
     WindowPoint point{joint_.mean, std::move(expected)};
     if (carefully) {
-      point = settle(joint_, std::move(point.at), weighted, z, model_.iekf);
+      point = most_probable_start(joint_, std::move(point.at), weighted, z, model_.iekf);
       point.at.noise += second_order(values, point);
     }
     const Estimate before = joint_;
     joint_ = end_estimate(before, point, z);
-    carry_times(before);
+    reparametrise_times(before);
   } else {
     update.status = Status::Rejected;
     lose_track();

@@ -16,11 +16,11 @@ namespace {
 SLIPWISE_TUNING(kInterval, 0.1);  // [s] one measurement
 /// White noise alone first; or a deviation that is far larger and lasts for this long.
 SLIPWISE_TUNING(kDeviation, 100.0);  // variance of a deviation, over that of one sample
-SLIPWISE_TUNED std::array<ActuatorNoise, 5> kShapes{{{.white = 1.0, .wander = 0.0, .time_constant = 1.0},
-                                                     {.white = 1.0, .wander = kDeviation, .time_constant = 0.2},
-                                                     {.white = 1.0, .wander = kDeviation, .time_constant = 1.0},
-                                                     {.white = 1.0, .wander = kDeviation, .time_constant = 5.0},
-                                                     {.white = 1.0, .wander = kDeviation, .time_constant = 25.0}}};
+SLIPWISE_TUNED std::array<ActuatorNoise, 5> kShapes{{{.white = 1.0, .deviation = 0.0, .time_constant = 1.0},
+                                                     {.white = 1.0, .deviation = kDeviation, .time_constant = 0.2},
+                                                     {.white = 1.0, .deviation = kDeviation, .time_constant = 1.0},
+                                                     {.white = 1.0, .deviation = kDeviation, .time_constant = 5.0},
+                                                     {.white = 1.0, .deviation = kDeviation, .time_constant = 25.0}}};
 SLIPWISE_TUNING(kFirst, std::size_t{3});  // windows from which and up to which all are refitted
 SLIPWISE_TUNING(kLast, std::size_t{256});
 SLIPWISE_TUNING(kGrowth, 1.25);  // of their number, until that is done again
@@ -85,28 +85,28 @@ void ActuatorFilter::Bank::end_refit() {
   refits.clear();
 }
 
-/// Mean and covariance of the weighted candidates. One that is as good as refuted has no say: weight is dealt out anew
+/// Mean and covariance of the weighted candidates. One that is as good as refuted has no say: weight is redistributed
 /// at each window, and a thousandth of a candidate that knows a gain to 0.03 would hide that the others know it to
 /// 0.0003.
 Estimate ActuatorFilter::Bank::mixture() const {
-  const Eigen::VectorXd heard = (weights.array() > kActive).select(weights, 0.0);
-  const Eigen::VectorXd says = heard / heard.sum();
+  const Eigen::VectorXd active = (weights.array() > kActive).select(weights, 0.0);
+  const Eigen::VectorXd normalised = active / active.sum();
   Estimate all{Eigen::VectorXd::Zero(kChannelParameters),
                Eigen::MatrixXd::Zero(kChannelParameters, kChannelParameters)};
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    all.mean += says[static_cast<Eigen::Index>(i)] * candidates[i].estimate().mean;
+    all.mean += normalised[static_cast<Eigen::Index>(i)] * candidates[i].estimate().mean;
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Estimate own = candidates[i].estimate();
     const Eigen::VectorXd away = own.mean - all.mean;
-    all.covariance += says[static_cast<Eigen::Index>(i)] * (own.covariance + away * away.transpose());
+    all.covariance += normalised[static_cast<Eigen::Index>(i)] * (own.covariance + away * away.transpose());
   }
   return all;
 }
 
-ChainUpdate ActuatorFilter::learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end) {
+ActuatorUpdate ActuatorFilter::learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end) {
   ChannelWindow window{inputs, wheel_means(wheels, start, end, kInterval)};
-  ChainUpdate update{.nis = 0.0};
+  ActuatorUpdate update{.nis = 0.0};
   for (Bank& bank : banks_) {
     update.nis += bank.learn(window, learned_);
   }

@@ -13,9 +13,9 @@ ActuatorNoiseInterval actuator_noise_interval(const ActuatorNoise& noise, double
   const double of_deviation = 2.0 / (spans * spans) * (spans - 2.0 * gone + 0.5 * (1.0 - kept * kept));
   return {.kept = kept,
           .mean = gone / spans,
-          .of_mean = noise.wander * of_deviation + noise.white / samples,
-          .at_end = noise.wander * (1.0 - kept * kept),
-          .crossed = noise.wander * gone * gone / spans};
+          .of_mean = noise.deviation * of_deviation + noise.white / samples,
+          .at_end = noise.deviation * (1.0 - kept * kept),
+          .crossed = noise.deviation * gone * gone / spans};
 }
 
 ActuatorNoiseMeans actuator_noise_means(const ActuatorNoise& noise, std::span<const double> edges,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Speeds of a axis over all records, sorted.
+// Speeds of an axis over all records, sorted.
 #include "slipwise/identify/axis_range.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 constexpr double kRounding = 1e-9;   // [m/s or rad/s]; what is slower is what rounding leaves of zero
 constexpr double kRateStride = 0.2;  // [s] over which measured accelerations are taken
 
-/// A twist in a axis: once, or once for each side.
+/// A twist in an axis: once, or once for each side.
 std::array<double, 2> in_axis(const CommandLimits& limits, LimitedAxis axis, const BodyTwist& twist) {
   if (axis == LimitedAxis::Side) {
     const SideSpeeds sides = side_speeds(limits, twist);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A axis by the logarithms of its times, with the deviation beside its actuator.
+// An axis by the logarithms of its times, with the deviation beside its actuator.
 #include "slipwise/identify/axis_window.hpp"
 
 #include <algorithm>
@@ -38,13 +38,13 @@ ActuatorAxis axis_of(double BodyTwist::* part, const ChannelParameters& paramete
           std::exp(parameters[1])};
 }
 
-std::optional<FirstAxisState> first_state(const ChannelWindow& window, const ActuatorAxis& axis, double wander) {
+std::optional<FirstAxisState> first_state(const ChannelWindow& window, const ActuatorAxis& axis, double deviation) {
   const double range = fastest(window, axis);
   if (!(range > 0.0)) {
     return std::nullopt;
   }
   const AxisState settled = settled_axis(window.inputs, axis, window.observed.edges.front());
-  return FirstAxisState{{settled.fast, settled.slow, 0.0}, {range * range, std::pow(kSlowRange * range, 2), wander}};
+  return FirstAxisState{{settled.fast, settled.slow, 0.0}, {range * range, std::pow(kSlowRange * range, 2), deviation}};
 }
 
 AxisMotion axis_through(const ChannelWindow& window, const ActuatorAxis& axis, const AxisState& start) {
@@ -60,15 +60,15 @@ AxisWindow axis_window(const ChannelWindow& window, const ActuatorAxis& axis, co
   const AxisMotion motion = axis_through(window, axis, {.fast = start[0], .slow = start[1]});
   const Eigen::Index rows = motion.value.size() + 1;
   const Eigen::Index k = rows - kAxisStates;
-  AxisWindow passage{Eigen::VectorXd(rows), Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters>(rows, 5),
-                     Eigen::Matrix<double, Eigen::Dynamic, kAxisStates>::Zero(rows, 3)};
-  passage.value << motion.value, noise.by_start[k] * start[2];
-  passage.value.head(k) += noise.by_start.head(k) * start[2];
-  passage.by_chain << motion.derivative.leftCols<kChannelParameters>(), Eigen::RowVectorXd::Zero(kChannelParameters);
-  passage.by_state.topLeftCorner(rows - 1, 2) = motion.derivative.rightCols<2>();
-  passage.by_state.col(2).head(k) = noise.by_start.head(k);
-  passage.by_state(rows - 1, 2) = noise.by_start[k];
-  return passage;
+  AxisWindow model{Eigen::VectorXd(rows), Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters>(rows, 5),
+                   Eigen::Matrix<double, Eigen::Dynamic, kAxisStates>::Zero(rows, 3)};
+  model.value << motion.value, noise.by_start[k] * start[2];
+  model.value.head(k) += noise.by_start.head(k) * start[2];
+  model.by_actuator << motion.derivative.leftCols<kChannelParameters>(), Eigen::RowVectorXd::Zero(kChannelParameters);
+  model.by_state.topLeftCorner(rows - 1, 2) = motion.derivative.rightCols<2>();
+  model.by_state.col(2).head(k) = noise.by_start.head(k);
+  model.by_state(rows - 1, 2) = noise.by_start[k];
+  return model;
 }
 
 Eigen::VectorXd axis_means(const WheelMeans& observed, const ActuatorAxis& axis) {

@@ -18,14 +18,14 @@ namespace {
 constexpr double kDegrees = 3.0;  // of freedom that gate and Huber's bound are made for
 
 using Information = Eigen::Matrix<double, kChannelParameters, kChannelParameters>;
-using StateByChain = Eigen::Matrix<double, kAxisStates, kChannelParameters>;
+using StateByActuator = Eigen::Matrix<double, kAxisStates, kChannelParameters>;
 using AxisCovariance = Eigen::Matrix<double, kAxisStates, kAxisStates>;
 constexpr Eigen::Index kDeviation = 2;  // among the axis's states
 constexpr std::array kTwist{&BodyTwist::v, &BodyTwist::vy, &BodyTwist::omega};
 
 }  // namespace
 
-/// A axis that has learned the means of a window, and what these tell of the parameters.
+/// An axis that has learned the means of a window, and what these tell of the parameters.
 struct ChannelFilter::Learned {
   FollowedAxis axis;
   double nis = 0.0;
@@ -102,8 +102,8 @@ void ChannelFilter::begin(const ChannelWindow& window) {
     if (std::ranges::find(axes_, i, &FollowedAxis::place) != axes_.end()) {
       continue;
     }
-    if (const auto first = first_state(window, axis_of(model_->parts[i], point_), model_->noise.wander * size_)) {
-      axes_.push_back({i, first->mean, first->variance.asDiagonal(), StateByChain::Zero()});
+    if (const auto first = first_state(window, axis_of(model_->parts[i], point_), model_->noise.deviation * size_)) {
+      axes_.push_back({i, first->mean, first->variance.asDiagonal(), StateByActuator::Zero()});
     }
   }
 }
@@ -113,7 +113,7 @@ void ChannelFilter::begin(const ChannelWindow& window) {
 ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const AxisMotion& motion,
                                              const WheelMeans& observed, double size) const {
   Learned learned{.axis = axis};
-  auto& [place, mean, covariance, by_chain] = learned.axis;
+  auto& [place, mean, covariance, by_actuator] = learned.axis;
   mean.head<kDeviation>().setZero();
   const auto k = std::ssize(observed.twist);
   for (Eigen::Index i = 0; i < k; ++i) {
@@ -123,7 +123,7 @@ ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const Axi
     const AxisVector h(motion.derivative(i, 5), motion.derivative(i, 6), noise.mean);
     const double innovation = observed.twist[at].*model_->parts[place] - motion.value[i] - h.dot(mean);
     const ChannelParameters moved =
-        motion.derivative.row(i).head<kChannelParameters>().transpose() + by_chain.transpose() * h;
+        motion.derivative.row(i).head<kChannelParameters>().transpose() + by_actuator.transpose() * h;
     AxisVector cross = covariance * h;
     const double variance = h.dot(cross) + size * noise.of_mean;
     learned.nis += innovation * innovation / variance;
@@ -134,7 +134,7 @@ ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const Axi
     cross = kept.cwiseProduct(cross);
     cross[kDeviation] += size * noise.crossed;
     mean = kept.cwiseProduct(mean) + cross * (innovation / variance);
-    by_chain = kept.asDiagonal() * by_chain - cross / variance * moved.transpose();
+    by_actuator = kept.asDiagonal() * by_actuator - cross / variance * moved.transpose();
     covariance = (kept.asDiagonal() * covariance * kept.asDiagonal() - cross * cross.transpose() / variance).eval();
     covariance(kDeviation, kDeviation) += size * noise.at_end;
   }
@@ -142,8 +142,8 @@ ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const Axi
   to_end.topLeftCorner<2, 2>() = motion.derivative.block<2, 2>(k, kChannelParameters);
   mean = (to_end * mean).eval();
   mean.head<kDeviation>() += motion.value.tail<2>();
-  by_chain = (to_end * by_chain).eval();
-  by_chain.topRows<kDeviation>() += motion.derivative.block<2, kChannelParameters>(k, 0);
+  by_actuator = (to_end * by_actuator).eval();
+  by_actuator.topRows<kDeviation>() += motion.derivative.block<2, kChannelParameters>(k, 0);
   covariance = (to_end * covariance * to_end.transpose()).eval();
   return learned;
 }
@@ -153,19 +153,19 @@ ChannelRun ChannelFilter::result() const {
   const ChannelParameters step = covariance * gradient_;
   const Eigen::Index states = kAxisStates * std::ssize(axes_);
   Eigen::VectorXd mean(states);
-  Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters> by_chain(states, kChannelParameters);
+  Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters> by_actuator(states, kChannelParameters);
   ChannelRun pass{.cost = cost_, .joint = {}, .live = {}, .until = until_};
   const Eigen::Index n = kChannelParameters + states;
   Eigen::MatrixXd& joint = pass.joint.covariance = Eigen::MatrixXd::Zero(n, n);
   for (const FollowedAxis& axis : axes_) {
     const Eigen::Index own = kAxisStates * std::ssize(pass.live);
-    mean.segment<kAxisStates>(own) = axis.mean + axis.by_chain * step;
-    by_chain.middleRows<kAxisStates>(own) = axis.by_chain;
+    mean.segment<kAxisStates>(own) = axis.mean + axis.by_actuator * step;
+    by_actuator.middleRows<kAxisStates>(own) = axis.by_actuator;
     joint.block<kAxisStates, kAxisStates>(kChannelParameters + own, kChannelParameters + own) = axis.covariance;
     pass.live.push_back(axis.place);
   }
   Eigen::MatrixXd open(n, kChannelParameters);  // of the state, with the parameters
-  open << Information::Identity(), by_chain;
+  open << Information::Identity(), by_actuator;
   joint += open * covariance * open.transpose();
   joint = ((joint + joint.transpose()) / 2.0).eval();
   pass.joint.mean.resize(n);

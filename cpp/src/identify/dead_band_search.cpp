@@ -30,7 +30,7 @@ std::ptrdiff_t first_passed(const std::vector<Asked>& commands, double dead_band
   return std::ranges::lower_bound(commands, dead_band, {}, &Asked::speed) - commands.begin();
 }
 
-/// How many steps one may go on, each further one too, with few questions: strides grow, and begin anew.
+/// How many steps one may go on, each further one too, with few questions: strides grow, and begin again.
 template <typename MayGo>
 std::ptrdiff_t steps_as_long_as(MayGo may_go) {
   std::ptrdiff_t steps = 0;

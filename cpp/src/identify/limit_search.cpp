@@ -23,7 +23,7 @@ constexpr int kShortRefinement = 4;
 constexpr int kLongRefinement = 15;
 constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
 constexpr std::array kTrackFactors{0.98, 1.02};
-constexpr double kHopeless = 50.0;  // the same; polishing does not gain as much
+constexpr double kPruningBound = 50.0;  // the same; polishing does not gain as much
 constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
 constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
 constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
@@ -67,7 +67,7 @@ class Search {
         break;
       }
       settle_on(best);
-      if (before.loss.total - best.loss.total < kWorthMoving) {  // what was added is dropped again, and would be anew
+      if (before.loss.total - best.loss.total < kWorthMoving) {  // what was added is dropped again, and would be again
         return before;
       }
     }
@@ -131,7 +131,7 @@ class Search {
 
   /// Fits what there is, and drops or moves what does not earn its place.
   void settle_on(ScoredActuator& best) const {
-    best = polished(best);
+    best = finished(best);
     while (drop_idle(best) || move_one(best)) {
     }
   }
@@ -251,7 +251,7 @@ class Search {
   }
 
   /// Finds every dead-band between the commands next to it, and refines the rest with it.
-  ScoredActuator polished(const ScoredActuator& rough) const {
+  ScoredActuator finished(const ScoredActuator& rough) const {
     ScoredActuator best = settled(rough);
     // Which commands the sides' dead-band blocks turns on the track, and no small step of it gets the order right.
     if (best.drive.limits.side.dead_band > 0.0) {
@@ -295,11 +295,11 @@ class Search {
           if (!moved) {
             continue;
           }
-          ScoredActuator trial = refined(moved->drive, kShortRefinement, best.loss.total + kHopeless);
-          if (trial.loss.total - best.loss.total > kHopeless) {
+          ScoredActuator trial = refined(moved->drive, kShortRefinement, best.loss.total + kPruningBound);
+          if (trial.loss.total - best.loss.total > kPruningBound) {
             continue;
           }
-          trial = polished(trial);
+          trial = finished(trial);
           if (best.loss.total - trial.loss.total > kWorthMoving) {
             best = trial;
             return true;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastGain = 0.05;  // a drive does not turn its commands round
 
-/// Where a axis's limit of a kind stands; dead-bands are no smooth parameters.
+/// Where an axis's limit of a kind stands; dead-bands are no smooth parameters.
 int place_of(std::size_t axis, std::size_t kind) {
   return kFirstLimit + static_cast<int>(axis) * kLimitsPerAxis + static_cast<int>(kind) - 1;
 }
@@ -53,7 +53,7 @@ LimitedActuator with_parameters(LimitedActuator drive, const LimitParameters& p)
 }
 
 std::vector<int> free_parameters(const LimitedActuator& drive) {
-  std::vector<int> free(kChainPart);
+  std::vector<int> free(kActuatorPart);
   std::iota(free.begin(), free.end(), 0);
   if (limits_sides(drive.limits)) {
     free.push_back(kTrackPlace);
@@ -70,7 +70,7 @@ std::vector<int> free_parameters(const LimitedActuator& drive) {
 
 bool acts_behind(int parameter, const CommandLimits& limits) {
   const bool gain = parameter < 2;  // in front of the sides, where these are limited
-  return parameter < kChainPart && !(gain && limits_sides(limits));
+  return parameter < kActuatorPart && !(gain && limits_sides(limits));
 }
 
 bool acts_on(int parameter, const CommandLimits& limits, int channel) {
@@ -88,7 +88,7 @@ PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSetting
   if (parameter < 4) {
     return pull(prior.log_std, p[parameter] - std::log(prior.lag));
   }
-  if (parameter < kChainPart) {
+  if (parameter < kActuatorPart) {
     return pull(prior.log_std, p[parameter] - std::log(prior.delay));
   }
   return parameter == kTrackPlace ? pull(kTrackLogStd, p[kTrackPlace] - std::log(track)) : PriorPull{0.0, 0.0};

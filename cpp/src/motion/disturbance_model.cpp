@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which terms wander, and how far their mean over some time may be from what was learned.
+// Which terms have a disturbance, and how far their mean over some time may be from what was learned.
 #include "slipwise/motion/disturbance_model.hpp"
 
 #include <algorithm>
@@ -19,10 +19,11 @@ bool is_amount(double value) { return value >= 0.0 && std::isfinite(value); }
 
 }  // namespace
 
-Eigen::VectorXd DisturbedTerms::variances(const SlipDisturbance& wander) const {
+Eigen::VectorXd DisturbedTerms::variances(const SlipDisturbance& disturbance) const {
   Eigen::VectorXd result(size());
   for (Eigen::Index i = 0; i < size(); ++i) {
-    const double fraction = channels[static_cast<std::size_t>(i)] == Channel::Ang ? wander.turn : wander.drift;
+    const double fraction =
+        channels[static_cast<std::size_t>(i)] == Channel::Ang ? disturbance.turn : disturbance.drift;
     result[i] = std::pow(fraction * prior_std[i], 2);
   }
   return result;
@@ -30,7 +31,7 @@ Eigen::VectorXd DisturbedTerms::variances(const SlipDisturbance& wander) const {
 
 DisturbedTerms disturbed_terms(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& prior_std) {
   if (prior_std.size() != model.size()) {
-    throw std::invalid_argument("slip wanders by a fraction of its prior: " + std::to_string(model.size()) +
+    throw std::invalid_argument("a slip disturbance has a fraction of its prior: " + std::to_string(model.size()) +
                                 " prior standard deviations are needed, got " + std::to_string(prior_std.size()));
   }
   DisturbedTerms terms;
@@ -55,9 +56,9 @@ double variance_over(double spans) {
 Eigen::VectorXd nominal_variances(const DisturbanceModel& law, const DisturbedTerms& terms, double seconds) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(terms.size());
   for (std::size_t i = 0; i < law.candidates.size(); ++i) {
-    const SlipDisturbance& wander = law.candidates[i];
+    const SlipDisturbance& disturbance = law.candidates[i];
     const double weight = law.weights[static_cast<Eigen::Index>(i)];
-    sum += weight * variance_over(seconds / wander.time_constant) * terms.variances(wander);
+    sum += weight * variance_over(seconds / disturbance.time_constant) * terms.variances(disturbance);
   }
   return sum;
 }
@@ -74,17 +75,18 @@ Eigen::MatrixXd covariance_over(const MotionModel& model, const Eigen::Ref<const
 void check_disturbance(const DisturbanceModel& law) {
   const auto count = static_cast<Eigen::Index>(law.candidates.size());
   if (law.weights.size() != count) {
-    throw std::invalid_argument("slip that wanders needs one weight per candidate: " + std::to_string(count) +
+    throw std::invalid_argument("the slip disturbance needs one weight per candidate: " + std::to_string(count) +
                                 " candidates, " + std::to_string(law.weights.size()) + " weights");
   }
-  for (const SlipDisturbance& wander : law.candidates) {
-    if (!is_amount(wander.drift) || !is_amount(wander.turn) || !is_amount(wander.time_constant) ||
-        wander.time_constant == 0.0) {
-      throw std::invalid_argument("slip wanders by fractions that are not negative, with a positive time constant");
+  for (const SlipDisturbance& disturbance : law.candidates) {
+    if (!is_amount(disturbance.drift) || !is_amount(disturbance.turn) || !is_amount(disturbance.time_constant) ||
+        disturbance.time_constant == 0.0) {
+      throw std::invalid_argument(
+          "a slip disturbance has fractions that are not negative, with a positive time constant");
     }
   }
   if (count > 0 && (!(law.weights.array() >= 0.0).all() || !(std::abs(law.weights.sum() - 1.0) <= 1e-6))) {
-    throw std::invalid_argument("the weights of how slip wanders must not be negative, and sum to 1");
+    throw std::invalid_argument("the weights of the slip disturbance must not be negative, and sum to 1");
   }
 }
 

@@ -24,7 +24,7 @@ ParameterInfo slip_info(const Basis& basis, std::size_t i) {
 }
 
 /// One of the actuator's parameters: where it stands, and whether its logarithm is what is learned.
-struct ChainParameter {
+struct ActuatorParameter {
   double ActuatorModel::* value;
   bool logarithm;
   const char* name;
@@ -35,7 +35,7 @@ struct ChainParameter {
 constexpr Eigen::Index kDelayV = kActuatorParameters;  // row of the first delay in seconds
 
 /// In ActuatorModel's order, then the delays once more: in seconds, not as logarithms.
-constexpr std::array<ChainParameter, kActuatorParameters + 2> kActuator{{
+constexpr std::array<ActuatorParameter, kActuatorParameters + 2> kActuator{{
     {&ActuatorModel::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
     {&ActuatorModel::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
     {&ActuatorModel::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
@@ -54,7 +54,7 @@ constexpr std::array<ChainParameter, kActuatorParameters + 2> kActuator{{
 SLIPWISE_TUNING(kNominalResponse, 0.3);  // [s]
 SLIPWISE_TUNING(kShortResponse, 0.03);   // [s]; that much shorter times can hardly be distinguished
 
-const ChainParameter& chain_parameter(Eigen::Index row) { return kActuator[static_cast<std::size_t>(row)]; }
+const ActuatorParameter& actuator_parameter(Eigen::Index row) { return kActuator[static_cast<std::size_t>(row)]; }
 
 Eigen::Index place_of(Eigen::Index row) {
   constexpr Eigen::Index kFirstDelay = 2;  // in ActuatorModel's order
@@ -80,7 +80,7 @@ MotionModel::MotionModel(Basis basis, ActuatorParameters learned) : basis_(std::
   add(learned_.delays, {kDelayV, kDelayV + 1});
   add(learned_.response, {5, 6, 7, 8, 9, 10});
   add(learned_.clock_offset, {4});
-  std::ranges::transform(actuator_rows_, std::back_inserter(chain_places_), place_of);
+  std::ranges::transform(actuator_rows_, std::back_inserter(actuator_places_), place_of);
 }
 
 std::vector<ParameterInfo> MotionModel::parameters() const {
@@ -89,7 +89,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
     infos.push_back(slip_info(basis_, i));
   }
   for (const Eigen::Index row : actuator_rows_) {
-    const ChainParameter& parameter = chain_parameter(row);
+    const ActuatorParameter& parameter = actuator_parameter(row);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
   if (learned_.mount) {
@@ -104,7 +104,7 @@ ActuatorModel MotionModel::actuator(const Eigen::Ref<const Eigen::VectorXd>& par
   ActuatorModel actuator;
   Eigen::Index at = slip_size();
   for (const Eigen::Index row : actuator_rows_) {
-    const ChainParameter& parameter = chain_parameter(row);
+    const ActuatorParameter& parameter = actuator_parameter(row);
     actuator.*parameter.value = parameter.logarithm ? std::exp(parameters[at]) : parameters[at];
     ++at;
   }
@@ -115,11 +115,11 @@ Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) co
   return learned_.mount ? Pose2::from_vector(parameters.tail<kMountParameters>()) : Pose2{};
 }
 
-Eigen::VectorXd MotionModel::chain_scales(const ActuatorModel& actuator) const {
+Eigen::VectorXd MotionModel::actuator_scales(const ActuatorModel& actuator) const {
   Eigen::VectorXd scales(actuator_size());
   Eigen::Index at = 0;
   for (const Eigen::Index row : actuator_rows_) {
-    const ChainParameter& parameter = chain_parameter(row);
+    const ActuatorParameter& parameter = actuator_parameter(row);
     scales[at++] = parameter.logarithm ? actuator.*parameter.value : 1.0;
   }
   return scales;
@@ -129,7 +129,7 @@ Eigen::VectorXd MotionModel::log_time_derivatives(const Eigen::Ref<const Eigen::
   Eigen::VectorXd derivatives = Eigen::VectorXd::Ones(size());
   Eigen::Index at = slip_size();
   for (const Eigen::Index row : actuator_rows_) {
-    if (chain_parameter(row).logarithm) {
+    if (actuator_parameter(row).logarithm) {
       derivatives[at] = log_time_derivative(std::exp(parameters[at]));
     }
     ++at;

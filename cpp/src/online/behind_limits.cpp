@@ -15,7 +15,7 @@ namespace slipwise {
 namespace {
 
 constexpr std::size_t kFewSegments = 8;         // that are predicted to compare
-constexpr double kBetter = std::numbers::ln10;  // log score from which limits are believed to predict better
+constexpr double kBetter = std::numbers::ln10;  // log score from which limits are taken to predict better
 
 }  // namespace
 

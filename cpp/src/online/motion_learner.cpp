@@ -86,7 +86,7 @@ void MotionLearner::end_run() {
   work_through();
 }
 
-/// Where the stamps of a run begin before those of the last one ended, the clock was set anew: all is known by then.
+/// Where the stamps of a run begin before those of the last one ended, the clock was set again: all is known by then.
 void MotionLearner::see_stamp(double t) {
   if (!run_begins_ || !std::isfinite(t)) {
     return;

@@ -7,9 +7,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kOrdinary = 20.0;  // [m/s, rad/s] what is slower is always believed
-constexpr double kFastest = 100.0;  // [m/s, rad/s] what is slower is believed once it comes twice in a row
-constexpr double kLeap = 10.0;      // anything is believed up to this many times the fastest before it
+constexpr double kOrdinary = 20.0;  // [m/s, rad/s] what is slower is always accepted
+constexpr double kFastest = 100.0;  // [m/s, rad/s] what is slower is accepted once it comes twice in a row
+constexpr double kLeap = 10.0;      // anything is accepted up to this many times the fastest before it
 constexpr double kTwice = 2.0;      // a sample at most this many times the one before confirms it
 
 }  // namespace

@@ -18,7 +18,7 @@ void check(cudaError_t error, const char* doing) {
   }
 }
 
-template <typename Scalar, Chain kActuator, bool kQuadratic, bool kWide>
+template <typename Scalar, Actuator kActuator, bool kQuadratic, bool kWide>
 __global__ void __launch_bounds__(kThreads) roll(const __grid_constant__ ThreadJob<Scalar> job, unsigned* faults) {
   const std::size_t rollout = static_cast<std::size_t>(blockIdx.x) * kThreads + threadIdx.x;
   if (rollout >= job.job.rollouts) {
@@ -36,7 +36,7 @@ struct Launch {
   const ThreadJob<Scalar>& job;
   unsigned* faults;
 
-  template <Chain kActuator, bool kQuadratic, bool kWide>
+  template <Actuator kActuator, bool kQuadratic, bool kWide>
   void call() const {
     const auto blocks = static_cast<unsigned>((job.job.rollouts + kThreads - 1) / kThreads);
     roll<Scalar, kActuator, kQuadratic, kWide><<<blocks, kThreads>>>(job, faults);

@@ -30,7 +30,7 @@ namespace {
 struct Level {
   static constexpr std::size_t kBytes = 64;
   static constexpr std::size_t kPairs = 1;
-  static constexpr bool kSingleLoop = false;  ///< a loop of its own without a actuator: measured, here it is slower
+  static constexpr bool kSingleLoop = false;  ///< a loop of its own without an actuator: measured, here it is slower
 };
 
 template <typename Scalar>

@@ -14,7 +14,7 @@ namespace {
 struct Level {
   static constexpr std::size_t kBytes = 16;
   static constexpr std::size_t kPairs = 1;
-  static constexpr bool kSingleLoop = true;  ///< a loop of its own without a actuator: measured, here it is faster
+  static constexpr bool kSingleLoop = true;  ///< a loop of its own without an actuator: measured, here it is faster
 };
 
 }  // namespace

@@ -23,12 +23,13 @@ void check_uncertainty(const UncertainModel& model) {
       !(uncertainty.growth >= 0.0) || !std::isfinite(uncertainty.growth)) {
     throw std::invalid_argument("the covariance, its scale and its growth must be finite, and no scale negative");
   }
-  check_disturbance(uncertainty.wander);
+  check_disturbance(uncertainty.disturbance);
 }
 
 DisturbedTerms disturbed_terms_of(const UncertainModel& model) {
   const ModelUncertainty& uncertainty = model.uncertainty;
-  return uncertainty.wander.candidates.empty() ? DisturbedTerms{} : disturbed_terms(model.model, uncertainty.prior_std);
+  return uncertainty.disturbance.candidates.empty() ? DisturbedTerms{}
+                                                    : disturbed_terms(model.model, uncertainty.prior_std);
 }
 
 RolloutProgram drive_alone(const UncertainModel& model) {

@@ -21,7 +21,7 @@ constexpr std::size_t kEntries = 6;
 constexpr std::array<std::array<std::size_t, 2>, kEntries> kPlaces{
     {{{0, 0}}, {{0, 1}}, {{1, 1}}, {{0, 2}}, {{1, 2}}, {{2, 2}}}};
 
-/// What the parameters' errors and slip that wanders do to every pose.
+/// What the parameters' errors and the slip disturbance do to every pose.
 class ParameterShare {
  public:
   ParameterShare(const UncertainModel& model, const RolloutBatch<double>& batch, const RolloutOptions& options,
@@ -38,7 +38,7 @@ class ParameterShare {
     }
   }
 
-  /// Slip that wanders acts on the pose after some time as its mean over that time does.
+  /// The slip disturbance acts on the pose after some time as its mean over that time does.
   void add_disturbance() {
     const DisturbedTerms terms = disturbed_terms_of(model_);
     for (Eigen::Index i = 0; i < terms.size(); ++i) {
@@ -46,7 +46,8 @@ class ParameterShare {
       std::vector<double> variances;  // in units of the prior's
       for (std::size_t k = 1; k <= batch_.periods && prior_std > 0.0; ++k) {
         const double seconds = static_cast<double>(k) * model_.setting.period;
-        variances.push_back(nominal_variances(model_.uncertainty.wander, terms, seconds)[i] / (prior_std * prior_std));
+        variances.push_back(nominal_variances(model_.uncertainty.disturbance, terms, seconds)[i] /
+                            (prior_std * prior_std));
       }
       if (!variances.empty() && variances.front() > 0.0) {
         const Eigen::Index place = terms.places[static_cast<std::size_t>(i)];

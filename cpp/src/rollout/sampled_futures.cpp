@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawing parameters, slip that wanders and slip noise.
+// Drawing parameters, the slip disturbance and slip noise.
 #include "slipwise/rollout/sampled_futures.hpp"
 
 #include <array>
@@ -35,12 +35,12 @@ class NoisyPath {
     for (double& part : constant_) {
       part = normal_(random_);
     }
-    const DisturbanceModel& law = model.uncertainty.wander;
+    const DisturbanceModel& law = model.uncertainty.disturbance;
     if (terms.size() > 0) {
       std::discrete_distribution<std::size_t> which(law.weights.begin(), law.weights.end());
-      const SlipDisturbance& wander = law.candidates[which(random_)];
-      kept_ = std::exp(-model.setting.period / wander.time_constant);
-      nominal_ = terms.variances(wander).cwiseSqrt();
+      const SlipDisturbance& disturbance = law.candidates[which(random_)];
+      kept_ = std::exp(-model.setting.period / disturbance.time_constant);
+      nominal_ = terms.variances(disturbance).cwiseSqrt();
       deviation_ = nominal_.unaryExpr([&](double std) { return std * normal_(random_); });
     }
   }
@@ -53,13 +53,13 @@ class NoisyPath {
       tangent[static_cast<Eigen::Index>(c)] +=
           widened * (std::sqrt(noise.variance[c]) * normal_(random_) + noise.constant[c] * constant_[c]);
     }
-    wander(tangent, drive);
+    disturbance(tangent, drive);
     return compose(pose, exp(tangent));
   }
 
  private:
-  /// Adds the slip that wanders, which holds still over a period (derivations.md, section 18).
-  void wander(Eigen::Vector3d& tangent, const Eigen::Vector3d& drive) {
+  /// Adds the slip disturbance, which holds still over a period (derivations.md, section 18).
+  void disturbance(Eigen::Vector3d& tangent, const Eigen::Vector3d& drive) {
     for (Eigen::Index i = 0; i < terms_.size(); ++i) {
       const auto k = static_cast<std::size_t>(i);
       const double motion = terms_.of_turn[k] ? drive.z() : drive.x();
@@ -75,7 +75,7 @@ class NoisyPath {
   std::normal_distribution<double> normal_;
   std::array<double, 3> constant_{};
   double kept_ = 0.0;          ///< of the deviation over a period
-  Eigen::VectorXd nominal_;    ///< standard deviations of the terms that wander
+  Eigen::VectorXd nominal_;    ///< standard deviations of the disturbed terms
   Eigen::VectorXd deviation_;  ///< of these terms now
 };
 

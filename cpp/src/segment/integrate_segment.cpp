@@ -14,7 +14,7 @@ namespace {
 constexpr double kRounding = 1e-9;  // [s] of stamps
 
 /// One column per learned parameter of the actuator.
-using ChainColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
+using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
 using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kActuatorParameters>;
 
 ActuatorSpan window_of(const Segment& segment) {
@@ -87,7 +87,7 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
 /// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
-  ChainColumns actuator;
+  ActuatorColumns actuator;
 
   explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()), actuator(3, model.actuator_size()) {
     slip.setZero();
@@ -122,7 +122,7 @@ struct SensitivitySums {
     jacobian.leftCols(model.slip_size()) = phi * slip;
     if (model.actuator_size() > 0) {
       jacobian.middleCols(model.slip_size(), model.actuator_size()) =
-          phi * actuator * model.chain_scales(at).asDiagonal();
+          phi * actuator * model.actuator_scales(at).asDiagonal();
     }
     if (model.learned().mount) {
       jacobian.rightCols<kMountParameters>() = sensor_by_mount(end, path.sensor);
@@ -138,10 +138,10 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
                                 const InputTrack& inputs, const Segment& segment, const See& see) {
   model.check(parameters);
   const ActuatorModel actuator = model.actuator(parameters);
-  const bool by_chain = kAll && model.actuator_size() > 0;
+  const bool by_actuator = kAll && model.actuator_size() > 0;
   const auto alpha = parameters.head(model.slip_size());
-  ActuatorSteps drive = by_chain ? linearize_actuator_steps(inputs, actuator, window_of(segment))
-                                 : actuator_steps(inputs, actuator, window_of(segment));
+  ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
+                                    : actuator_steps(inputs, actuator, window_of(segment));
   const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
@@ -153,8 +153,8 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
     const Eigen::Vector3d tangent = tangent_of(step, slip);
     const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
     sums.add_slip(model.basis(), by_tangent, features, step.duration);
-    if (by_chain) {
-      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.chain_places());
+    if (by_actuator) {
+      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.actuator_places());
       if (!learned.isZero(0.0)) {
         sums.actuator += by_tangent * tangent_by(step, learned, along, slip);
       }

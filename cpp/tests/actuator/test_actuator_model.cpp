@@ -16,9 +16,9 @@
 namespace slipwise {
 namespace {
 
-using Chain = Eigen::Matrix<double, kActuatorParameters, 1>;
+using Actuator = Eigen::Matrix<double, kActuatorParameters, 1>;
 
-ActuatorModel chain_of(const Eigen::VectorXd& p) {
+ActuatorModel actuator_of(const Eigen::VectorXd& p) {
   return {.lag_v = p[0],
           .lag_omega = p[1],
           .delay_v = p[2],
@@ -68,21 +68,21 @@ struct Case {
   std::string name;
   double period;
   ActuatorSpan window;
-  Chain parameters;
+  Actuator parameters;
 };
 
-Chain parameters(std::initializer_list<double> values) {
-  Chain actuator;
+Actuator parameters(std::initializer_list<double> values) {
+  Actuator actuator;
   std::ranges::copy(values, actuator.begin());
   return actuator;
 }
 
 /// Generic points: no input changes at a window's end, at its start, or together with one of the other channel.
 std::vector<Case> sample_cases() {
-  const Chain lagging = parameters({0.31, 0.47, 0.113, 0.071, 0.023, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
-  const Chain shorter = parameters({0.11, 0.07, 0.2163, 0.1331, -0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
-  const Chain slow = parameters({0.11, 0.27, 0.0163, 0.1331, 0.1171, 0.9, 1.1, 0.2, 0.4, 1.3, 2.1});
-  const Chain early = parameters({0.2, 0.3, 0.003, 0.004, -0.33, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  const Actuator lagging = parameters({0.31, 0.47, 0.113, 0.071, 0.023, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  const Actuator shorter = parameters({0.11, 0.07, 0.2163, 0.1331, -0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
+  const Actuator slow = parameters({0.11, 0.27, 0.0163, 0.1331, 0.1171, 0.9, 1.1, 0.2, 0.4, 1.3, 2.1});
+  const Actuator early = parameters({0.2, 0.3, 0.003, 0.004, -0.33, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
   const BodyTwist moving{0.6, 0.1, -0.3}, still{-0.2, -0.1, 0.4}, fast{1.9, 0.7, -1.3};
   const auto wheels =
       std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.003, 0.05, 200));
@@ -118,8 +118,10 @@ TEST_CASE("drive steps are linearised exactly by every parameter of the actuator
   for (const Case& c : sample_cases()) {
     CAPTURE(c.name);
     const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
-    const auto value = [&](const Eigen::VectorXd& p) { return totals(actuator_steps(inputs, chain_of(p), c.window)); };
-    const ActuatorSteps linearized = linearize_actuator_steps(inputs, chain_of(c.parameters), c.window);
+    const auto value = [&](const Eigen::VectorXd& p) {
+      return totals(actuator_steps(inputs, actuator_of(p), c.window));
+    };
+    const ActuatorSteps linearized = linearize_actuator_steps(inputs, actuator_of(c.parameters), c.window);
     CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
     const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
     // Where there is no slow part, its time constants cannot move: it would appear.
@@ -133,11 +135,11 @@ TEST_CASE(
     "without lag, gains scale distances, and delays and the clock offset move distances by the speeds at the ends") {
   const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
   const ActuatorSpan window{.start = 2.013, .end = 4.487};
-  const auto value = [&](const Eigen::VectorXd& p) { return totals(actuator_steps(inputs, chain_of(p), window)); };
-  const Chain point = parameters({0.0, 0.0, 0.113, 0.0717, 0.0231, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
-  const auto linearized = linearize_actuator_steps(inputs, chain_of(point), window);
+  const auto value = [&](const Eigen::VectorXd& p) { return totals(actuator_steps(inputs, actuator_of(p), window)); };
+  const Actuator point = parameters({0.0, 0.0, 0.113, 0.0717, 0.0231, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  const auto linearized = linearize_actuator_steps(inputs, actuator_of(point), window);
   const auto moving_only = [&](const Eigen::VectorXd& p) {
-    Chain all = point;
+    Actuator all = point;
     all.segment<5>(2) = p;
     return value(all);
   };
@@ -150,13 +152,13 @@ TEST_CASE(
 TEST_CASE("without lag, a speed that was measured before any input acts is exact in gains, delays and clock offset") {
   const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
   const ActuatorSpan window{.start = 0.083, .end = 1.487, .initial = BodyTwist{1.9, 0.7, -1.3}};
-  const Chain point = parameters({0.0, 0.0, 0.2163, 0.1331, 0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
+  const Actuator point = parameters({0.0, 0.0, 0.2163, 0.1331, 0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
   const auto value = [&](const Eigen::VectorXd& p) {
-    Chain all = point;
+    Actuator all = point;
     all.segment<5>(2) = p;
-    return totals(actuator_steps(inputs, chain_of(all), window));
+    return totals(actuator_steps(inputs, actuator_of(all), window));
   };
-  const auto linearized = linearize_actuator_steps(inputs, chain_of(point), window);
+  const auto linearized = linearize_actuator_steps(inputs, actuator_of(point), window);
   const auto numeric = tests::finite_difference(value, point.segment<5>(2), 1e-4);
   CHECK(tests::jacobian_error(totals_jacobian(linearized).middleCols<5>(2), numeric, 0.1) <
         tests::kDerivativeTolerance);
@@ -179,7 +181,7 @@ TEST_CASE("drive steps cover the window without gap or overlap") {
   for (const Case& c : sample_cases()) {
     CAPTURE(c.name);
     const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, c.period, 200);
-    const double covered = totals(actuator_steps(inputs, chain_of(c.parameters), c.window))[0];
+    const double covered = totals(actuator_steps(inputs, actuator_of(c.parameters), c.window))[0];
     CHECK(covered == doctest::Approx(c.window.end - c.window.start).epsilon(1e-12));
   }
 }

@@ -24,7 +24,7 @@ ActuatorAxis axis_of(const Eigen::VectorXd& p) {
   return {&BodyTwist::omega, {.gain = p[2], .lag = p[0], .slow_share = p[3], .slow_lag = p[4]}, p[1]};
 }
 
-TEST_CASE("a axis's means sum to what the whole actuator drives") {
+TEST_CASE("an axis's means sum to what the whole actuator drives") {
   const ActuatorModel actuator{.lag_v = 0.2,
                                .lag_omega = 0.3,
                                .delay_v = 0.1,
@@ -46,7 +46,7 @@ TEST_CASE("a axis's means sum to what the whole actuator drives") {
   }
 }
 
-TEST_CASE("a axis that is followed in two stretches ends as in one") {
+TEST_CASE("an axis that is followed in two stretches ends as in one") {
   const ActuatorAxis axis{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
   const InputTrack inputs = commands();
   const AxisMotion whole = axis_motion(inputs, axis, {.fast = 0.2, .slow = -0.1}, kEdges);
@@ -57,7 +57,7 @@ TEST_CASE("a axis that is followed in two stretches ends as in one") {
   CHECK((whole.value.head(2) - first.value.head(2)).lpNorm<Eigen::Infinity>() < 1e-14);
 }
 
-TEST_CASE("a axis's derivatives are its derivatives") {
+TEST_CASE("an axis's derivatives are its derivatives") {
   Eigen::VectorXd at(kAxisParameters);
   at << 0.3, 0.13, 0.9, 0.3, 0.8, 0.2, -0.1;
   const InputTrack inputs = commands();

@@ -22,7 +22,7 @@ AxisRamp ramp_at(const AxisLimits& limits, double state, double command) {
   return ramp;
 }
 
-TEST_CASE("a axis brakes to zero and then speeds up the other way, each at its own rate") {
+TEST_CASE("an axis brakes to zero and then speeds up the other way, each at its own rate") {
   const AxisRamp ramp = ramp_at(kAxis, 1.0, -2.0);
   CHECK(ramp.seconds_to(-2.0) == doctest::Approx(1.0 / 4.0 + 2.0 / 1.0));
   AxisRamp moving = ramp;
@@ -52,7 +52,7 @@ TEST_CASE("a piece that is cut short keeps the mean of the whole, and the axis s
   CHECK(cut.state() == doctest::Approx(0.1));
 }
 
-TEST_CASE("a axis without rates is there at once, and one that only brakes slowly speeds up at once") {
+TEST_CASE("an axis without rates is there at once, and one that only brakes slowly speeds up at once") {
   AxisRamp free({.top = 2.0});
   free.aim(5.0);
   CHECK(free.state() == 2.0);

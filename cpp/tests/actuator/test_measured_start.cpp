@@ -24,7 +24,7 @@ struct Point {
   double command;
 };
 
-ActuatorModel chain_of(const Point& at) {
+ActuatorModel actuator_of(const Point& at) {
   return {.lag_v = at.lag,
           .lag_omega = at.lag,
           .delay_v = at.delay,
@@ -77,7 +77,7 @@ void check_law(const Point& at, const InputTrack& inputs, double tolerance) {
   const double goal = at.gain * at.command;
   const BodyTwist measured{at.part * goal, 0.0, 0.5 * at.part * goal};
   const auto drive =
-      actuator_steps(inputs, chain_of(at), {.start = at.sent, .end = at.sent + 3.0, .initial = measured});
+      actuator_steps(inputs, actuator_of(at), {.start = at.sent, .end = at.sent + 3.0, .initial = measured});
   for (const ActuatorStep& step : drive.steps) {
     if (step.duration < 1e-9) {
       continue;
@@ -104,7 +104,7 @@ TEST_CASE("so it does behind limits that ramp") {
   for_all_points([](const Point& at) {
     CAPTURE(text_of(at));
     const double goal = at.part * at.gain * at.command;
-    const MeasuredStart start = measured_start(chain_of(at), at.sent, {goal, 0.0, 0.5 * goal});
+    const MeasuredStart start = measured_start(actuator_of(at), at.sent, {goal, 0.0, 0.5 * goal});
     check_law(at, limited_track(held(at), kRamps, start), 1e-9);
   });
 }
@@ -114,7 +114,7 @@ TEST_CASE("a measured speed that the commands explain changes nothing") {
   const InputTrack inputs(std::vector{0.0, 2.0, 3.1, 3.4},
                           std::vector{BodyTwist{1.0, 0.0, 0.4}, BodyTwist{0.0, 0.0, -0.4}, BodyTwist{0.6, 0.0, 0.1},
                                       BodyTwist{0.5, 0.0, 0.2}});
-  const ActuatorModel actuator = chain_of(at);
+  const ActuatorModel actuator = actuator_of(at);
   constexpr double kMoment = 1e-6;
   for (const double start : {0.05, 0.9, 2.4, 3.2, 3.8}) {
     CAPTURE(start);
@@ -135,7 +135,7 @@ TEST_CASE("a measured speed that the commands explain changes nothing") {
 TEST_CASE("before the first command the drive is at rest, or goes on as it was measured") {
   const Point at{0.3, 1.5, 0.4, 0.8, 0.4, 0.0, 0.0, 1.0};
   const auto first = [&](const ActuatorSpan& window) {
-    return actuator_steps(held(at), chain_of(at), window).steps.front();
+    return actuator_steps(held(at), actuator_of(at), window).steps.front();
   };
   CHECK(first({.start = 0.0, .end = 1.0}).forward == 0.0);
   CHECK(first({.start = 0.0, .end = 0.4, .initial = BodyTwist{0.3, 0.0, 0.1}}).forward ==

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip that wanders: found where it does, followed, let go with time, and not invented where it does not.
+// The slip disturbance: found where it does, followed, let go with time, and not invented where it does not.
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
@@ -99,7 +99,7 @@ struct Setting {
   InputTrack inputs = tests::random_inputs(random, 420.0, 0.05);
 };
 
-TEST_CASE("slip that holds still is not said to wander, and predictions stay as they were") {
+TEST_CASE("slip that holds still is not said to disturbance, and predictions stay as they were") {
   const Setting s;
   const MotionPosterior posterior = known_posterior(s.model);
   const auto segments = drive(s.model, s.inputs, 300, [](int) { return Eigen::Vector2d(-0.1, -0.3); });
@@ -109,18 +109,19 @@ TEST_CASE("slip that holds still is not said to wander, and predictions stay as 
   CHECK(found.nis == doctest::Approx(3.0).epsilon(0.2));
 }
 
-TEST_CASE("yaw slip that wanders is found in its channel, followed and predicted better, with a true covariance") {
+TEST_CASE("yaw the slip disturbance is found in its channel, followed and predicted better, with a true covariance") {
   const Setting s;
   const MotionPosterior posterior = known_posterior(s.model);
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
-  std::vector<double> wander{0.0};
+  std::vector<double> disturbance{0.0};
   const double kept = std::exp(-1.0 / 20.0);
   for (int i = 1; i < 300; ++i) {
-    wander.push_back(kept * wander.back() + std::sqrt(1.0 - kept * kept) * 0.09 * normal(random));
+    disturbance.push_back(kept * disturbance.back() + std::sqrt(1.0 - kept * kept) * 0.09 * normal(random));
   }
-  const auto segments = drive(s.model, s.inputs, 300,
-                              [&](int i) { return Eigen::Vector2d(-0.1, -0.3 + wander[static_cast<std::size_t>(i)]); });
+  const auto segments = drive(s.model, s.inputs, 300, [&](int i) {
+    return Eigen::Vector2d(-0.1, -0.3 + disturbance[static_cast<std::size_t>(i)]);
+  });
   const Followed found = follow(posterior, s.inputs, segments);
   double turning = 0.0;
   for (std::size_t i = 0; i < found.slip.law().candidates.size(); ++i) {

@@ -91,7 +91,7 @@ CausalFilter learned_under(double factor, std::size_t windows) {
   return filter;
 }
 
-TEST_CASE("a first guess of the noise is forgotten once the first segments are learned anew") {
+TEST_CASE("a first guess of the noise is forgotten once the first segments are learned again") {
   const Eigen::VectorXd commanded = learned_under(1.0, 68).estimate().covariance.diagonal();
   const Eigen::VectorXd guessed = learned_under(30.0, 68).estimate().covariance.diagonal();
   const Eigen::VectorXd just_before = learned_under(30.0, 16).estimate().covariance.diagonal();
@@ -117,7 +117,7 @@ TEST_CASE("slices of a refit change nothing but when the work is done") {
       slices += sliced.refit_slice() ? 1 : 0;
     }
     CHECK(at_once.estimate().mean == sliced.estimate().mean);
-    CHECK(at_once.stated().covariance == sliced.stated().covariance);
+    CHECK(at_once.reported().covariance == sliced.reported().covariance);
     CHECK(at_once.noise_scale() == sliced.noise_scale());
   }
   CHECK(slices > 100);
@@ -143,7 +143,7 @@ Eigen::Vector2d squared_sigmas(bool adapt, bool stated) {
     for (const Segment& segment : drive.segments) {
       filter.learn(drive.inputs, segment, kSpeeds);
     }
-    const Estimate found = stated ? filter.stated() : filter.estimate();
+    const Estimate found = stated ? filter.reported() : filter.estimate();
     mean += (found.mean - truth).cwiseAbs2().cwiseQuotient(found.covariance.diagonal()) / kDrives;
   }
   return mean;
@@ -162,7 +162,7 @@ TEST_CASE("noise that is known is not judged by residuals") {
   CHECK(squared_sigmas(false, false) == squared_sigmas(false, true));
 }
 
-TEST_CASE("what is learned anew after a change of ground is the new ground") {
+TEST_CASE("what is learned again after a change of ground is the new ground") {
   const MotionModel model(named_basis("edd-2"), {});
   CausalFilterSettings settings;
   settings.noise.shape = kTrueNoise;

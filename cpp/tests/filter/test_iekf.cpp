@@ -144,7 +144,7 @@ TEST_CASE("a residual beyond the gate leaves the estimate as it was and says so"
   CHECK(update.weight == 0.0);
   CHECK(update.estimate.mean == prior.mean);
   CHECK(update.estimate.covariance == prior.covariance);
-  CHECK(advice(update.status).find("left out") != std::string_view::npos);
+  CHECK(advice(update.status).find("rejected") != std::string_view::npos);
 }
 
 TEST_CASE("a residual between Huber's threshold and the gate counts for less") {

@@ -11,7 +11,7 @@
 namespace slipwise {
 namespace {
 
-TEST_CASE("weights are tempered Bayes after a share is spread by the weights beforehand") {
+TEST_CASE("weights are tempered Bayes after a share is spread by the prior weights") {
   const Eigen::Vector2d prior(0.75, 0.25);
   const WeightingSettings settings{.learning_rate = 0.5, .share = 0.1};
   const Eigen::VectorXd weights =
@@ -21,7 +21,7 @@ TEST_CASE("weights are tempered Bayes after a share is spread by the weights bef
   CHECK(weights.sum() == doctest::Approx(1.0));
 }
 
-TEST_CASE("equal scores bring the weights back to those beforehand") {
+TEST_CASE("equal scores bring the weights back to the prior ones") {
   const Eigen::Vector2d prior(0.6, 0.4);
   Eigen::VectorXd weights = Eigen::Vector2d(1.0, 0.0);
   for (int i = 0; i < 200; ++i) {

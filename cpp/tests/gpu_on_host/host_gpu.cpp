@@ -28,7 +28,7 @@ struct RunHere {
   const ThreadJob<Scalar>& job;
   unsigned* faults;
 
-  template <Chain kActuator, bool kQuadratic, bool kWide>
+  template <Actuator kActuator, bool kQuadratic, bool kWide>
   void call() const {
     for (std::size_t rollout = 0; rollout < job.job.rollouts; ++rollout) {
       *faults |= roll_thread<kActuator, kQuadratic, kWide>(job, rollout);

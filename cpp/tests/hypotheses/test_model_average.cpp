@@ -114,7 +114,7 @@ TEST_CASE("the average has every term once and a covariance that is one") {
   CHECK(state.variance_ratio[0] < 0.1);
 }
 
-TEST_CASE("before any data nothing is determined, and the largest_basis basis has its weight beforehand") {
+TEST_CASE("before any data nothing is determined, and the largest_basis basis has its prior weight") {
   const ModelAverage average("auto", {plain(), named_basis("edd-2"), named_basis("drive-5")}, {}, {}, {});
   const AverageState state = average.state();
   CHECK(state.weights.isApprox(Eigen::Vector3d(0.3, 0.3, 0.4)));

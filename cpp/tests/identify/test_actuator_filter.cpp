@@ -134,7 +134,7 @@ TEST_CASE("slices of a refit of the actuator model change nothing but when the w
   CHECK(slices > 10);
 }
 
-TEST_CASE("after a gap the drive's state is sought anew") {
+TEST_CASE("after a gap the drive's state is sought again") {
   ActuatorFilter learner({});
   const Drive driven = drive(7, 130.0);
   for (double start = 0.0; start < 120.0; start += 10.0) {
@@ -156,13 +156,13 @@ TEST_CASE("a window far from what is predicted is commanded so, and changes litt
     v.push_back(5.0);
     still.push_back(0.0);
   }
-  const ChainUpdate update = learner.learn(driven.commands, InputTrack(t, v, still, v), 40.0, 41.0);
+  const ActuatorUpdate update = learner.learn(driven.commands, InputTrack(t, v, still, v), 40.0, 41.0);
   CHECK(update.nis > 100.0);
   const Eigen::VectorXd moved = learner.estimate().mean - before.mean;
   CHECK(moved.cwiseQuotient(before.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff() < 1.0);
 }
 
-TEST_CASE("wheels that do exactly what they are commanded teach a actuator that does hardly anything") {
+TEST_CASE("wheels that do exactly what they are commanded teach an actuator that does hardly anything") {
   ActuatorFilter learner({});
   const Drive driven = drive(5, 60.0);
   learn(learner, {driven.commands, driven.commands}, 0.0, 59.0);
@@ -178,7 +178,7 @@ TEST_CASE("a robot that stands still teaches nothing") {
   const std::vector<double> t{0.0, 0.5, 1.0};
   const std::vector<double> still(3, 0.0);
   const InputTrack nothing(t, still, still, still);
-  const ChainUpdate update = learner.learn(nothing, nothing, 0.0, 1.0);
+  const ActuatorUpdate update = learner.learn(nothing, nothing, 0.0, 1.0);
   CHECK(update.nis == 0.0);
   CHECK((learner.estimate().covariance.diagonal().cwiseSqrt() - learner.prior_std()).norm() < 1e-12);
   CHECK_THROWS_AS(learner.learn(nothing, nothing, 1.0, 1.0), std::invalid_argument);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means of a wandering deviation: the same however they are cut, stationary, and white where they should be.
+// Means of a correlated deviation: the same however they are cut, stationary, and white where they should be.
 #include "slipwise/identify/actuator_noise.hpp"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@
 namespace slipwise {
 namespace {
 
-const ActuatorNoise kDisturbed{.white = 0.0, .wander = 4.0, .time_constant = 0.7};
+const ActuatorNoise kDisturbed{.white = 0.0, .deviation = 4.0, .time_constant = 0.7};
 
 TEST_CASE("means over halves average to the mean over the whole") {
   const std::vector<double> halves{0.0, 0.3, 0.6};
@@ -26,15 +26,15 @@ TEST_CASE("means over halves average to the mean over the whole") {
 TEST_CASE("a deviation that was nominal stays nominal") {
   const std::vector<double> edges{0.0, 0.1, 0.5, 2.0};
   const ActuatorNoiseMeans means = actuator_noise_means(kDisturbed, edges, std::vector<double>{1.0, 1.0, 1.0});
-  const Eigen::MatrixXd all = means.covariance + kDisturbed.wander * means.by_start * means.by_start.transpose();
-  CHECK(all(3, 3) == doctest::Approx(kDisturbed.wander));
+  const Eigen::MatrixXd all = means.covariance + kDisturbed.deviation * means.by_start * means.by_start.transpose();
+  CHECK(all(3, 3) == doctest::Approx(kDisturbed.deviation));
   const double spans = 0.4 / kDisturbed.time_constant;  // of the second interval
-  const double nominal = 2.0 * kDisturbed.wander / spans * (1.0 - (1.0 - std::exp(-spans)) / spans);
+  const double nominal = 2.0 * kDisturbed.deviation / spans * (1.0 - (1.0 - std::exp(-spans)) / spans);
   CHECK(all(1, 1) == doctest::Approx(nominal));
 }
 
 TEST_CASE("white noise is shared by the samples of an interval alone") {
-  const ActuatorNoise white{.white = 0.5, .wander = 0.0, .time_constant = 1.0};
+  const ActuatorNoise white{.white = 0.5, .deviation = 0.0, .time_constant = 1.0};
   const std::vector<double> edges{0.0, 0.1, 0.3};
   const ActuatorNoiseMeans means = actuator_noise_means(white, edges, std::vector<double>{2.0, 5.0});
   Eigen::Vector3d expected(0.25, 0.1, 0.0);

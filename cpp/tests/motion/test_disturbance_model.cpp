@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip that wanders: which terms do, how far their mean over some time is from what was learned, and bad laws.
+// The slip disturbance: which terms do, how far their mean over some time is from what was learned, and bad laws.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-TEST_CASE("the shares of V and of w wander, each by a fraction of its own prior") {
+TEST_CASE("the shares of V and of w are disturbed, each by a fraction of its own prior") {
   const MotionModel model(named_basis("full-linear-6"), {.dynamics = true});
   const Eigen::VectorXd prior_std = Eigen::VectorXd::LinSpaced(model.size(), 0.1, 1.0);
   const DisturbedTerms terms = disturbed_terms(model, prior_std);
@@ -55,7 +55,7 @@ TEST_CASE("the mean of a process over some time has the variance of simulated on
   CHECK(variance_over(0.999e-3) == doctest::Approx(variance_over(1.001e-3)).epsilon(1e-6));
 }
 
-TEST_CASE("slip that wanders widens the parameters' covariance less over a longer time, and not without a law") {
+TEST_CASE("the slip disturbance widens the parameters' covariance less over a longer time, and not without a law") {
   const MotionModel model(named_basis("edd-2"), {});
   const Eigen::VectorXd prior_std = Eigen::Vector2d(0.3, 0.4);
   const Eigen::MatrixXd learned = 1e-4 * Eigen::Matrix2d::Identity();

@@ -48,7 +48,7 @@ TEST_CASE("every parameter says its unit and meaning") {
   }
 }
 
-TEST_CASE("a actuator that is not learned is the identity") {
+TEST_CASE("an actuator that is not learned is the identity") {
   const MotionModel model(named_basis("edd-2"), {});
   const ActuatorModel actuator = model.actuator(Eigen::Vector2d(0.1, 0.2));
   CHECK(actuator.lag_v == 0.0);
@@ -96,9 +96,9 @@ TEST_CASE("places and scales are the derivative of the actuator by the model's p
     };
     const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);
     Eigen::MatrixXd analytic = Eigen::MatrixXd::Zero(kActuatorParameters, model.actuator_size());
-    const Eigen::VectorXd scales = model.chain_scales(model.actuator(p));
+    const Eigen::VectorXd scales = model.actuator_scales(model.actuator(p));
     for (Eigen::Index i = 0; i < scales.size(); ++i) {
-      analytic(model.chain_places()[static_cast<std::size_t>(i)], i) = scales[i];
+      analytic(model.actuator_places()[static_cast<std::size_t>(i)], i) = scales[i];
     }
     CHECK(tests::jacobian_error(analytic, numeric.rightCols(analytic.cols())) < tests::kDerivativeTolerance);
   }

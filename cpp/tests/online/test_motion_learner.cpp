@@ -167,7 +167,7 @@ TEST_CASE("a prediction asked for at its start is the one that is held against w
 
 TEST_CASE("runs are not joined, and what was learned stays") {
   const Recording first = streamed_robot(5, kSeconds);
-  const Recording second = streamed_robot(6, 20.0, 10.0);  // by a clock that was set anew
+  const Recording second = streamed_robot(6, 20.0, 10.0);  // by a clock that was set again
   MotionLearner learner(learner_settings(false));
   learner.start_run();
   push(learner, first);

@@ -93,7 +93,7 @@ SamplePaths<Scalar> roll(const RolloutProgram& program, const RolloutBatch<Scala
   return paths;
 }
 
-/// A actuator by name, with parameters for it.
+/// An actuator by name, with parameters for it.
 struct SampleChain {
   const char* name;
   ActuatorParameters learned;

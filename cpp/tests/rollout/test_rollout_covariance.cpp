@@ -28,14 +28,14 @@ UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& 
            .noise = {.psd_time = {1e-4, 2e-4, 1e-4}, .psd_motion = {2e-4, 1e-4, 3e-4}, .fraction = {0.01, 0.02, 0.01}},
            .scale = {1.5, 0.7, 2.0},
            .growth = 1.2,
-           .wander = {{{0.0, 0.0, 1.0}, {0.1, 0.3, 0.8}, {0.3, 0.0, 20.0}}, Eigen::Vector3d(0.2, 0.5, 0.3)},
+           .disturbance = {{{0.0, 0.0, 1.0}, {0.1, 0.3, 0.8}, {0.3, 0.0, 20.0}}, Eigen::Vector3d(0.2, 0.5, 0.3)},
            .prior_std = Eigen::VectorXd::Constant(model.size(), 0.2)},
           {kPeriod}};
 }
 
 Eigen::MatrixXd covariance_at(const UncertainModel& model, double seconds) {
   const ModelUncertainty& known = model.uncertainty;
-  return covariance_over(model.model, known.covariance, known.wander, known.prior_std, seconds);
+  return covariance_over(model.model, known.covariance, known.disturbance, known.prior_std, seconds);
 }
 
 Eigen::Matrix3d matrix_at(const std::vector<double>& entries, std::size_t poses, std::size_t i) {
@@ -134,9 +134,9 @@ TEST_CASE("an uncertainty that does not fit is refused") {
   CHECK_THROWS_AS(sample_futures(uncertain, commands.batch(kOrigin), 1, {few, few, few}), std::invalid_argument);
   uncertain.uncertainty.prior_std.resize(0);
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
-  uncertain.uncertainty.wander.weights[0] = 2.0;
+  uncertain.uncertainty.disturbance.weights[0] = 2.0;
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);
-  uncertain.uncertainty.wander = {};
+  uncertain.uncertainty.disturbance = {};
   CHECK_NOTHROW(rollout_covariance(uncertain, commands.batch(kOrigin), entries));
   uncertain.uncertainty.scale[0] = -1.0;
   CHECK_THROWS_AS(rollout_covariance(uncertain, commands.batch(kOrigin), entries), std::invalid_argument);

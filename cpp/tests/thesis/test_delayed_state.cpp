@@ -145,7 +145,7 @@ TEST_CASE("the Jacobian of the pose prediction by parameters and start is the de
   CHECK(tests::jacobian_error(f, tests::finite_difference(predict, point, 0.02)) < tests::kDerivativeTolerance);
 }
 
-TEST_CASE("a segment beyond the gate teaches nothing, and the next one begins anew from its end") {
+TEST_CASE("a segment beyond the gate teaches nothing, and the next one begins again from its end") {
   const MotionModel model(named_basis("edd-2"), {});
   const MotionNoise noise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.01, .pose_std_yaw = 0.005};
   auto drive = tests::simulate_drive(model, Eigen::Vector2d(-0.05, -0.1), {.seed = 93, .windows = 20, .noise = noise});

@@ -22,7 +22,7 @@ class OnlineLearner(Protocol[UpdateT_co]):
         ...
 
     def posterior(self) -> Posterior:
-        """Return what is believed now."""
+        """Return the posterior now."""
         ...
 
 

@@ -30,9 +30,7 @@ class Posterior:
     variance_ratio: Floats  # [P] posterior / prior variance
     weights: Floats  # [B]
     noise: _core.MotionNoise | None = None  # where the method learns its own; None: that of its predictor
-    disturbance: _core.DisturbanceFilter | None = (
-        None  # of slip about this, where that is learned
-    )
+    disturbance: _core.DisturbanceFilter | None = None  # of slip about this, where that is learned
     limits: _core.CommandLimits | None = None  # in front of the actuator, where some were found
     structure: int = JOINT  # of STRUCTURES; the errors of each are a population of their own
 

@@ -60,7 +60,7 @@ def reproduce(
     from slipwise.thesis import reproduce as make_again
     from slipwise.thesis import write_reproduction
     from slipwise.thesis.extras import refuse_missing_extras
-    from slipwise.thesis.reproduce import BenchPlan, chosen_chapters
+    from slipwise.thesis.reproduce import FixturePlan, chosen_chapters
 
     del work
     out = Output(json)
@@ -70,7 +70,7 @@ def reproduce(
     with progress_bar("simulating") as update:
         place = run_folder(runs, "reproduce") if output is None else contextlib.nullcontext(output)
         with place as folder:
-            made = make_again(BenchPlan(seed, data), chapters=chapters, progress=update)
+            made = make_again(FixturePlan(seed, data), chapters=chapters, progress=update)
             files = write_reproduction(folder, made)
             left_out = missing_picture(None, "The Markdown with its pictures")
             notes = [left_out] if left_out else []
@@ -85,21 +85,21 @@ def reproduce(
 def _document(made: tuple[ChapterResult, ...], files: dict[str, Path], seed: int) -> dict[str, Any]:
     from slipwise.cli.document import head
 
-    exhibits = [
+    figures = [
         {
             "chapter": chapter.key,
-            "key": exhibit.key,
-            "thesis": exhibit.thesis,
-            "title": exhibit.title,
-            "agrees": exhibit.agrees,
-            "differs": exhibit.differs,
-            "source": exhibit.source,
-            "missing": exhibit.missing or None,
+            "key": figure.key,
+            "thesis": figure.thesis,
+            "title": figure.title,
+            "agrees": figure.agrees,
+            "differs": figure.differs,
+            "source": figure.source,
+            "missing": figure.missing or None,
         }
         for chapter in made
-        for exhibit in chapter.exhibits
+        for figure in chapter.figures
     ]
-    return head("reproduce") | {"exit_code": 0, "seed": seed, "files": files, "exhibits": exhibits}
+    return head("reproduce") | {"exit_code": 0, "seed": seed, "files": files, "figures": figures}
 
 
 def _show(out: Any, made: tuple[ChapterResult, ...], files: dict[str, Path]) -> None:
@@ -109,16 +109,16 @@ def _show(out: Any, made: tuple[ChapterResult, ...], files: dict[str, Path]) -> 
     columns = [
         Column("chapter", whole=True),
         Column("in the thesis", whole=True),
-        Column("exhibit"),
+        Column("figure or table"),
         Column(""),
     ]
     rows = [
-        (chapter.key, exhibit.thesis, exhibit.title, "missing" if exhibit.missing else "")
+        (chapter.key, figure.thesis, figure.title, "missing" if figure.missing else "")
         for chapter in made
-        for exhibit in chapter.exhibits
+        for figure in chapter.figures
     ]
-    missing = [exhibit.missing for chapter in made for exhibit in chapter.exhibits if exhibit.missing]
-    caption = f"{len(rows) - len(missing)} exhibits were made, {len(missing)} could not be."
+    missing = [figure.missing for chapter in made for figure in chapter.figures if figure.missing]
+    caption = f"{len(rows) - len(missing)} figures and tables were made, {len(missing)} could not be."
     out.table("The thesis, made again", columns, rows, caption=caption)
     for sentence in dict.fromkeys(missing):
         out.line(sentence)

@@ -204,10 +204,10 @@ def _score(predictions: Predictions, group: Sequence[Predictions], distance: flo
 def _to_rival(predictions: Predictions, group: Sequence[Predictions], error: str) -> float:
     """Mean error relative to the best other causal method but the plain one."""
     half = held_out_half(len(predictions))
-    rivals = [
+    others = [
         float(getattr(p, error)[half].mean())
         for p in group
         if p.method not in (predictions.method, "none") and p.causal
     ]
-    best = min(rivals, default=0.0)
+    best = min(others, default=0.0)
     return float(getattr(predictions, error)[half].mean()) / best if best > 0.0 else float("nan")

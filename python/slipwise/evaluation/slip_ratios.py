@@ -17,14 +17,14 @@ from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 
-SIZE = 6  # parameters of full-linear-6, in which both rivals predict
+SIZE = 6  # parameters of full-linear-6, in which both predict
 
 
 UpdateT = TypeVar("UpdateT")
 
 
 @dataclass(frozen=True)
-class Rival(Generic[UpdateT]):
+class SlipRatioEstimator(Generic[UpdateT]):
     """An estimator of slip ratios: how it learns a window, and what it believes now."""
 
     learn: Callable[[_core.InputTrack, _core.Segment], UpdateT]
@@ -48,7 +48,7 @@ def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -
         linear = estimator.linear_estimate()
         return _posterior(np.array(linear.mean), np.array(linear.covariance))
 
-    return _forecaster(name, settings, Rival(estimator.learn, posterior), windows)
+    return _predictor(name, settings, SlipRatioEstimator(estimator.learn, posterior), windows)
 
 
 def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet) -> Predictor:
@@ -66,7 +66,7 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
     def posterior() -> Posterior:
         return _posterior(np.array(estimator.linear_mean()), np.zeros((SIZE, SIZE)))
 
-    return _forecaster(name, settings, Rival(estimator.learn, posterior), windows)
+    return _predictor(name, settings, SlipRatioEstimator(estimator.learn, posterior), windows)
 
 
 def _refuse_commands(name: str, input_name: str) -> None:
@@ -83,6 +83,8 @@ def _posterior(mean: np.ndarray, covariance: np.ndarray) -> Posterior:
     return Posterior(_core.slip_ratio_model(), mean, covariance, np.ones(3), ones, ones, np.ones(1))
 
 
-def _forecaster(name: str, settings: Settings, rival: Rival[UpdateT], windows: WindowSet) -> Predictor:
+def _predictor(
+    name: str, settings: Settings, estimator: SlipRatioEstimator[UpdateT], windows: WindowSet
+) -> Predictor:
     shape = settings.filter_settings().noise.shape
-    return Predictor(name, shape, CausalPass(rival, windows).posterior, False)
+    return Predictor(name, shape, CausalPass(estimator, windows).posterior, False)

@@ -106,7 +106,7 @@ class _ActuatorLearner:
 class SurfacePass:
     """Learns windows in order, only as far as it is asked to.
 
-    At each fit, all examples are made anew from the windows with what is then known of lag, delay and offset.
+    At each fit, all are made again from the windows with what is then known of lag, delay and offset.
     """
 
     def __init__(self, rules: SurfaceRules, actuator: _core.ModelAverage, windows: WindowSet) -> None:
@@ -170,7 +170,7 @@ class SurfacePass:
 
 
 class SurfaceRegression:
-    """One kind of surface over the examples so far, fitted anew at times; always as parameters of a basis."""
+    """One kind of surface over the examples so far, fitted again at times, as parameters of a basis."""
 
     def __init__(self, rules: SurfaceRules) -> None:
         """Start with no slip, as sure as the prior is."""

@@ -15,7 +15,7 @@ from slipwise.export.parameter_file import Entry, Kept, ParameterFile, stated, y
 from slipwise.export.reference_drive import learned_variances, motion_covariance, reference_drive
 from slipwise.models.model import Model
 
-UPDATE_DISTANCE = 0.25  # m, update_min_d: AMCL draws its noise anew after this distance
+UPDATE_DISTANCE = 0.25  # m, update_min_d: AMCL draws its noise again after this distance
 UPDATE_ANGLE = 0.2  # rad, update_min_a
 _MEANING = (
     "rotation from rotation",
@@ -44,7 +44,7 @@ class Alphas:
 def alphas(model: Model, horizon: float) -> Alphas:
     """Return the alphas with which AMCL's particles spread as the model says, within `horizon` [s].
 
-    AMCL draws noise anew in each update, with a variance in proportion to the square of the update's motion.
+    AMCL draws noise again in each update, with a variance in proportion to the square of the update's motion.
     n updates of length d over the distance D = n d have the variance n alpha d^2 = alpha d D, so that
     alpha = S / (d D).
 

@@ -14,7 +14,7 @@
  *   slipwise_predict_covariance(&commands, &window, &pose, 0, covariance);
  *
  * x forward, y left, counter-clockwise; SI units. Numbers are float; define SLIPWISE_DOUBLE before including this for
- * double. In float keep times small: start them anew when the robot starts.
+ * double. In float keep times small: start them again when the robot starts.
  */
 #ifndef SLIPWISE_MODEL_H
 #define SLIPWISE_MODEL_H

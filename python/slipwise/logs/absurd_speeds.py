@@ -7,16 +7,16 @@ import numpy as np
 
 from slipwise.logs.log import Bools, Floats
 
-USUAL = 20.0  # m/s or rad/s: what is slower is always believed
-FASTEST = 100.0  # m/s or rad/s: what is slower is believed once it comes twice in a row
-LEAP = 10.0  # anything is believed up to this many times the fastest sample before it
+USUAL = 20.0  # m/s or rad/s: what is slower is always accepted
+FASTEST = 100.0  # m/s or rad/s: what is slower is accepted once it comes twice in a row
+LEAP = 10.0  # anything is accepted up to this many times the fastest sample before it
 _TWICE = 2.0  # a sample at most this many times the one before confirms it
 
 
 def absurd_speeds(values: Floats) -> Bools:
     """Say which samples of a stream are absurd.
 
-    A sample is absurd if it is faster than `USUAL`, more than `LEAP` times as fast as all that were believed
+    A sample is absurd if it is faster than `USUAL`, more than `LEAP` times as fast as all that were accepted
     before it, and either faster than `FASTEST` or alone. So a spike of a few times what is usual stays, a
     log that starts at full speed loses its first sample, and no sample is judged by a later one.
 
@@ -28,8 +28,8 @@ def absurd_speeds(values: Floats) -> Bools:
     fast = np.flatnonzero(size > USUAL)
     if len(fast) == 0:
         return absurd
-    slow = np.maximum.accumulate(np.where(size > USUAL, 0.0, size))  # the fastest that is always believed
-    fastest = 0.0  # of the others that were believed
+    slow = np.maximum.accumulate(np.where(size > USUAL, 0.0, size))  # the fastest that is always accepted
+    fastest = 0.0  # of the others that were accepted
     for i in fast.tolist():
         near = size[i] <= max(USUAL, LEAP * max(float(slow[i]), fastest))
         confirmed = i > 0 and size[i] <= min(FASTEST, _TWICE * size[i - 1])

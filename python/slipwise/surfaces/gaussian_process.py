@@ -78,7 +78,7 @@ class GaussianProcessSurface:
         self._examples = used
 
     def update(self, example: SlipExamples) -> None:
-        """Learn from more examples with the kernel kept: the whole matrix is factored anew, O(N^3)."""
+        """Learn from more examples with the kernel kept: the whole matrix is factored again, O(N^3)."""
         if self._examples is None:
             self.fit(example)
             return

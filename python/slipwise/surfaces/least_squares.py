@@ -68,7 +68,7 @@ class LeastSquaresSurface:
         self._notes = tuple(undetermined(self.basis, examples))
 
     def update(self, example: SlipExamples) -> None:
-        """Learn from more examples by fitting all anew, O(N d^2)."""
+        """Learn from more examples by fitting all again, O(N d^2)."""
         self.fit(example if self._examples is None else self._examples.joined(example))
 
     def predict(self, v: ArrayLike, omega: ArrayLike) -> SurfacePrediction:

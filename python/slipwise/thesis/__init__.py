@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The thesis's figures and tables, made again from simulated drives and real logs."""
 
-from slipwise.thesis.bench import FULL, SMALL, Bench, BenchSize, MissingLogError
-from slipwise.thesis.exhibit import Exhibit, exhibit_of_log
+from slipwise.thesis.fixture import FULL, SMALL, Fixture, FixtureSize, MissingLogError
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import (
     Band,
@@ -17,6 +16,7 @@ from slipwise.thesis.panel import (
     paths_line,
 )
 from slipwise.thesis.reproduce import CHAPTERS, Chapter, ChapterResult, reproduce
+from slipwise.thesis.thesis_figure import ThesisFigure, figure_of_log
 from slipwise.thesis.write import write_reproduction
 
 __all__ = [
@@ -25,12 +25,11 @@ __all__ = [
     "SMALL",
     "Band",
     "Bars",
-    "Bench",
-    "BenchSize",
     "Chapter",
     "ChapterResult",
     "ErrorBars",
-    "Exhibit",
+    "Fixture",
+    "FixtureSize",
     "Grid",
     "Heat",
     "Line",
@@ -38,7 +37,8 @@ __all__ = [
     "Panel",
     "Points",
     "Surface",
-    "exhibit_of_log",
+    "ThesisFigure",
+    "figure_of_log",
     "outline",
     "paths_line",
     "reproduce",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 2: related models as rivals, on a ground with the traction law that the thesis cites."""
+"""Chapter 2: related models compared, on a ground with the traction law that the thesis cites."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from slipwise.calibration import Settings
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.number_text import number_text
 from slipwise.simulation import LandTamer, TractionLaw, traction_force
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, RIVAL, Bars, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, Bars, Line, Panel
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 GROUND = "traction-law"
 HORIZONS = (2.0, 5.0)  # [s]
 METHODS = {
-    "none": "wheels believed",
+    "none": "kinematic baseline",
     "icr-3": "centre of rotation (2.3)",
     "slip-ratio-ekf": "slip ratios, EKF (2.5-2.7)",
     "slip-ratio-smo": "slip ratios, observer (2.5-2.7)",
@@ -28,15 +28,15 @@ METHODS = {
 }
 
 
-def chapter2_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
-    """Make the exhibits of the related models."""
+def chapter2_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
+    """Make the figures and tables of the related models."""
     progress("the traction law", 0.0)
     law = traction_law()
-    progress("rivals", 0.05)
-    return [law, rivals(bench)]
+    progress("related models", 0.05)
+    return [law, related_models(fixture)]
 
 
-def traction_law() -> Exhibit:
+def traction_law() -> ThesisFigure:
     """Draw (2.8) and (2.9) as the simulator applies them."""
     law, one = TractionLaw(), np.ones(121)
     sliding = np.linspace(-0.6, 0.6, 121)
@@ -51,7 +51,7 @@ def traction_law() -> Exhibit:
         "forward force / load [1]",
         (
             Line(sliding, pull, "as printed", FITTED),
-            Line(sliding, sideways, "while sliding sideways at 0.2 m/s", RIVAL, "dash"),
+            Line(sliding, sideways, "while sliding sideways at 0.2 m/s", BASELINE, "dash"),
         ),
     )
     resistance = Panel(
@@ -61,7 +61,7 @@ def traction_law() -> Exhibit:
         (Line(sliding, rolling, "", FITTED),),
     )
     left = 100 * float(sideways[-1] / pull[-1])
-    return Exhibit(
+    return ThesisFigure(
         key="equation-2-8",
         thesis="Equations 2.8 and 2.9",
         title="The explicit traction and rolling-resistance law",
@@ -75,11 +75,11 @@ def traction_law() -> Exhibit:
     )
 
 
-def rivals(bench: Bench) -> Exhibit:
+def related_models(fixture: Fixture) -> ThesisFigure:
     """Compare the models of section 2.3 where the ground follows (2.8) and (2.9)."""
     settings = Settings.model_validate({"vehicle": {"track": LandTamer().track}})
     options = EvaluationOptions(HORIZONS, tuple(METHODS))
-    result = evaluate(bench.long_drive(GROUND).log, input="wheel", settings=settings, options=options)
+    result = evaluate(fixture.long_drive(GROUND).log, input="wheel", settings=settings, options=options)
     last = result.horizons[-1]
     names = tuple(METHODS.values())
     panels = [
@@ -97,21 +97,21 @@ def rivals(bench: Bench) -> Exhibit:
     ratio = {method: result.score(method, last).position_ratio[0] for method in METHODS}
     ratios = {method: f"{number_text(ratio[method])} times" for method in METHODS}
     windows = result.score("none", last).windows
-    return Exhibit(
+    return ThesisFigure(
         key="equation-2-3",
         thesis="Equations 2.1 to 2.7",
-        title="Models of related work as rivals",
+        title="Models of related work compared",
         shows=f"Mean errors of predictions over {last:g} s from wheel speeds, made before their own data "
         f"was learned, over the {windows} windows of the drive's second half.",
         agrees=f"The models of section 2.3 can be learned from poses while driving. After {last:g} s the "
-        f"centre of rotation has {ratios['icr-3']} the position error of believing the wheels, slip rates "
+        f"centre of rotation has {ratios['icr-3']} the position error of the kinematic baseline, slip rates "
         f"that are linear in V and ω {ratios['full-linear-6']}, slipwise's default {ratios['auto']}.",
         differs="The thesis cites these models without numbers, (2.6) and (2.7) with errors; they are used "
         f"with their signs corrected. Slip ratios and a slip angle have {ratios['slip-ratio-ekf']} (EKF) "
         f"and {ratios['slip-ratio-smo']} (sliding-mode observer) the error: one ratio per side stands for "
         "the loss of speed and of turning, and a skid-steered robot loses half its turning and none of its "
         "speed.",
-        source=f"simulated Land Tamer on {GROUND} ground, {bench.size.long_time:g} s of circles and random "
+        source=f"simulated Land Tamer on {GROUND} ground, {fixture.size.long_time:g} s of circles and random "
         "driving",
         parts=(*panels, _scores(result)),
     )

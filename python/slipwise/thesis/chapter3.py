@@ -9,9 +9,9 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.panel import FITTED, GREY, RIVAL, Floats, Line, Panel, Points
+from slipwise.thesis.fixture import Fixture
+from slipwise.thesis.panel import BASELINE, FITTED, GREY, Floats, Line, Panel, Points
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 TIME = 5.0  # [s] of the segments of chapter 6
 TWIST = (2.0, 1.0)  # [m/s], [rad/s]: the fastest and tightest of the simulated circles
@@ -20,9 +20,9 @@ CONSTANT_TWIST = 2880.0  # Simpson's rule: relative error f^4 / 2880 of a step t
 SHARES = np.linspace(0.0, 0.6, 25)  # of the commanded turn that is lost
 
 
-def chapter3_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
-    """Make the exhibits of the vehicle model."""
-    del bench  # nothing is simulated
+def chapter3_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
+    """Make the figures and tables of the vehicle model."""
+    del fixture  # nothing is simulated
     progress("integration", 0.0)
     return [integration(), linearisation()]
 
@@ -45,7 +45,7 @@ def _miss(step: float, integrator: _core.Integrator) -> float:
     return float(np.hypot(*(path.poses[-1] - true[-1])[:2]))
 
 
-def integration() -> Exhibit:
+def integration() -> ThesisFigure:
     """Compare the thesis's Runge-Kutta integration (3.9) with the exact step."""
     runge_kutta = np.array([_miss(step, _core.Integrator.Rk4) for step in STEPS])
     exact = np.array([_miss(step, _core.Integrator.Exact) for step in STEPS])
@@ -58,14 +58,14 @@ def integration() -> Exhibit:
         "error of the last position [m]",
         (
             Line(STEPS, theory, "f⁴ / 2880 of the chord", GREY, "dash"),
-            Points(STEPS, runge_kutta, None, "Runge-Kutta of fourth order", RIVAL, "square", 7.0),
+            Points(STEPS, runge_kutta, None, "Runge-Kutta of fourth order", BASELINE, "square", 7.0),
             Points(STEPS, np.maximum(exact, 1e-17), None, "exact step", FITTED, "dot", 7.0),
         ),
         log_x=True,
         log_y=True,
     )
     at_tenth = float(runge_kutta[np.argmin(np.abs(STEPS - 0.1))])
-    return Exhibit(
+    return ThesisFigure(
         key="equation-3-9",
         thesis="Equation 3.9",
         title="Integration of the perturbed motion",
@@ -80,7 +80,7 @@ def integration() -> Exhibit:
     )
 
 
-def linearisation() -> Exhibit:
+def linearisation() -> ThesisFigure:
     """Compare linearised (3.8) with nonlinear (3.9) perturbation dynamics."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     plain = _core.linearize_segment(model, np.zeros(2), _track(TIME), _segment())
@@ -101,11 +101,11 @@ def linearisation() -> Exhibit:
         "position [m]",
         (
             Line(SHARES, size, "how far slip moves the end", FITTED),
-            Line(SHARES, off, "error of the linearised displacement", RIVAL, "dash"),
+            Line(SHARES, off, "error of the linearised displacement", BASELINE, "dash"),
         ),
     )
     small, half = (int(np.argmin(np.abs(SHARES - share))) for share in (0.05, 0.5))
-    return Exhibit(
+    return ThesisFigure(
         key="equation-3-8",
         thesis="Equations 3.4 to 3.11",
         title="Linearised against nonlinear perturbation dynamics",

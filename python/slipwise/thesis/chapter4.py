@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter4_draws import drawn_paths
 from slipwise.thesis.chapter4_fits import fitted_curves
 from slipwise.thesis.chapter4_husky import husky_curves, husky_rates
@@ -15,12 +14,13 @@ from slipwise.thesis.chapter4_recovery import recovered_noise
 from slipwise.thesis.chapter4_scatter import learned_scatter
 from slipwise.thesis.chapter4_setup import commands, vehicle
 from slipwise.thesis.chapter4_weights import compared_weights
-from slipwise.thesis.exhibit import Exhibit, exhibit_of_log
+from slipwise.thesis.fixture import Fixture
+from slipwise.thesis.thesis_figure import ThesisFigure, figure_of_log
 
 
-def chapter4_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
-    """Make the exhibits of the steady state, in the thesis's order."""
-    steps: tuple[tuple[str, Callable[[Bench], list[Exhibit]]], ...] = (
+def chapter4_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
+    """Make the figures and tables of the steady state, in the thesis's order."""
+    steps: tuple[tuple[str, Callable[[Fixture], list[ThesisFigure]]], ...] = (
         ("path segments", lambda b: [collected_paths(b)]),
         ("slip curves", lambda b: [fitted_curves(b)]),
         ("weights", lambda b: [compared_weights(b)]),
@@ -31,22 +31,22 @@ def chapter4_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> l
         ("slip rates", lambda b: [angular_rates(b), translational_rates(b)]),
         ("a real Husky", _husky),
     )
-    exhibits = []
+    figures = []
     for done, (what, make) in enumerate(steps):
         progress(what, done / len(steps))
-        exhibits += make(bench)
-    return exhibits
+        figures += make(fixture)
+    return figures
 
 
-def _husky(bench: Bench) -> list[Exhibit]:
+def _husky(fixture: Fixture) -> list[ThesisFigure]:
     return [
-        exhibit_of_log(
-            "figure-4-2-husky", "Figure 4.2", "Slip curves of a real Husky", lambda: husky_curves(bench)
+        figure_of_log(
+            "figure-4-2-husky", "Figure 4.2", "Slip curves of a real Husky", lambda: husky_curves(fixture)
         ),
-        exhibit_of_log(
+        figure_of_log(
             "figure-4-9-husky",
             "Figures 4.9 and 4.10",
             "Slip rates of a real Husky",
-            lambda: husky_rates(bench),
+            lambda: husky_rates(fixture),
         ),
     ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
 from slipwise.thesis.chapter4_scatter import (
     RULES,
@@ -14,8 +13,8 @@ from slipwise.thesis.chapter4_scatter import (
     learned_noise,
     measured_scatter,
 )
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.panel import FITTED, INK, RIVAL, Floats, Panel, outline, paths_line
+from slipwise.thesis.fixture import Fixture
+from slipwise.thesis.panel import BASELINE, FITTED, INK, Floats, Panel, outline, paths_line
 from slipwise.thesis.steady import (
     DrawnPaths,
     DrawRules,
@@ -25,6 +24,7 @@ from slipwise.thesis.steady import (
     slip_path,
     slipped_twist,
 )
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 COUNT = 100
 KINDS = (
@@ -40,24 +40,24 @@ KINDS = (
 )
 
 
-def drawn_paths(bench: Bench) -> list[Exhibit]:
+def drawn_paths(fixture: Fixture) -> list[ThesisFigure]:
     """Make figures 4.4 to 4.6."""
-    groups = {name: circle_group(bench, ground) for ground, name in GROUNDS.items()}
+    groups = {name: circle_group(fixture, ground) for ground, name in GROUNDS.items()}
     noises = {name: learned_noise(group, RULES[THESIS]) for name, group in groups.items()}
     shares: dict[str, dict[str, Floats]] = {}
     panels: dict[str, list[Panel]] = {}
     for key, _, _, _, rules in KINDS:
         for name, group in groups.items():
-            drawn = _draw(bench, group, noises[name], rules)
+            drawn = _draw(fixture, group, noises[name], rules)
             panels.setdefault(key, []).append(_panel(name, group, drawn))
             share = np.var(drawn.poses[:, -1], axis=0, ddof=1) / np.diag(measured_scatter(group)[-1])
             shares.setdefault(key, {})[name] = share
-    return [_exhibit(bench, kind, tuple(panels[kind[0]]), shares) for kind in KINDS]
+    return [_figure(fixture, kind, tuple(panels[kind[0]]), shares) for kind in KINDS]
 
 
-def _draw(bench: Bench, group: SteadyGroup, learned: LearnedNoise, rules: DrawRules) -> DrawnPaths:
+def _draw(fixture: Fixture, group: SteadyGroup, learned: LearnedNoise, rules: DrawRules) -> DrawnPaths:
     twist = slipped_twist(group, np.array(fit_slip(group).slip))
-    return draw_paths(twist, learned.noise, seed=bench.seed, rules=rules)
+    return draw_paths(twist, learned.noise, seed=fixture.seed, rules=rules)
 
 
 def _panel(name: str, group: SteadyGroup, drawn: DrawnPaths) -> Panel:
@@ -69,7 +69,7 @@ def _panel(name: str, group: SteadyGroup, drawn: DrawnPaths) -> Panel:
         outline(
             curve[-1, :2], measured_scatter(group)[-1][:2, :2], label="measured ends, 1 sigma", colour=INK
         ),
-        outline(ends.mean(axis=0), np.cov(ends.T), label="drawn ends, 1 sigma", colour=RIVAL),
+        outline(ends.mean(axis=0), np.cov(ends.T), label="drawn ends, 1 sigma", colour=BASELINE),
     )
     return Panel(f"{name}: {len(drawn.poses)} drawn", "x, forward [m]", "y, left [m]", lines)
 
@@ -81,12 +81,12 @@ def _text(shares: dict[str, Floats]) -> str:
     )
 
 
-def _exhibit(
-    bench: Bench,
+def _figure(
+    fixture: Fixture,
     kind: tuple[str, str, str, str, DrawRules],
     panels: tuple[Panel, ...],
     shares: dict[str, dict[str, Floats]],
-) -> Exhibit:
+) -> ThesisFigure:
     key, number, title, what, _ = kind
     agrees = {
         "4-4": "New segments look like the measured ones, smoother by the noise of single poses. Their "
@@ -97,7 +97,7 @@ def _exhibit(
         "4-6": "Slip noise alone starts from a point and spreads in all directions, most in the distance "
         f"and the heading. It is {_text(shares['4-6'])} of the measured variances at the end in x / y / θ.",
     }[key]
-    return Exhibit(
+    return ThesisFigure(
         key=f"figure-{key}",
         thesis=f"Figure {number}",
         title=title,
@@ -105,9 +105,9 @@ def _exhibit(
         "1-sigma ellipses of their ends and of the measured ends.",
         agrees=agrees,
         differs="The thesis shows no measured spread beside the drawn one. Here the start's part is the "
-        "known noise of the first pose, to which segments are moved, and the process noise the wandering "
-        "of the drive; on the thesis's gravel the ground is in it too. Slip rates are drawn anew every "
-        "0.05 s and integrated exactly.",
-        source=circle_source(bench),
+        "known noise of the first pose, to which segments are moved, and the process noise is the "
+        "disturbance of the commands; on the thesis's gravel the ground is in it too. Slip rates are drawn "
+        "again every 0.05 s and integrated exactly.",
+        source=circle_source(fixture),
         parts=panels,
     )

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, IDEAL, INK, RIVAL, Panel, paths_line
+from slipwise.thesis.panel import BASELINE, FITTED, IDEAL, INK, Panel, paths_line
 from slipwise.thesis.steady import FitComparison, SteadyGroup, compare_fits
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 NAMES = {
     "no slip": "no slip",
@@ -36,7 +36,7 @@ def fit_panel(title: str, group: SteadyGroup, fits: FitComparison) -> Panel:
         (
             paths_line([path.poses for path in group.paths], label="measured"),
             curve_line(fits.curve("no slip").path, NAMES["no slip"], IDEAL),
-            curve_line(fits.curve("translation").path, NAMES["translation"], RIVAL, "dashdot"),
+            curve_line(fits.curve("translation").path, NAMES["translation"], BASELINE, "dashdot"),
             curve_line(fits.curve("three channels").path, NAMES["three channels"], INK, "solid"),
             curve_line(fits.curve("polynomial").path, NAMES["polynomial"], FITTED),
         ),
@@ -60,11 +60,11 @@ def fit_rows(ground: str, fits: FitComparison) -> list[tuple[str, ...]]:
     ]
 
 
-def fitted_curves(bench: Bench) -> Exhibit:
+def fitted_curves(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.2."""
     panels, rows, sentences = [], [], []
     for ground, name in GROUNDS.items():
-        group = circle_group(bench, ground)
+        group = circle_group(fixture, ground)
         fits = compare_fits(group)
         panels.append(fit_panel(name, group, fits))
         rows += fit_rows(name, fits)
@@ -75,7 +75,7 @@ def fitted_curves(bench: Bench) -> Exhibit:
             f"{number_text(fits.curve('translation').cost / fits.curve('three channels').cost)} times as "
             "high."
         )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-2",
         thesis="Figure 4.2",
         title="Optimised slip curves",
@@ -85,6 +85,6 @@ def fitted_curves(bench: Bench) -> Exhibit:
         differs="The thesis's figure has no numbers; these are the cost (4.1) with the weight L² (L = 1 m, "
         "heading wrapped) and root mean squares. The cost falls so far because the heading is measured "
         "too: side slip can bend the path's ends to the right place, but never turns the robot.",
-        source=circle_source(bench),
+        source=circle_source(fixture),
         parts=(*panels, Grid("Residuals", COLUMNS, tuple(rows))),
     )

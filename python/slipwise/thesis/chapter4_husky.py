@@ -6,13 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter4_fits import COLUMNS, fit_panel, fit_rows
 from slipwise.thesis.chapter4_paths import held_paths
 from slipwise.thesis.chapter4_rates import LABELS, NAMES
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, RIVAL, ErrorBars, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, ErrorBars, Line, Panel
 from slipwise.thesis.steady import (
     GroupRules,
     PathRules,
@@ -24,6 +23,7 @@ from slipwise.thesis.steady import (
     group_paths,
     slip_table,
 )
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 LOG = "husky/tile_deflated_tyres"
 SOURCE = f"{LOG}: a Clearpath Husky with deflated tyres on tile, 200 held commands of 6 s"
@@ -32,23 +32,23 @@ ALIKE = GroupRules(speed=0.1, curvature=0.2, yaw_rate=0.3)  # nearly every comma
 SHOWN = 2  # groups with the most segments that drive and turn
 
 
-def _paths(bench: Bench) -> tuple[SteadyPath, ...]:
-    return held_paths(bench.real_log(LOG), RULES)
+def _paths(fixture: Fixture) -> tuple[SteadyPath, ...]:
+    return held_paths(fixture.real_log(LOG), RULES)
 
 
-def _groups(bench: Bench) -> list[SteadyGroup]:
+def _groups(fixture: Fixture) -> list[SteadyGroup]:
     """Groups of at least three segments that turn."""
-    groups = group_paths(_paths(bench), ALIKE)
+    groups = group_paths(_paths(fixture), ALIKE)
     return [group for group in groups if len(group) >= 3 and abs(group.omega) > 0.2]
 
 
-def husky_curves(bench: Bench) -> Exhibit:
+def husky_curves(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.2 from the real log.
 
     Raises:
         MissingLogError: the log is not there.
     """
-    groups = _groups(bench)
+    groups = _groups(fixture)
     fits = [compare_fits(group) for group in groups]
     driving = sorted(
         (i for i, group in enumerate(groups) if group.curvature is not None),
@@ -63,7 +63,7 @@ def husky_curves(bench: Bench) -> Exhibit:
         for name in ("to_polynomial", "translation_to_polynomial")
     )
     rows = [row for i in driving for row in fit_rows(groups[i].name, fits[i])]
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-2-husky",
         thesis="Figure 4.2",
         title="Slip curves of a real Husky",
@@ -85,13 +85,13 @@ def husky_curves(bench: Bench) -> Exhibit:
     )
 
 
-def husky_rates(bench: Bench) -> Exhibit:
+def husky_rates(fixture: Fixture) -> ThesisFigure:
     """Make figures 4.9 and 4.10 from the real log.
 
     Raises:
         MissingLogError: the log is not there.
     """
-    paths = _paths(bench)
+    paths = _paths(fixture)
     noise = fit_group_noise(group_paths(paths, ALIKE)).noise
     single = [group for path in paths for group in group_paths([path])]
     rows = slip_table(single, SlipFitRules(noise=noise))
@@ -111,9 +111,9 @@ def husky_rates(bench: Bench) -> Exhibit:
         )
         ends = np.array([x.min(), x.max()])
         dots = ErrorBars(x, slip[:, channel], bar[:, channel], "segments", FITTED)
-        line = Line(ends, slope * ends, f"slope {number_text(slope)}", RIVAL, "dash", 2.0)
+        line = Line(ends, slope * ends, f"slope {number_text(slope)}", BASELINE, "dash", 2.0)
         panels.append(Panel(NAMES[channel].capitalize(), label, LABELS[channel], (dots, line)))
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-9-husky",
         thesis="Figures 4.9 and 4.10",
         title="Slip rates of a real Husky",

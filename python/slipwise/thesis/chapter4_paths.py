@@ -7,10 +7,10 @@ import numpy as np
 
 from slipwise.logs import Log
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import CIRCLE, STD_XY, STD_YAW, WANDER, Bench
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import CIRCLE, DISTURBANCE, STD_XY, STD_YAW, Fixture
 from slipwise.thesis.panel import FITTED, IDEAL, Dash, Floats, Line, Panel, paths_line
 from slipwise.thesis.steady import PathRules, SteadyGroup, SteadyPath, compare_fits, cut_paths, group_paths
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 SETTLE = 3.0  # [s] left out after a change of command: nearly four of the drive's time constants
 RULES = PathRules(length=3.0, least_distance=0.0, settle=SETTLE)
@@ -23,20 +23,20 @@ def held_paths(log: Log, rules: PathRules = RULES) -> tuple[SteadyPath, ...]:
     return tuple(path for run, commands in runs for path in cut_paths(run, commands, rules).paths)
 
 
-def circle_group(bench: Bench, ground: str = "tyre-force") -> SteadyGroup:
+def circle_group(fixture: Fixture, ground: str = "tyre-force") -> SteadyGroup:
     """Return the segments of the command of figure 4.1."""
-    (group,) = group_paths(held_paths(bench.one_circle(ground).log))
+    (group,) = group_paths(held_paths(fixture.one_circle(ground).log))
     return group
 
 
-def circle_source(bench: Bench) -> str:
+def circle_source(fixture: Fixture) -> str:
     """Say what `circle_group` is cut from."""
     v, curvature = CIRCLE
     return (
         f"simulated Land Tamer (MuJoCo), {v:g} m/s and {curvature:g} 1/m held for "
-        f"{bench.size.one_circle_time:g} s on each ground; the drive wanders around the command by "
-        f"{WANDER[0]:g} m/s and {WANDER[1]:g} rad/s, anew every 0.05 s; poses at 20 Hz with {STD_XY:g} m "
-        f"and {STD_YAW:g} rad of noise"
+        f"{fixture.size.one_circle_time:g} s on each ground; the command is disturbed by "
+        f"{DISTURBANCE[0]:g} m/s and {DISTURBANCE[1]:g} rad/s, drawn again every 0.05 s; poses at 20 Hz with "
+        f"{STD_XY:g} m and {STD_YAW:g} rad of noise"
     )
 
 
@@ -45,11 +45,11 @@ def curve_line(path: Floats, label: str, colour: str, dash: Dash = "dash") -> Li
     return Line(path[:, 0], path[:, 1], label, colour, dash, 2.4)
 
 
-def collected_paths(bench: Bench) -> Exhibit:
+def collected_paths(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.1."""
     panels, sentences = [], []
     for ground, name in GROUNDS.items():
-        group = circle_group(bench, ground)
+        group = circle_group(fixture, ground)
         fits = compare_fits(group)
         ideal, polynomial = fits.curve("no slip"), fits.curve("polynomial")
         lines = (
@@ -66,7 +66,7 @@ def collected_paths(bench: Bench) -> Exhibit:
             f"{number_text(float(np.hypot(*(ideal.path[-1] - polynomial.path[-1])[:2])))} m from where it "
             f"leads; the polynomial leaves {number_text(polynomial.rms_position)} m rms"
         )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-1",
         thesis="Figure 4.1",
         title="Collected path segments",
@@ -74,9 +74,9 @@ def collected_paths(bench: Bench) -> Exhibit:
         "give; the best polynomial of second order in time.",
         agrees="The segments bundle around a curve that the command misses to the outside: "
         f"{'; '.join(sentences)}. The polynomial fits, and tells nothing of slip.",
-        differs="The grounds are even and the same everywhere, so the bundle is as wide as the wandering "
-        "of the drive and the noise of the first pose make it. The thesis's loose gravel adds its own, and "
-        "its poses were smoothed by an inertial unit, so that its single segments look smoother.",
-        source=circle_source(bench),
+        differs="The grounds are even and the same everywhere, so the bundle is as wide as the disturbance "
+        "of the commands and the noise of the first pose make it. The thesis's loose gravel adds its own, "
+        "and its poses were smoothed by an inertial unit, so that its single segments look smoother.",
+        source=circle_source(fixture),
         parts=tuple(panels),
     )

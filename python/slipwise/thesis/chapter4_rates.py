@@ -9,11 +9,11 @@ import numpy as np
 
 from slipwise.number_text import number_text
 from slipwise.simulation import Simulation
-from slipwise.thesis.bench import CURVATURES, Bench
 from slipwise.thesis.chapter4_paths import GROUNDS, SETTLE, held_paths
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import CURVATURES, Fixture
 from slipwise.thesis.panel import COLOURS, INK, ErrorBars, Floats, Panel, Points, Series
 from slipwise.thesis.steady import SlipRow, find_holds, group_paths, slip_table
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 LABELS = ("forward slip rate [m/s]", "side slip rate [m/s]", "angular slip rate [rad/s]")
 NAMES = ("forward slip", "side slip", "angular slip")
@@ -39,9 +39,9 @@ class Rates:
         )
 
 
-def circle_rates(bench: Bench, ground: str) -> Rates:
+def circle_rates(fixture: Fixture, ground: str) -> Rates:
     """Return the slip rates of all commands with positive curvature, as in the thesis."""
-    simulation = bench.circles(ground)
+    simulation = fixture.circles(ground)
     table = slip_table(group_paths(held_paths(simulation.log)))
     rows = tuple(row for row in table if (row.curvature or 0.0) > 0.0)
     true = _true_slip(simulation)
@@ -72,18 +72,18 @@ def rate_panel(name: str, rates: Rates, channel: int) -> Panel:
     return Panel(f"{name}: {NAMES[channel]}", "commanded speed [m/s]", LABELS[channel], tuple(series))
 
 
-def angular_rates(bench: Bench) -> Exhibit:
+def angular_rates(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.9."""
     panels, linear, shares = [], [], []
     for ground, name in GROUNDS.items():
-        rates = circle_rates(bench, ground)
+        rates = circle_rates(fixture, ground)
         panels.append(rate_panel(name, rates, ANGULAR))
         linear.append(f"{_least_linear(rates, ANGULAR):.3f} on {name}")
         share = np.array([-row.slip[ANGULAR] / row.omega for row in rates.rows])
         shares.append(
             f"{100 * share.min():.0f} to {100 * share.max():.0f} % of the commanded yaw rate on {name}"
         )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-9",
         thesis="Figure 4.9",
         title="Optimised angular slip rates for multiple curvatures",
@@ -93,18 +93,18 @@ def angular_rates(bench: Bench) -> Exhibit:
         f"share of its squares that a line through the origin explains is {' and '.join(linear)}. Angular "
         f"slip is large: {' and '.join(shares)}.",
         differs="Curvatures and speeds are not the thesis's, and the ground is not its gravel, so only the "
-        "shape can be compared. The bars are as wide as the simulated wandering of the drive. That the fit "
+        "shape can be compared. The bars are as wide as the simulated disturbance makes them. That the fit "
         "finds the true mean slip could not be seen in the thesis.",
-        source=_source(bench),
+        source=_source(fixture),
         parts=tuple(panels),
     )
 
 
-def translational_rates(bench: Bench) -> Exhibit:
+def translational_rates(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.10."""
     panels, forward, side, linear, worst = [], [], [], [], np.zeros(2)
     for ground, name in GROUNDS.items():
-        rates = circle_rates(bench, ground)
+        rates = circle_rates(fixture, ground)
         panels += [rate_panel(name, rates, channel) for channel in (0, 1)]
         slip, v = np.array([row.slip for row in rates.rows]), np.array([row.v for row in rates.rows])
         forward.append(f"{100 * np.abs(slip[:, 0] / v).max():.1f} % of the speed on {name}")
@@ -116,7 +116,7 @@ def translational_rates(bench: Bench) -> Exhibit:
         off = np.abs(slip - rates.truth)[:, :2]
         sigma = np.array([row.sigma for row in rates.rows])[:, :2]
         worst = np.maximum(worst, (off.max(), (off / sigma).max()))
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-10",
         thesis="Figure 4.10",
         title="Optimised translational slip rates for multiple curvatures",
@@ -129,7 +129,7 @@ def translational_rates(bench: Bench) -> Exhibit:
         differs="The thesis finds side slip insignificant and close to constant. Here it grows with speed "
         f"times yaw rate, as a centripetal force asks for, to {' and '.join(side)}: this is the term V ω "
         "that the thesis's basis (5.1) lacks. Its speeds were probably too low to see it.",
-        source=_source(bench),
+        source=_source(fixture),
         parts=tuple(panels),
     )
 
@@ -145,8 +145,8 @@ def _least_linear(rates: Rates, channel: int) -> float:
     return min(shares)
 
 
-def _source(bench: Bench) -> str:
+def _source(fixture: Fixture) -> str:
     return (
-        f"simulated Land Tamer (MuJoCo), every command held for {bench.size.circle_time:g} s, the segments "
+        f"simulated Land Tamer (MuJoCo), every command held for {fixture.size.circle_time:g} s, the segments "
         "of figure 4.7 with positive curvature"
     )

@@ -6,12 +6,12 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.drawn_groups import PSD, START, drawn_group
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, RIVAL, ErrorBars, Floats, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, ErrorBars, Floats, Line, Panel
 from slipwise.thesis.steady import NoiseRules, fit_group_noise
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 SEGMENTS = 60
 NAMES = ("q lon", "q lat", "q ang", "P0 x", "P0 y", "P0 θ")
@@ -23,10 +23,10 @@ FITS = {
 }
 
 
-def recovered_noise(bench: Bench) -> Exhibit:
+def recovered_noise(fixture: Fixture) -> ThesisFigure:
     """Compare objectives and centres over groups with known noise."""
-    count = bench.size.drawn_groups
-    groups = [drawn_group(seed=1000 * bench.seed + 500 + seed, count=SEGMENTS) for seed in range(count)]
+    count = fixture.size.drawn_groups
+    groups = [drawn_group(seed=1000 * fixture.seed + 500 + seed, count=SEGMENTS) for seed in range(count)]
     truth = np.concatenate((PSD, START))
     found: dict[tuple[str, str], Floats] = {}
     inside: dict[tuple[str, str], float] = {}
@@ -50,7 +50,7 @@ def recovered_noise(bench: Bench) -> Exhibit:
     series = [
         ErrorBars(at + shift, found[fit].mean(0), found[fit].std(0), label, colour, "square")
         for fit, label, colour, shift in (
-            (("(4.13)", "mean"), "thesis objective (4.13)", RIVAL, -0.12),
+            (("(4.13)", "mean"), "thesis objective (4.13)", BASELINE, -0.12),
             (("Fisher", "mean"), "Fisher scoring", FITTED, 0.12),
         )
     ]
@@ -62,7 +62,7 @@ def recovered_noise(bench: Bench) -> Exhibit:
         (unit, *series),
         x_names=NAMES,
     )
-    return Exhibit(
+    return ThesisFigure(
         key="equation-4-13",
         thesis="Equations 4.9 to 4.13",
         title="Slip noise and P0 recovered",

@@ -9,11 +9,10 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import STD_XY, STD_YAW, WANDER, Bench
 from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import DISTURBANCE, STD_XY, STD_YAW, Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, INK, RIVAL, Floats, Line, Panel, outline, paths_line
+from slipwise.thesis.panel import BASELINE, FITTED, INK, Floats, Line, Panel, outline, paths_line
 from slipwise.thesis.steady import (
     NoiseRules,
     SteadyGroup,
@@ -23,6 +22,7 @@ from slipwise.thesis.steady import (
     slip_path,
     slipped_twist,
 )
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 TIMES = 6  # at which the scatter is looked at
 POSE = (STD_XY, STD_XY, STD_YAW)
@@ -82,17 +82,17 @@ def spread_panel(title: str, group: SteadyGroup, learned: LearnedNoise) -> Panel
     ]
     spread = [np.diag(np.array(learned.noise.start)), *learned.covariances]
     lines += [
-        outline(node[:2], covariance[:2, :2], label="learned, 1 sigma", colour=RIVAL)
+        outline(node[:2], covariance[:2, :2], label="learned, 1 sigma", colour=BASELINE)
         for node, covariance in zip(nodes, spread, strict=True)
     ]
     return Panel(title, "x, forward [m]", "y, left [m]", tuple(lines))
 
 
-def learned_scatter(bench: Bench) -> Exhibit:
+def learned_scatter(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.3."""
     panels, rows, ends = [], [], []
     for ground, name in GROUNDS.items():
-        group = circle_group(bench, ground)
+        group = circle_group(fixture, ground)
         scatter = measured_scatter(group)[-1]
         for rule, rules in RULES.items():
             learned = learned_noise(group, rules)
@@ -104,11 +104,18 @@ def learned_scatter(bench: Bench) -> Exhibit:
             spread = " / ".join(f"{value:.2f}" for value in ratio)
             rows.append((name, rule, *(number_text(1e4 * value, 2) for value in cells), spread))
         gain = 1.0 + float(np.array(fit_slip(group).slip)[2]) / group.omega
-        truth = (0.05 * WANDER[0] ** 2, 0.0, 0.05 * (gain * WANDER[1]) ** 2, STD_XY**2, STD_XY**2, STD_YAW**2)
+        truth = (
+            0.05 * DISTURBANCE[0] ** 2,
+            0.0,
+            0.05 * (gain * DISTURBANCE[1]) ** 2,
+            STD_XY**2,
+            STD_XY**2,
+            STD_YAW**2,
+        )
         rows.append((name, "as simulated", *(number_text(1e4 * value, 2) for value in truth), ""))
     thesis, curve, blind, fisher, coarse = (_range(ends, rule) for rule in RULES)
     channels = ("q forward", "q side", "q angular", "P0 x", "P0 y", "P0 θ")
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-3",
         thesis="Figure 4.3",
         title="Segments with uncertainty learned by the scatter matrix",
@@ -124,15 +131,15 @@ def learned_scatter(bench: Bench) -> Exhibit:
         f"together, gives {fisher} of the variance at the end when it looks at {TIMES} times, and {coarse} "
         "when at two. Where the poses' own noise is not known to it, it takes this for slip noise: "
         f"{blind}. None was simulated to the side.",
-        source=circle_source(bench),
+        source=circle_source(fixture),
         parts=(
             *panels,
             Grid(
                 "Learned noise, in 10⁻⁴ of m²/s, rad²/s, m² and rad²",
                 ("ground", "by", *channels, "variance at the end, learned over measured: x / y / θ"),
                 tuple(rows),
-                note="As simulated: the wandering of the drive, its angular part reduced by the measured "
-                "slip, and the noise of the first pose.",
+                note="As simulated: the disturbance of the commands, its angular part reduced by the "
+                "measured slip, and the noise of the first pose.",
             ),
         ),
     )

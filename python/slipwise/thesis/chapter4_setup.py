@@ -6,25 +6,28 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise.simulation import LandTamer
-from slipwise.thesis.bench import CURVATURES, Bench
 from slipwise.thesis.chapter4_paths import RULES, held_paths
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import CURVATURES, Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, INK, MEASURED, RIVAL, Floats, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, INK, MEASURED, Floats, Line, Panel
 from slipwise.thesis.steady import group_paths
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 
-def commands(bench: Bench) -> Exhibit:
+def commands(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.7."""
-    simulation = bench.circles()
+    simulation = fixture.circles()
     (run,) = simulation.log.runs
-    told = run.commands
-    assert told is not None
+    commanded = run.commands
+    assert commanded is not None
     paths = held_paths(simulation.log)
     groups = group_paths(paths)
-    speed = Panel("Commanded speed", "time [s]", "V [m/s]", (Line(told.t, told.v, "", FITTED),))
+    speed = Panel("Commanded speed", "time [s]", "V [m/s]", (Line(commanded.t, commanded.v, "", FITTED),))
     curvature = Panel(
-        "Commanded curvature", "time [s]", "κ [1/m]", (Line(told.t, told.omega / told.v, "", RIVAL),)
+        "Commanded curvature",
+        "time [s]",
+        "κ [1/m]",
+        (Line(commanded.t, commanded.omega / commanded.v, "", BASELINE),),
     )
     track = Panel(
         "Where the robot went",
@@ -33,15 +36,15 @@ def commands(bench: Bench) -> Exhibit:
         (Line(simulation.truth.x, simulation.truth.y, "", MEASURED, width=0.8),),
         equal_axes=True,
     )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-7",
         thesis="Figure 4.7",
         title="Commands of the experiment",
         shows="Speed and curvature as they were commanded, each pair held, and the path.",
-        agrees=f"Circles at {len(bench.size.circle_speeds)} speeds and {len(CURVATURES)} curvatures, to the "
-        f"left and to the right, on level ground that is the same everywhere: {len(groups)} commands give "
-        f"{len(paths)} segments of {RULES.length:g} s.",
-        differs=f"Each command is held for {bench.size.circle_time:g} s, and the first {RULES.settle:g} s "
+        agrees=f"Circles at {len(fixture.size.circle_speeds)} speeds and {len(CURVATURES)} curvatures, to "
+        f"the left and to the right, on level ground that is the same everywhere: {len(groups)} commands "
+        f"give {len(paths)} segments of {RULES.length:g} s.",
+        differs=f"Each command is held for {fixture.size.circle_time:g} s, and the first {RULES.settle:g} s "
         "are left out until the drive's lag has settled; the thesis drove for longer and does not say what "
         "it left out, nor which its speeds and other curvatures were.",
         source="simulated Land Tamer on tyre-force ground",
@@ -49,7 +52,7 @@ def commands(bench: Bench) -> Exhibit:
     )
 
 
-def vehicle() -> Exhibit:
+def vehicle() -> ThesisFigure:
     """Make figure 4.8 from the simulated vehicle's constants."""
     robot = LandTamer()
     wheels = [_box(place, (2 * robot.wheel_radius, robot.wheel_width)) for place in robot.wheel_places]
@@ -63,7 +66,7 @@ def vehicle() -> Exhibit:
         ("delay of a command", f"{robot.command_delay:g} s"),
         ("time constant of a side's speed", f"{robot.command_lag:g} s"),
     )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-4-8",
         thesis="Figure 4.8",
         title="The vehicle",

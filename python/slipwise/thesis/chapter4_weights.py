@@ -7,11 +7,11 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.drawn_groups import NOISE, SLIP, drawn_group
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.steady import SlipFitRules, SteadyGroup, fit_slip
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 SEGMENTS = 20
 PRINTED_LENGTH = 0.25  # [m] of the row with the weight L instead of L²
@@ -23,10 +23,10 @@ RULES = {
 }
 
 
-def compared_weights(bench: Bench) -> Exhibit:
+def compared_weights(fixture: Fixture) -> ThesisFigure:
     """Compare the weights over groups of segments with known slip."""
-    count = bench.size.drawn_groups
-    groups = [drawn_group(seed=1000 * bench.seed + seed, count=SEGMENTS) for seed in range(count)]
+    count = fixture.size.drawn_groups
+    groups = [drawn_group(seed=1000 * fixture.seed + seed, count=SEGMENTS) for seed in range(count)]
     rows, sizes, shares = [], {}, []
     for name, rules in RULES.items():
         error, sigma = _errors(groups, rules)
@@ -38,7 +38,7 @@ def compared_weights(bench: Bench) -> Exhibit:
         cells = [f"{1000 * a:.2f} ({1000 * b:.2f})" for a, b in zip(size, stated, strict=True)]
         rows.append((name, *cells, f"{100 * inside:.0f} %"))
     plain, weighed = sizes["(4.1) with L², L = 1 m"], sizes["inverse covariance (GLS)"]
-    return Exhibit(
+    return ThesisFigure(
         key="equation-4-1",
         thesis="Equation 4.1",
         title="The weights of the cost",
@@ -49,7 +49,7 @@ def compared_weights(bench: Bench) -> Exhibit:
         "errors lie within two stated standard deviations, and the heading's weight matters little.",
         differs="The thesis prints L where only L² has the unit of a squared distance; at L = 1 m the two "
         "are the same, at 0.25 m they are not. The poses of a segment err together, so the fit's "
-        "uncertainty comes from how whole segments disagree. Weighing by the inverse covariance of a "
+        "uncertainty comes from how whole segments disagree. Weighting by the inverse covariance of a "
         f"segment's poses, the correct alternative, has {number_text(weighed / plain, 2)} times the angular "
         "error of (4.1) with L = 1 m, and states its uncertainty from the model rather than from few "
         "segments.",

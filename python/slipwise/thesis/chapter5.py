@@ -5,24 +5,24 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.chapter5_scores import score_exhibit
-from slipwise.thesis.chapter5_spread import spread_exhibit
-from slipwise.thesis.chapter5_surfaces import REGRESSIONS, other_ground_exhibit, surface_exhibit
-from slipwise.thesis.chapter5_times import times_exhibit
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.chapter5_scores import score_table
+from slipwise.thesis.chapter5_spread import spread_figure
+from slipwise.thesis.chapter5_surfaces import REGRESSIONS, other_ground_figure, surface_figure
+from slipwise.thesis.chapter5_times import times_table
+from slipwise.thesis.fixture import Fixture
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 
-def chapter5_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
-    """Make the exhibits of the slip surfaces."""
-    exhibits = []
+def chapter5_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
+    """Make the figures and tables of the slip surfaces."""
+    figures = []
     for share, regression in zip((0.0, 0.4, 0.45), REGRESSIONS, strict=True):
         progress(f"surfaces by {regression.title}", share)
-        exhibits.append(surface_exhibit(bench, regression))
+        figures.append(surface_figure(fixture, regression))
     progress("contact-friction ground", 0.5)
-    exhibits.append(other_ground_exhibit(bench))
+    figures.append(other_ground_figure(fixture))
     progress("held-out scores", 0.8)
-    exhibits.append(score_exhibit(bench))
-    exhibits.insert(1, spread_exhibit(bench))
+    figures.append(score_table(fixture))
+    figures.insert(1, spread_figure(fixture))
     progress("times", 0.9)
-    return [*exhibits, times_exhibit(bench)]
+    return [*figures, times_table(fixture)]

@@ -10,8 +10,8 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.surfaces import SlipExamples, SlipSurface, SurfacePrediction, slip_examples
-from slipwise.thesis.bench import CURVATURES, Bench, MissingLogError
 from slipwise.thesis.chapter4_paths import held_paths
+from slipwise.thesis.fixture import CURVATURES, Fixture, MissingLogError
 from slipwise.thesis.panel import Floats
 from slipwise.thesis.steady import PathRules, SlipFitRules, SteadyGroup, SteadyPath, fit_slip
 
@@ -35,30 +35,30 @@ class SteadyExamples:
     whole: SlipExamples  # both, in order of time
 
 
-def simulated_examples(bench: Bench, ground: str) -> SteadyExamples:
-    """Return the segments of the bench's circles on one ground."""
-    circles = len(bench.size.circle_speeds) * len(CURVATURES) * 2
-    told = f"{circles} circles of {bench.size.circle_time:g} s"
+def simulated_examples(fixture: Fixture, ground: str) -> SteadyExamples:
+    """Return the segments of the simulated circles on one ground."""
+    circles = len(fixture.size.circle_speeds) * len(CURVATURES) * 2
+    driven = f"{circles} circles of {fixture.size.circle_time:g} s"
     return examples_of(
-        f"simulated Land Tamer on {ground} ground, {told}", held_paths(bench.circles(ground).log)
+        f"simulated Land Tamer on {ground} ground, {driven}", held_paths(fixture.circles(ground).log)
     )
 
 
-def husky_examples(bench: Bench) -> SteadyExamples:
+def husky_examples(fixture: Fixture) -> SteadyExamples:
     """Return the segments of a real Husky's held commands.
 
     Raises:
         MissingLogError: the log is not there.
     """
-    log = bench.real_log(HUSKY_LOG)
+    log = fixture.real_log(HUSKY_LOG)
     return examples_of(f"real Husky, {HUSKY_LOG}, 200 held commands of 6 s", held_paths(log, HUSKY_RULES))
 
 
-def all_examples(bench: Bench) -> list[SteadyExamples]:
+def all_examples(fixture: Fixture) -> list[SteadyExamples]:
     """Return the examples of both grounds and of the Husky, which is left out where its log is missing."""
-    found = [simulated_examples(bench, ground) for ground in ("tyre-force", "contact-friction")]
+    found = [simulated_examples(fixture, ground) for ground in ("tyre-force", "contact-friction")]
     try:
-        return [*found, husky_examples(bench)]
+        return [*found, husky_examples(fixture)]
     except MissingLogError:
         return found
 

@@ -16,11 +16,11 @@ from slipwise.surfaces import (
     SurfaceScore,
     score_surface,
 )
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter5_examples import SteadyExamples, all_examples, fitted
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, INK, MEASURED, RIVAL, Band, Dash, Line, Panel, Points, Series
+from slipwise.thesis.panel import BASELINE, FITTED, INK, MEASURED, Band, Dash, Line, Panel, Points, Series
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 THESIS, ODD_EVEN = _core.named_basis("thesis-15"), _core.named_basis("odd-even-10")
 SURFACES: dict[str, Callable[[], SlipSurface]] = {
@@ -34,7 +34,7 @@ SURFACES: dict[str, Callable[[], SlipSurface]] = {
 GROUNDS = 2  # sources that are simulated; the Husky comes after them
 CUT: tuple[tuple[str, str, Dash], ...] = (
     ("least squares, odd-even-10", FITTED, "solid"),
-    ("Gaussian process", RIVAL, "solid"),
+    ("Gaussian process", BASELINE, "solid"),
     ("Bayesian, odd-even-10", MEASURED, "dash"),
 )
 COLUMNS = (
@@ -46,14 +46,14 @@ COLUMNS = (
 )
 
 
-def score_exhibit(bench: Bench) -> Exhibit:
+def score_table(fixture: Fixture) -> ThesisFigure:
     """Make the table of held-out scores."""
-    sources = all_examples(bench)
+    sources = all_examples(fixture)
     scores = [
         {name: score_surface(fitted(make, s.learned), s.held_out) for name, make in SURFACES.items()}
         for s in sources
     ]
-    return Exhibit(
+    return ThesisFigure(
         key="table-5-scores",
         thesis="Not in the thesis",
         title="The three regressions on commands that they have not learned",
@@ -72,8 +72,8 @@ def score_exhibit(bench: Bench) -> Exhibit:
 
 def _grid(source: SteadyExamples, scores: dict[str, SurfaceScore]) -> Grid:
     rows = [_row(name, score) for name, score in scores.items()]
-    plain = 1e3 * np.abs(source.held_out.slip).mean(axis=0)
-    rows.insert(0, ("no slip", f"{plain[0]:.1f}, {plain[1]:.1f}", f"{plain[2]:.1f}", "–", "–"))
+    baseline = 1e3 * np.abs(source.held_out.slip).mean(axis=0)
+    rows.insert(0, ("no slip", f"{baseline[0]:.1f}, {baseline[1]:.1f}", f"{baseline[2]:.1f}", "–", "–"))
     note = f"{len(source.learned)} segments learned, {len(source.held_out)} held out."
     return Grid(source.source, COLUMNS, tuple(rows), note)
 
@@ -81,12 +81,12 @@ def _grid(source: SteadyExamples, scores: dict[str, SurfaceScore]) -> Grid:
 def _row(name: str, score: SurfaceScore) -> tuple[str, ...]:
     error = 1e3 * score.error
     inside = 100.0 * score.coverage.mean(axis=1)
-    told = ", ".join(f"{value:.2f}" if np.isfinite(value) else "–" for value in score.log_score)
+    log_scores = ", ".join(f"{value:.2f}" if np.isfinite(value) else "–" for value in score.log_score)
     return (
         name,
         f"{error[0]:.1f}, {error[1]:.1f}",
         f"{error[2]:.1f}",
-        told,
+        log_scores,
         ", ".join(f"{value:.0f}" for value in inside),
     )
 
@@ -96,11 +96,11 @@ def _agrees(sources: list[SteadyExamples], scores: list[dict[str, SurfaceScore]]
     names = ("least squares, odd-even-10", "Gaussian process", "Bayesian, odd-even-10")
     said = []
     for source, score in zip(sources, scores, strict=True):
-        plain = float(np.abs(source.held_out.slip).mean(axis=0)[2])
+        baseline = float(np.abs(source.held_out.slip).mean(axis=0)[2])
         least, process, bayesian = (float(score[name].error[2]) for name in names)
         said.append(
             f"{1e3 * least:.1f}, {1e3 * process:.1f} and {1e3 * bayesian:.1f} mrad/s where no slip misses by "
-            f"{1e3 * plain:.0f} ({source.source.split(',')[0]})"
+            f"{1e3 * baseline:.0f} ({source.source.split(',')[0]})"
         )
     return f"All three give similar results: held-out angular errors of {'; '.join(said)}."
 

@@ -7,18 +7,18 @@ import numpy as np
 
 from slipwise.number_text import number_text
 from slipwise.surfaces import LeastSquaresSurface, SlipExamples
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter5_examples import CHANNELS, UNITS, all_examples
 from slipwise.thesis.chapter5_surfaces import TERMS
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.panel import FITTED, MEASURED, RIVAL, Line, Panel, Points
+from slipwise.thesis.fixture import Fixture
+from slipwise.thesis.panel import BASELINE, FITTED, MEASURED, Line, Panel, Points
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 CURVATURE = 0.25  # [1/m] at which both are drawn
 
 
-def spread_exhibit(bench: Bench) -> Exhibit:
+def spread_figure(fixture: Fixture) -> ThesisFigure:
     """Compare both forms of the standard deviation."""
-    sources = all_examples(bench)
+    sources = all_examples(fixture)
     examples = sources[0].whole
     forms = _forms(examples)
     at = {name: form.predict(examples.v, examples.omega).std.mean(axis=0) for name, form in forms.items()}
@@ -26,7 +26,7 @@ def spread_exhibit(bench: Bench) -> Exhibit:
     negative = ", ".join(
         f"{100.0 * _negative(source.whole):.0f} % ({source.source.split(',')[0]})" for source in sources
     )
-    return Exhibit(
+    return ThesisFigure(
         key="equation-5-6",
         thesis="Equations 5.6 to 5.8",
         title="Two surfaces of standard deviations",
@@ -68,7 +68,7 @@ def _panel(forms: dict[str, LeastSquaresSurface], examples: SlipExamples, channe
             colour,
             "solid" if colour == FITTED else "dash",
         )
-        for (name, form), colour in zip(forms.items(), (FITTED, RIVAL), strict=True)
+        for (name, form), colour in zip(forms.items(), (FITTED, BASELINE), strict=True)
     ]
     left = examples.slip - forms["log-variance"].predict(examples.v, examples.omega).mean
     near = np.abs(np.abs(examples.omega / examples.v) - CURVATURE) < 0.05

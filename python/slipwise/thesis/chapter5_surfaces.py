@@ -19,7 +19,6 @@ from slipwise.surfaces import (
     SlipSurface,
     SurfacePrediction,
 )
-from slipwise.thesis.bench import Bench, MissingLogError
 from slipwise.thesis.chapter5_examples import (
     CHANNELS,
     NODES,
@@ -29,8 +28,9 @@ from slipwise.thesis.chapter5_examples import (
     over_curvature,
     simulated_examples,
 )
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture, MissingLogError
 from slipwise.thesis.panel import INK, Floats, Panel, Points, Surface
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 TERMS = _core.named_basis("thesis-15")  # those of (5.1)
 STILL_TERMS = _core.named_basis("odd-even-10")  # where the robot also turns in place
@@ -41,7 +41,7 @@ class Regression:
     """One way to learn surfaces."""
 
     key: str
-    figure: str
+    thesis: str
     title: str
     make: Callable[[_core.Basis], SlipSurface]
 
@@ -52,23 +52,23 @@ BAYESIAN = Regression("figure-5-3", "Figure 5.3", "Bayesian linear regression", 
 REGRESSIONS = (LEAST_SQUARES, PROCESS, BAYESIAN)
 
 
-def surface_exhibit(bench: Bench, regression: Regression) -> Exhibit:
+def surface_figure(fixture: Fixture, regression: Regression) -> ThesisFigure:
     """Make figure 5.1, 5.2 or 5.3."""
-    examples = simulated_examples(bench, "tyre-force")
+    examples = simulated_examples(fixture, "tyre-force")
     surface = fitted(lambda: regression.make(TERMS), examples.whole)
     parts = [curvature_panel(surface, examples.whole, channel, name) for channel, name in enumerate(CHANNELS)]
     sources = [examples]
     try:
-        sources.append(husky_examples(bench))
+        sources.append(husky_examples(fixture))
     except MissingLogError as error:
         missing = f"; {error}"
     else:
         real, missing = fitted(lambda: regression.make(STILL_TERMS), sources[1].whole), ""
         parts.append(yaw_rate_panel(real, sources[1].whole, 2, "angular, real Husky"))
     at = surface.predict(examples.whole.v, examples.whole.omega)
-    return Exhibit(
+    return ThesisFigure(
         key=regression.key,
-        thesis=regression.figure,
+        thesis=regression.thesis,
         title=f"Slip surfaces by {regression.title}",
         shows="Each dot is the slip rate of one segment of 3 s; the coloured surface is the mean, the grey "
         "sheets lie one standard deviation of a segment away.",
@@ -79,14 +79,14 @@ def surface_exhibit(bench: Bench, regression: Regression) -> Exhibit:
     )
 
 
-def other_ground_exhibit(bench: Bench) -> Exhibit:
+def other_ground_figure(fixture: Fixture) -> ThesisFigure:
     """Draw the angular slip rate by all three on the ground that nobody here wrote."""
-    examples = simulated_examples(bench, "contact-friction")
+    examples = simulated_examples(fixture, "contact-friction")
     surfaces = [fitted(partial(regression.make, TERMS), examples.whole) for regression in REGRESSIONS]
     means = [surface.predict(examples.whole.v, examples.whole.omega).mean[:, 2] for surface in surfaces]
     _, process, bayesian = (np.sqrt(np.mean(np.square(mean - means[0]))) for mean in means)
     size = np.sqrt(np.mean(np.square(examples.whole.slip[:, 2])))
-    return Exhibit(
+    return ThesisFigure(
         key="figure-5-contact",
         thesis="Figures 5.1 to 5.3",
         title="Angular slip surfaces on contact-friction ground",
@@ -163,7 +163,7 @@ def _agrees(regression: Regression, examples: SlipExamples, prediction: SurfaceP
 def _differs(regression: Regression) -> str:
     if regression is LEAST_SQUARES:
         return (
-            "Standard deviations come from the logarithm of squared residuals; the next exhibit has the form "
+            "Standard deviations come from the logarithm of squared residuals; the next figure has the form "
             "(5.6) beside them. The Husky's surface has the terms of odd-even-10 over the yaw rate, since "
             "a turn in place has no curvature."
         )

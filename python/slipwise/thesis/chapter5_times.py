@@ -20,10 +20,10 @@ from slipwise.surfaces import (
     UpdatableSurface,
     slip_examples,
 )
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, MEASURED, RIVAL, Line, Panel, Points, Series
+from slipwise.thesis.panel import BASELINE, FITTED, MEASURED, Line, Panel, Points, Series
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 BASIS = _core.named_basis("odd-even-10")
 SIZES = (100, 1_000, 10_000)
@@ -44,21 +44,21 @@ class Cost:
     measured: bool = True  # False: from a smaller one by N^3
 
 
-def times_exhibit(bench: Bench) -> Exhibit:
+def times_table(fixture: Fixture) -> ThesisFigure:
     """Make the table of times."""
-    costs = {name: [cost(name, count, bench) for count in SIZES] for name in KINDS}
+    costs = {name: [cost(name, count, fixture) for count in SIZES] for name in KINDS}
     process, bayesian = costs["Gaussian process"][-1], costs["Bayesian"]
-    largest = bench.size.largest_process
+    largest = fixture.size.largest_process
     growth = costs["Gaussian process"][1].add / max(costs["Gaussian process"][0].add, 1e-9)
-    return Exhibit(
+    return ThesisFigure(
         key="table-5-times",
         thesis="Section 5.3.1",
         title="Time to fit, and to add one example",
         shows="Processor time, least squares and Bayesian regression with the ten terms of odd-even-10, for "
         "three channels together.",
-        agrees="To add one example, the Gaussian process factors its matrix anew: from 100 to 1 000 examples "
-        f"that takes {growth:.0f} times as long (1 000 times is the limit of O(N³)). Bayesian regression "
-        f"takes {number_text(1e3 * bayesian[0].add, 2)} ms at 100 and "
+        agrees="To add one example, the Gaussian process factors its matrix again: from 100 to 1 000 "
+        f"examples that takes {growth:.0f} times as long (1 000 times is the limit of O(N³)). Bayesian "
+        f"regression takes {number_text(1e3 * bayesian[0].add, 2)} ms at 100 and "
         f"{number_text(1e3 * bayesian[-1].add, 2)} ms at 10 000 examples, where the Gaussian process takes "
         f"about {number_text(process.add, 2)} s.",
         differs="The thesis gives least squares O(N³) too; its cost is O(N d²), as measured. Adding to the "
@@ -69,14 +69,14 @@ def times_exhibit(bench: Bench) -> Exhibit:
     )
 
 
-def cost(name: str, count: int, bench: Bench) -> Cost:
+def cost(name: str, count: int, fixture: Fixture) -> Cost:
     """Measure one surface at one size, or conclude from a smaller one."""
-    largest = bench.size.largest_process
+    largest = fixture.size.largest_process
     if name == "Gaussian process" and count > largest:
-        small = _measured(name, largest, bench.seed)
+        small = _measured(name, largest, fixture.seed)
         factor = (count / largest) ** 3
         return Cost(count, factor * small.add, factor * small.add, measured=False)
-    return _measured(name, count, bench.seed)
+    return _measured(name, count, fixture.seed)
 
 
 def _measured(name: str, count: int, seed: int) -> Cost:
@@ -120,7 +120,7 @@ def _time_text(seconds: float, *, measured: bool) -> str:
 
 def _panel(costs: dict[str, list[Cost]]) -> Panel:
     series: list[Series] = []
-    for (name, row), colour in zip(costs.items(), (FITTED, RIVAL, MEASURED), strict=True):
+    for (name, row), colour in zip(costs.items(), (FITTED, BASELINE, MEASURED), strict=True):
         size = np.array([float(c.examples) for c in row])
         add = np.array([1e3 * max(c.add, 1e-6) for c in row])
         series += [Line(size, add, name, colour), Points(size, add, colour=colour)]

@@ -9,18 +9,18 @@ import numpy as np
 
 from slipwise.logs import Inputs, Log
 from slipwise.simulation import Scenario, simulate
-from slipwise.thesis.bench import CURVATURES, SPEEDS, Bench
+from slipwise.thesis.fixture import CURVATURES, SPEEDS, Fixture
 
 RATE = 20.0  # [Hz] of the commands
 
 
-def circling(bench: Bench, ground: str) -> Log:
-    """Drive all circles of the bench in random order, each as long as the others."""
+def circling(fixture: Fixture, ground: str) -> Log:
+    """Drive all circles in random order, each as long as the others."""
     held = [(v, side * kappa * v) for v, kappa, side in itertools.product(SPEEDS, CURVATURES, (1, -1))]
-    order = np.random.Generator(np.random.PCG64([bench.seed, 6])).permutation(len(held))
-    t = np.arange(round(bench.size.long_time * RATE)) / RATE
-    place = np.minimum((t * len(held) / bench.size.long_time).astype(np.int64), len(held) - 1)
+    order = np.random.Generator(np.random.PCG64([fixture.seed, 6])).permutation(len(held))
+    t = np.arange(round(fixture.size.long_time * RATE)) / RATE
+    place = np.minimum((t * len(held) / fixture.size.long_time).astype(np.int64), len(held) - 1)
     v, omega = np.array(held)[order[place]].T
     commands = Inputs(t=t, v=v.copy(), vy=np.zeros_like(t), omega=omega.copy())
-    scenario = Scenario(duration=bench.size.long_time, commands=commands, ground=ground)
-    return simulate(scenario, seed=bench.seed).log
+    scenario = Scenario(duration=fixture.size.long_time, commands=commands, ground=ground)
+    return simulate(scenario, seed=fixture.seed).log

@@ -10,8 +10,8 @@ from slipwise import _core
 from slipwise.calibration.predictions import residual
 from slipwise.number_text import number_text
 from slipwise.thesis.chapter6_recording import Recording
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.panel import FITTED, RIVAL, Floats, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, Floats, Line, Panel
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 WORST = 100  # one of so many segments counts as worst
 EVERY = 10  # one of so many updates is drawn: two a second
@@ -19,23 +19,23 @@ CHANNELS = (("x", "forward"), ("y", "sideways"), ("ω", "angular"))  # names of 
 TERMS = ("κ", "V", "κV", "κ²", "V²")
 
 
-def residual_exhibit(descent: Recording, source: str) -> Exhibit:
+def residual_figure(descent: Recording, source: str) -> ThesisFigure:
     """Make figure 6.3."""
-    plain, learned = without_slip(descent), descent.innovation
-    ratio = _size(plain) / _size(learned)
+    baseline, learned = without_slip(descent), descent.innovation
+    ratio = _size(baseline) / _size(learned)
     worst = np.argsort(np.hypot(*learned[:, :2].T))[-(len(learned) // WORST) :]
     early = 100.0 * float(np.mean(descent.fed.end[worst] < descent.t[0] + 60.0))
     changed = _changed(descent)
     t = descent.t[1:]
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-3",
         thesis="Figure 6.3",
         title="Relative pose residuals with gradient descent, and without slip",
         shows="Residual of every overlapping path segment of 5 s at the moment of its update, from nothing "
         "on; below it without predicted slip.",
-        agrees=f"Residuals are minimal with a few exceptions: {_told(learned)} on average where no slip "
-        f"leaves {_told(plain)} ({number_text(ratio[0], 2)} and {number_text(ratio[1], 2)} times as much). "
-        f"Of the worst hundredth of segments, {early:.0f} % lie in the first minute.",
+        agrees=f"Residuals are minimal with a few exceptions: {_size_text(learned)} on average where no slip "
+        f"leaves {_size_text(baseline)} ({number_text(ratio[0], 2)} and {number_text(ratio[1], 2)} times as "
+        f"much). Of the worst hundredth of segments, {early:.0f} % lie in the first minute.",
         differs="These are in-sample residuals: the parameters have seen all but the last 0.05 s of the "
         "segment. Table 6.2 has honest predictions beside them. The thesis's largest errors come with drops "
         "of the commanded speed, which reaches the wheels late. The inputs here are wheel speeds, and yet "
@@ -44,14 +44,14 @@ def residual_exhibit(descent: Recording, source: str) -> Exhibit:
         source=source,
         parts=(
             *_residual_panels(t, learned, "gradient descent"),
-            *_residual_panels(t, plain, "without slip"),
+            *_residual_panels(t, baseline, "without slip"),
         ),
     )
 
 
-def descent_exhibit(descent: Recording, source: str) -> Exhibit:
+def descent_figure(descent: Recording, source: str) -> ThesisFigure:
     """Make figure 6.4."""
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-4",
         thesis="Figure 6.4",
         title="Parameter convergence during gradient descent",
@@ -66,7 +66,7 @@ def descent_exhibit(descent: Recording, source: str) -> Exhibit:
     )
 
 
-def filter_exhibit(filtered: Recording, descent: Recording, source: str) -> Exhibit:
+def filter_figure(filtered: Recording, descent: Recording, source: str) -> ThesisFigure:
     """Make figure 6.5."""
     ratio = _size(descent.innovation) / _size(filtered.innovation)
     prior = filtered.prior_std[-1]
@@ -75,15 +75,15 @@ def filter_exhibit(filtered: Recording, descent: Recording, source: str) -> Exhi
         / np.linalg.norm(filtered.mean[-1] / prior)
     )
     more = "less" if ratio[0] > 1.0 else "more"
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-5",
         thesis="Figure 6.5",
         title="Extended Kalman filter: parameters and residuals",
         shows="The same drive learned by the filter of Table 6.1 as written, with its Jacobian (6.7).",
         agrees="The parameters converge to other values than those of gradient descent: their difference is "
         f"{100.0 * apart:.0f} % as long as the filter's own, in units of the priors. {_settling(filtered)}",
-        differs=f"Its residuals are {_told(filtered.innovation)}, {more} than those of gradient descent "
-        f"({_told(descent.innovation)}): Table 6.2 shows which predicts better. The thesis takes "
+        differs=f"Its residuals are {_size_text(filtered.innovation)}, {more} than those of gradient descent "
+        f"({_size_text(descent.innovation)}): Table 6.2 shows which predicts better. The thesis takes "
         "the different values for local minima; the terms of (6.10) do not hold this ground's slip, so each "
         "estimator settles on what fits the segments as it weighs them.",
         source=source,
@@ -110,12 +110,12 @@ def parameter_panels(recording: Recording) -> tuple[Panel, ...]:
 
 def without_slip(recording: Recording) -> Floats:
     """Residuals [K, 3] of the same segments, predicted without slip."""
-    plain = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
+    baseline = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
     fed = recording.fed
     predicted = np.array(
         [
             _core.integrate_segment(
-                plain, np.zeros(0), fed.track(i), fed.segments[i], _core.Integrator.Exact
+                baseline, np.zeros(0), fed.track(i), fed.segments[i], _core.Integrator.Exact
             ).poses[-1]
             for i in range(len(fed))
         ]
@@ -128,7 +128,7 @@ def _size(innovation: Floats) -> Floats:
     return np.array([np.hypot(*innovation[:, :2].T).mean(), np.abs(innovation[:, 2]).mean()])
 
 
-def _told(innovation: Floats) -> str:
+def _size_text(innovation: Floats) -> str:
     position, heading = _size(innovation)
     return f"{number_text(position)} m and {number_text(heading)} rad"
 
@@ -136,7 +136,7 @@ def _told(innovation: Floats) -> str:
 def _residual_panels(t: Floats, left: Floats, name: str) -> tuple[Panel, Panel]:
     t, left = t[::EVERY], left[::EVERY]
     position = Line(t, np.hypot(left[:, 0], left[:, 1]), colour=FITTED, width=1.0)
-    heading = Line(t, np.abs(left[:, 2]), colour=RIVAL, width=1.0)
+    heading = Line(t, np.abs(left[:, 2]), colour=BASELINE, width=1.0)
     return (
         Panel(f"position, {name}", "time [s]", "residual [m]", (position,)),
         Panel(f"heading, {name}", "time [s]", "residual [rad]", (heading,)),

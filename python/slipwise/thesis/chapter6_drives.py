@@ -12,10 +12,10 @@ from slipwise.logs import Inputs
 from slipwise.number_text import number_text
 from slipwise.simulation import Perturbation, Scenario, Truth, simulate
 from slipwise.surfaces import BayesianSurface, LeastSquaresSurface
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter5_examples import fitted, simulated_examples
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.panel import FITTED, IDEAL, INK, MEASURED, Dash, Floats, Line, Panel, paths_line
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 BASIS = _core.named_basis("odd-even-10")
 HELD = (
@@ -38,9 +38,9 @@ NAMES = ("forward [m/s]", "sideways [m/s]", "angular [rad/s]")
 class SimplePath:
     """The simple path of figure 6.1, driven four ways."""
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, fixture: Fixture) -> None:
         """Fit the surfaces and drive."""
-        examples = simulated_examples(bench, GROUND)
+        examples = simulated_examples(fixture, GROUND)
         self.source = examples.source
         surface = fitted(lambda: LeastSquaresSurface(BASIS), examples.whole)
         none = fitted(lambda: BayesianSurface(_core.Basis("none", [], [], [])), examples.whole)
@@ -50,12 +50,12 @@ class SimplePath:
         drawn = replace(plain, perturbation=Perturbation(surface))
         self.ideal = simulate(replace(plain, perturbation=Perturbation(none, spread=0.0)), seed=0).truth
         self.mean = simulate(replace(plain, perturbation=Perturbation(surface, spread=0.0)), seed=0).truth
-        self.draws = [simulate(drawn, seed=bench.seed + place).truth for place in range(DRAWS)]
-        self.physics = simulate(plain, seed=bench.seed).truth
+        self.draws = [simulate(drawn, seed=fixture.seed + place).truth for place in range(DRAWS)]
+        self.physics = simulate(plain, seed=fixture.seed).truth
         self.driven = dict(zip(LOOKS, (self.draws[0], self.physics, self.mean), strict=True))
 
 
-def path_exhibit(path: SimplePath) -> Exhibit:
+def path_figure(path: SimplePath) -> ThesisFigure:
     """Make figure 6.1."""
     physics, mean, ideal = (_places(truth) for truth in (path.physics, path.mean, path.ideal))
     ends = np.array([_places(truth)[-1] for truth in path.draws])
@@ -69,7 +69,7 @@ def path_exhibit(path: SimplePath) -> Exhibit:
         Line(mean[:, 0], mean[:, 1], "mean surfaces", INK, "dot", 2.2),
         Line(physics[:, 0], physics[:, 1], "rigid-body physics", MEASURED, width=2.2),
     )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-1",
         thesis="Figure 6.1",
         title="Simulated path beside the ideal one",
@@ -86,14 +86,14 @@ def path_exhibit(path: SimplePath) -> Exhibit:
     )
 
 
-def perturbation_exhibit(path: SimplePath) -> Exhibit:
+def perturbation_figure(path: SimplePath) -> ThesisFigure:
     """Make figure 6.2."""
-    told = _told(path.commands, path.physics.t)
-    slips = {name: _slip(truth, told) for name, truth in path.driven.items()}
+    commanded = _commanded(path.commands, path.physics.t)
+    slips = {name: _slip(truth, commanded) for name, truth in path.driven.items()}
     settled = _settled(path.physics.t)
     away = np.sqrt(np.mean(np.square(slips["rigid-body physics"] - slips["mean surfaces"])[settled], axis=0))
     size = np.sqrt(np.mean(np.square(slips["mean surfaces"])[settled], axis=0))
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-2",
         thesis="Figure 6.2",
         title="Commands and perturbations",
@@ -107,12 +107,12 @@ def perturbation_exhibit(path: SimplePath) -> Exhibit:
         "deviation, so it does not depend on the sampling time (the thesis states none). In physics the "
         "transients of the drive show as large slip for two seconds.",
         source=path.source,
-        parts=(_command_panel(path.physics.t, told), *_slip_panels(path.physics.t, slips)),
+        parts=(_command_panel(path.physics.t, commanded), *_slip_panels(path.physics.t, slips)),
     )
 
 
-def _command_panel(times: Floats, told: Floats) -> Panel:
-    v, omega = told[:, 0], told[:, 2]
+def _command_panel(times: Floats, commanded: Floats) -> Panel:
+    v, omega = commanded[:, 0], commanded[:, 2]
     lines = (Line(times, v, "V"), Line(times, omega / v, "κ"))
     return Panel("commands", "time [s]", "V [m/s], κ [1/m]", lines)
 
@@ -137,7 +137,7 @@ def _commands() -> Inputs:
     return Inputs(t=np.arange(len(v)) / 20.0, v=v, vy=np.zeros_like(v), omega=omega)
 
 
-def _told(commands: Inputs, times: Floats) -> Floats:
+def _commanded(commands: Inputs, times: Floats) -> Floats:
     """Commanded twists at the times, [N, 3]."""
     at = np.searchsorted(commands.t, times + 1e-9, side="right") - 1
     return np.column_stack((commands.v, commands.vy, commands.omega))[at]
@@ -153,8 +153,8 @@ def _places(truth: Truth) -> Floats:
     return np.column_stack((truth.x, truth.y))
 
 
-def _slip(truth: Truth, told: Floats) -> Floats:
-    return np.column_stack((truth.vx, truth.vy, truth.omega)) - told
+def _slip(truth: Truth, commanded: Floats) -> Floats:
+    return np.column_stack((truth.vx, truth.vy, truth.omega)) - commanded
 
 
 def _away(a: Floats, b: Floats) -> str:

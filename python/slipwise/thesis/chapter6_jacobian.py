@@ -20,14 +20,14 @@ from slipwise.thesis.chapter6_recording import (
     record,
 )
 from slipwise.thesis.chapter6_table import Errors, mean_and_std
-from slipwise.thesis.exhibit import Exhibit
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, RIVAL, Floats, Line, Panel, Points
+from slipwise.thesis.panel import BASELINE, FITTED, Floats, Line, Panel, Points
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 LENGTHS = (0.5, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0)  # s
 
 
-def jacobian_exhibit(filtered: Recording, log: Log, source: str) -> Exhibit:
+def jacobian_figure(filtered: Recording, log: Log, source: str) -> ThesisFigure:
     """Compare both Jacobians, alone and in the thesis's filter, whose recording with (6.7) is given."""
     courses = {"(6.7)": filtered, "exact": record(log, replace(filtered.course, jacobian=EXACT))}
     wrong = np.array([shares_wrong(log, length) for length in LENGTHS])
@@ -35,10 +35,10 @@ def jacobian_exhibit(filtered: Recording, log: Log, source: str) -> Exhibit:
     series = (
         Line(np.array(LENGTHS), 100.0 * wrong[:, 0], "mean of segments", FITTED),
         Points(np.array(LENGTHS), 100.0 * wrong[:, 0], colour=FITTED),
-        Line(np.array(LENGTHS), 100.0 * wrong[:, 1], "worst segment", RIVAL, "dash"),
-        Points(np.array(LENGTHS), 100.0 * wrong[:, 1], colour=RIVAL),
+        Line(np.array(LENGTHS), 100.0 * wrong[:, 1], "worst segment", BASELINE, "dash"),
+        Points(np.array(LENGTHS), 100.0 * wrong[:, 1], colour=BASELINE),
     )
-    return Exhibit(
+    return ThesisFigure(
         key="equation-6-7",
         thesis="Equation 6.7",
         title="The Jacobian of the thesis and the exact one",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An on-line estimator's whole course over a drive: what it believed and how it missed at every update."""
+"""An on-line estimator's whole course over a drive: its posterior and its error at every update."""
 
 from __future__ import annotations
 

@@ -11,8 +11,8 @@ import numpy as np
 from slipwise import _core
 from slipwise.number_text import number_text
 from slipwise.simulation import thesis_drive
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.panel import FITTED, INK, RIVAL, Band, Floats, Line, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, INK, Band, Floats, Line, Panel
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 BASIS = _core.named_basis("edd-2")
 TRUTH = (-0.06, -0.35)  # mean of the two parameters [1], forward and angular
@@ -26,7 +26,7 @@ NAMES = ("forward slip per V [1]", "angular slip per ω [1]")
 
 @dataclass(frozen=True, eq=False)
 class Drifting:
-    """A drive over ground that changes, in W windows, and what was believed of its P parameters."""
+    """A drive over ground that changes, in W windows, and the posterior of its P parameters."""
 
     t: Floats  # [W] s, middle of the windows
     truth: Floats  # [W, P]
@@ -34,7 +34,7 @@ class Drifting:
     smoothed: tuple[Floats, Floats]  # given all
 
 
-def smoothing_exhibit(seed: int, duration: float) -> Exhibit:
+def smoothing_figure(seed: int, duration: float) -> ThesisFigure:
     """Compare the filter and the Rauch-Tung-Striebel smoother."""
     found = drifting_drive(seed, duration)
     errors = [
@@ -44,7 +44,7 @@ def smoothing_exhibit(seed: int, duration: float) -> Exhibit:
     inside = [
         100.0 * np.mean(np.abs(mean - found.truth) <= std) for mean, std in (found.filtered, found.smoothed)
     ]
-    return Exhibit(
+    return ThesisFigure(
         key="smoothing",
         thesis="Beside Figure 6.4",
         title="Parameters that change slowly: filtered and smoothed",
@@ -126,7 +126,7 @@ def _columns(estimates: list[_core.Estimate]) -> tuple[Floats, Floats]:
 def _panel(found: Drifting, parameter: int) -> Panel:
     series: list[Band | Line] = []
     for name, colour, (mean, std) in (
-        ("filter", RIVAL, found.filtered),
+        ("filter", BASELINE, found.filtered),
         ("smoother", FITTED, found.smoothed),
     ):
         m, s = mean[:, parameter], std[:, parameter]

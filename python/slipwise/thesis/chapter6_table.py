@@ -12,11 +12,11 @@ from slipwise.calibration.statistics import held_out_half, ratio_of_means
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
 from slipwise.thesis.chapter6_recording import EXACT, HORIZON, Course, drive_windows, record
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
-from slipwise.thesis.panel import FITTED, RIVAL, Bars, Floats, Panel
+from slipwise.thesis.panel import BASELINE, FITTED, Bars, Floats, Panel
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 METHODS = ("none", "gradient-descent", "ekf-thesis", "iekf", "delayed-state", "auto")
 EXACT_NAME = "ekf-thesis, exact J"
@@ -80,11 +80,11 @@ def contest(log: Log, input_name: str) -> Contest:
     return ordered | {DEFAULT: errors[DEFAULT]}
 
 
-def table_exhibit(bench: Bench, ground: str) -> Exhibit:
+def error_table(fixture: Fixture, ground: str) -> ThesisFigure:
     """Make Table 6.2 on one ground."""
-    log = bench.long_drive(ground).log
+    log = fixture.long_drive(ground).log
     contests = {name: contest(log, name) for name in INPUTS}
-    return Exhibit(
+    return ThesisFigure(
         key=f"table-6-2-{ground}",
         thesis="Table 6.2",
         title=f"Five-second pose errors of the estimators, {ground} ground",
@@ -95,7 +95,7 @@ def table_exhibit(bench: Bench, ground: str) -> Exhibit:
         "EKF is ekf-thesis, with (6.7) or with the exact Jacobian.",
         agrees=_agrees(contests),
         differs=_differs(contests),
-        source=f"simulated Land Tamer on {ground} ground, drive of {bench.size.long_time:g} s from zero; "
+        source=f"simulated Land Tamer on {ground} ground, drive of {fixture.size.long_time:g} s from zero; "
         f"single estimators learn {BASIS}, {DEFAULT} averages several bases",
         parts=(
             *(_grid(name, found) for name, found in contests.items()),
@@ -106,15 +106,15 @@ def table_exhibit(bench: Bench, ground: str) -> Exhibit:
 
 
 def _grid(input_name: str, found: Contest) -> Grid:
-    plain = found["none"]
-    rows = tuple((name, *_cells(errors, plain)) for name, errors in found.items())
-    note = f"{len(plain.in_sample)} segments in-sample, {len(plain.honest)} honest."
+    baseline = found["none"]
+    rows = tuple((name, *_cells(errors, baseline)) for name, errors in found.items())
+    note = f"{len(baseline.in_sample)} segments in-sample, {len(baseline.honest)} honest."
     return Grid(f"From {INPUTS[input_name]}", COLUMNS, rows, note)
 
 
-def _cells(errors: Errors, plain: Errors) -> list[str]:
+def _cells(errors: Errors, baseline: Errors) -> list[str]:
     cells = []
-    for mine, reference in ((errors.in_sample, plain.in_sample), (errors.honest, plain.honest)):
+    for mine, reference in ((errors.in_sample, baseline.in_sample), (errors.honest, baseline.honest)):
         mean, std = mean_and_std(mine)
         better = mean_and_std(reference)[0] / mean
         cells += [f"{number_text(mean[k])} ± {number_text(std[k])}" for k in (0, 1)]
@@ -238,11 +238,11 @@ def _best(found: Contest, column: int) -> str:
     what = ("position", "heading")[column]
     means = {name: float(errors.honest[:, column].mean()) for name, errors in found.items() if name != "none"}
     others = {name: mean for name, mean in means.items() if name != DEFAULT}
-    rival = min(others, key=lambda name: others[name])
-    ratio, low, high = ratio_of_means(found[DEFAULT].honest[:, column], found[rival].honest[:, column])
-    rank = "the default is best" if ratio <= 1.0 else f"{rival} is best"
+    candidate = min(others, key=lambda name: others[name])
+    ratio, low, high = ratio_of_means(found[DEFAULT].honest[:, column], found[candidate].honest[:, column])
+    rank = "the default is best" if ratio <= 1.0 else f"{candidate} is best"
     return (
-        f"in {what} {rank} (default to {rival}: {number_text(ratio)}, interval {number_text(low)} to "
+        f"in {what} {rank} (default to {candidate}: {number_text(ratio)}, interval {number_text(low)} to "
         f"{number_text(high)})"
     )
 
@@ -253,7 +253,7 @@ def _panel(input_name: str, found: Contest, column: int) -> Panel:
     in_sample = np.array([errors.in_sample[:, column].mean() for errors in found.values()])
     honest = np.array([errors.honest[:, column].mean() for errors in found.values()])
     series = (
-        Bars(names, in_sample, label="in-sample", colour=RIVAL),
+        Bars(names, in_sample, label="in-sample", colour=BASELINE),
         Bars(names, honest, label="honest", colour=FITTED),
     )
     title = f"{unit.split(' ')[0]}, from {INPUTS[input_name]}"

@@ -9,21 +9,21 @@ from slipwise import _core
 from slipwise.number_text import number_text
 from slipwise.thesis.chapter6_convergence import CHANNELS, TERMS
 from slipwise.thesis.chapter6_recording import Recording
-from slipwise.thesis.exhibit import Exhibit
 from slipwise.thesis.panel import Floats, Heat, Panel, Surface
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 NODES = 21
 SPEEDS, CURVATURES = (0.5, 2.0), (-0.5, 0.5)  # [m/s], [1/m] that the circles of the drive cover
 UNITS = ("m/s", "m/s", "rad/s")
 
 
-def correlation_exhibit(filtered: Recording, correct: Recording, source: str) -> Exhibit:
+def correlation_figure(filtered: Recording, correct: Recording, source: str) -> ThesisFigure:
     """Make figure 6.6."""
     found, other = _correlation(filtered), _correlation(correct)
     within, across = _blocks(found)
     within_other, across_other = _blocks(other)
     names = tuple(f"α{place + 1},{symbol}" for symbol, _ in CHANNELS for place in range(len(TERMS)))
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-6",
         thesis="Figure 6.6",
         title="Final uncertainty of the parameters",
@@ -45,7 +45,7 @@ def correlation_exhibit(filtered: Recording, correct: Recording, source: str) ->
     )
 
 
-def learned_surface_exhibit(filtered: Recording, correct: Recording, source: str) -> Exhibit:
+def learned_surface_figure(filtered: Recording, correct: Recording, source: str) -> ThesisFigure:
     """Make figure 6.7."""
     mean, std = surface_of(filtered)
     other, other_std = surface_of(correct)
@@ -61,7 +61,7 @@ def learned_surface_exhibit(filtered: Recording, correct: Recording, source: str
         )
         for channel, (_, name) in enumerate(CHANNELS)
     )
-    return Exhibit(
+    return ThesisFigure(
         key="figure-6-7",
         thesis="Figure 6.7",
         title="Slip surfaces learned by the extended Kalman filter",

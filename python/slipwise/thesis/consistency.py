@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.exhibit import Exhibit
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.monte_carlo import (
     ESTIMATORS,
@@ -25,6 +24,7 @@ from slipwise.thesis.monte_carlo import (
     nees_band,
 )
 from slipwise.thesis.panel import INK, Dash, Line, Panel
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 Floats = NDArray[np.float64]
 Results = dict[str, list[RunResult]]  # by the label of the feeding
@@ -35,9 +35,9 @@ THESIS_FILTER = Feeding("ekf-thesis", 1, _core.SegmentJacobian.Thesis)
 NOISES = {"slip and pose noise": NOISE, "mostly pose noise": POSE_NOISE}
 
 
-def consistency_exhibits(bench: Bench, progress: Callable[[str, float], None]) -> list[Exhibit]:
+def consistency_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
     """Make the table of all estimators."""
-    runs = bench.size.seeds
+    runs = fixture.size.seeds
     found: dict[str, Results] = {name: {} for name in NOISES}
     for done in range(runs * len(NOISES)):
         name, seed = list(NOISES)[done // runs], done % runs
@@ -46,12 +46,12 @@ def consistency_exhibits(bench: Bench, progress: Callable[[str, float], None]) -
         for feeding in ESTIMATORS:
             result = judged(learned(feeding, drive), drive)
             found[name].setdefault(feeding.label, []).append(result)
-    return [_exhibit(found, runs)]
+    return [_figure(found, runs)]
 
 
-def _exhibit(found: dict[str, Results], runs: int) -> Exhibit:
+def _figure(found: dict[str, Results], runs: int) -> ThesisFigure:
     band = nees_band(runs, SIZE)
-    return Exhibit(
+    return ThesisFigure(
         "consistency",
         "Not in the thesis",
         "Is the stated uncertainty true?",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The exhibits as one HTML page that works offline; surfaces can be turned."""
+"""The figures and tables as one HTML page that works offline; surfaces can be turned."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from collections.abc import Sequence
 
 from slipwise.reporting.markup import escape, legend, missing, paragraph, table
 from slipwise.reporting.page import document
-from slipwise.thesis.exhibit import Exhibit
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.introduction import INTRODUCTION, TITLE
 from slipwise.thesis.panel import ErrorBars, Heat, Line, Panel, Points, Surface
 from slipwise.thesis.plotly_panel import plotly_panel
 from slipwise.thesis.reproduce import ChapterResult
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 
 def draw_page(chapters: Sequence[ChapterResult]) -> str:
-    """Return the whole page; the same exhibits give the same bytes."""
+    """Return the whole page; the same figures give the same bytes."""
     links = "".join(f'<a href="#{chapter.key}">{escape(chapter.title)}</a>' for chapter in chapters)
     contents = "".join(_contents(chapter) for chapter in chapters)
     body = "\n".join(_chapter(chapter) for chapter in chapters)
@@ -27,32 +27,32 @@ def draw_page(chapters: Sequence[ChapterResult]) -> str:
 
 def _contents(chapter: ChapterResult) -> str:
     items = "".join(
-        f'<li><a href="#{exhibit.key}">{escape(exhibit.thesis)}: {escape(exhibit.title)}</a></li>'
-        for exhibit in chapter.exhibits
+        f'<li><a href="#{figure.key}">{escape(figure.thesis)}: {escape(figure.title)}</a></li>'
+        for figure in chapter.figures
     )
     return f"<h3>{escape(chapter.title)}</h3><ul>{items}</ul>"
 
 
 def _chapter(chapter: ChapterResult) -> str:
-    exhibits = "\n".join(_exhibit(exhibit) for exhibit in chapter.exhibits)
-    return f'<h2 id="{chapter.key}">{escape(chapter.title)}</h2>\n{exhibits}'
+    figures = "\n".join(_figure(figure) for figure in chapter.figures)
+    return f'<h2 id="{chapter.key}">{escape(chapter.title)}</h2>\n{figures}'
 
 
-def _exhibit(exhibit: Exhibit) -> str:
-    head = f'<section id="{exhibit.key}"><h2>{escape(exhibit.thesis)}: {escape(exhibit.title)}</h2>'
-    if exhibit.missing:
-        return f"{head}{missing(f'Not made: {exhibit.missing}')}</section>"
-    figures = "".join(
-        f"<div>{plotly_panel(f'{exhibit.key}-{place}', panel).html()}{_legend(panel)}</div>"
-        for place, panel in enumerate(exhibit.panels, start=1)
+def _figure(figure: ThesisFigure) -> str:
+    head = f'<section id="{figure.key}"><h2>{escape(figure.thesis)}: {escape(figure.title)}</h2>'
+    if figure.missing:
+        return f"{head}{missing(f'Not made: {figure.missing}')}</section>"
+    drawn = "".join(
+        f"<div>{plotly_panel(f'{figure.key}-{place}', panel).html()}{_legend(panel)}</div>"
+        for place, panel in enumerate(figure.panels, start=1)
     )
-    told = (("Agrees", exhibit.agrees), ("Differs, and why", exhibit.differs), ("Data", exhibit.source))
-    sentences = "".join(f"<p><strong>{name}.</strong> {escape(text)}</p>" for name, text in told)
-    grids = "".join(_grid(grid) for grid in exhibit.grids)
-    kind = "wide-grid" if len(exhibit.panels) in (1, 2, 4) else "grid"
+    texts = (("Agrees", figure.agrees), ("Differs, and why", figure.differs), ("Data", figure.source))
+    sentences = "".join(f"<p><strong>{name}.</strong> {escape(text)}</p>" for name, text in texts)
+    grids = "".join(_grid(grid) for grid in figure.grids)
+    kind = "wide-grid" if len(figure.panels) in (1, 2, 4) else "grid"
     return (
-        f"{head}{paragraph(exhibit.shows, kind='explanation')}"
-        f'<div class="{kind}">{figures}</div>{grids}{sentences}</section>'
+        f"{head}{paragraph(figure.shows, kind='explanation')}"
+        f'<div class="{kind}">{drawn}</div>{grids}{sentences}</section>'
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The panels of an exhibit as one small PNG."""
+"""The panels of a figure as one small PNG."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 
 from slipwise.reporting.palette import BAND, DIVERGING
 from slipwise.reporting.png_picture import drawing_part, small_png
-from slipwise.thesis.exhibit import Exhibit
 from slipwise.thesis.panel import Band, Bars, ErrorBars, Heat, Line, Panel, Points, Series, Surface
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 DPI = 100
 PANEL_SIZE = (4.4, 3.4)  # [in]
@@ -22,26 +22,26 @@ _MARKS = {"dot": "o", "ring": "o", "cross": "x", "square": "s", "diamond": "D"}
 _DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
-def draw_png(exhibit: Exhibit) -> bytes:
-    """Return the picture of an exhibit with panels; the same exhibit gives the same bytes.
+def draw_png(figure: ThesisFigure) -> bytes:
+    """Return the picture of a figure with panels; the same figure gives the same bytes.
 
     Raises:
         SlipwiseError: Matplotlib is not installed.
     """
-    panels = exhibit.panels
+    panels = figure.panels
     across = min(len(panels), 2 if len(panels) in (2, 4) else 3)
     down = math.ceil(len(panels) / across)
     width, height = SINGLE_SIZE if len(panels) == 1 else PANEL_SIZE
-    figure = drawing_part("figure").Figure(
+    canvas = drawing_part("figure").Figure(
         figsize=(width * across, height * down), dpi=DPI, layout="constrained"
     )
     for place, panel in enumerate(panels, start=1):
-        _draw(figure, (down, across, place), panel)
-    return small_png(figure, dpi=DPI, largest=LARGEST)
+        _draw(canvas, (down, across, place), panel)
+    return small_png(canvas, dpi=DPI, largest=LARGEST)
 
 
-def _draw(figure: Any, place: tuple[int, int, int], panel: Panel) -> None:
-    axes: Any = figure.add_subplot(*place, projection="3d" if panel.solid else None)
+def _draw(canvas: Any, place: tuple[int, int, int], panel: Panel) -> None:
+    axes: Any = canvas.add_subplot(*place, projection="3d" if panel.solid else None)
     axes.set_title(panel.title, fontsize=10)
     axes.set_xlabel(panel.x_label, fontsize=9)
     axes.set_ylabel(panel.y_label, fontsize=9)

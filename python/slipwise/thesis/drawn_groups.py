@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.thesis.bench import CIRCLE
+from slipwise.thesis.fixture import CIRCLE
 from slipwise.thesis.steady import DrawRules, SteadyGroup, SteadyPath, draw_paths, group_paths
 
 SLIP = np.array([-0.02, 0.01, -0.08])  # [m/s, m/s, rad/s]

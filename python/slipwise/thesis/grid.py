@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A table of an exhibit."""
+"""A table of numbers, alone or beside panels."""
 
 from __future__ import annotations
 

@@ -6,5 +6,5 @@ INTRODUCTION = (
     "The figures and tables of F. Rogers-Marcovitz, On-Line Mobile Robotic Dynamic Modeling Using Integrated "
     "Perturbative Dynamics (CMU-RI-TR-10-15, 2010), made again by the command slipwise reproduce thesis from "
     "simulated drives and real logs. The thesis's own logs are not published, so its numbers cannot be met; "
-    "each exhibit says what agrees all the same, what differs and why."
+    "each says what agrees all the same, what differs and why."
 )

@@ -1,44 +1,44 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The exhibits as Markdown, with the pictures beside it."""
+"""The figures and tables as Markdown, with the pictures beside it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from slipwise.thesis.exhibit import Exhibit
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.introduction import INTRODUCTION, TITLE
 from slipwise.thesis.reproduce import ChapterResult
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 
 def markdown(chapters: Sequence[ChapterResult]) -> str:
-    """Return the page; pictures are named by the exhibits' keys."""
+    """Return the page; pictures are named by the figures' keys."""
     lines = [f"# {TITLE}", "", INTRODUCTION, ""]
     for chapter in chapters:
         lines += [f"- **{_plain(chapter.title)}**"]
-        lines += [f"  - [{_heading(exhibit)}](#{_anchor(_heading(exhibit))})" for exhibit in chapter.exhibits]
+        lines += [f"  - [{_heading(figure)}](#{_anchor(_heading(figure))})" for figure in chapter.figures]
     for chapter in chapters:
         lines += ["", f"## {_plain(chapter.title)}"]
-        for exhibit in chapter.exhibits:
-            lines += ["", *_exhibit(exhibit)]
+        for figure in chapter.figures:
+            lines += ["", *_figure(figure)]
     return "\n".join(lines) + "\n"
 
 
-def _exhibit(exhibit: Exhibit) -> list[str]:
-    lines = [f"### {_heading(exhibit)}", ""]
-    if exhibit.missing:
-        return [*lines, f"Not made: {_plain(exhibit.missing)}"]
-    lines += [_plain(exhibit.shows), ""]
-    if exhibit.panels:
-        lines += [f"![{_heading(exhibit)}]({exhibit.key}.png)", ""]
-    for grid in exhibit.grids:
+def _figure(figure: ThesisFigure) -> list[str]:
+    lines = [f"### {_heading(figure)}", ""]
+    if figure.missing:
+        return [*lines, f"Not made: {_plain(figure.missing)}"]
+    lines += [_plain(figure.shows), ""]
+    if figure.panels:
+        lines += [f"![{_heading(figure)}]({figure.key}.png)", ""]
+    for grid in figure.grids:
         lines += [*_grid(grid), ""]
     lines += [
-        f"**Agrees.** {_plain(exhibit.agrees)}",
+        f"**Agrees.** {_plain(figure.agrees)}",
         "",
-        f"**Differs.** {_plain(exhibit.differs)}",
+        f"**Differs.** {_plain(figure.differs)}",
         "",
-        f"*Data: {_plain(exhibit.source)}*",
+        f"*Data: {_plain(figure.source)}*",
     ]
     return lines
 
@@ -52,8 +52,8 @@ def _grid(grid: Grid) -> list[str]:
     return head + table + (["", _plain(grid.note)] if grid.note else [])
 
 
-def _heading(exhibit: Exhibit) -> str:
-    return f"{_plain(exhibit.thesis)}: {_plain(exhibit.title)}"
+def _heading(figure: ThesisFigure) -> str:
+    return f"{_plain(figure.thesis)}: {_plain(figure.title)}"
 
 
 def _anchor(heading: str) -> str:

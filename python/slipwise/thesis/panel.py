@@ -16,14 +16,14 @@ Floats = NDArray[np.float64]
 Dash = Literal["solid", "dash", "dot", "dashdot"]
 Mark = Literal["dot", "ring", "cross", "square", "diamond"]
 
-# The thesis's colours, told apart by the colour-blind (Okabe and Ito 2008).
+# The thesis's colours, distinct to the colour-blind (Okabe and Ito 2008).
 MEASURED = "#009e73"  # green
 IDEAL = "#cc79a7"  # magenta
 FITTED = "#0072b2"  # blue
-RIVAL = "#d55e00"  # red
+BASELINE = "#d55e00"  # red
 INK = "#1b2430"
 GREY = "#8a94a0"
-COLOURS = (FITTED, RIVAL, MEASURED, IDEAL, "#56b4e9", "#b8860b", "#7a4fa3", INK, GREY)
+COLOURS = (FITTED, BASELINE, MEASURED, IDEAL, "#56b4e9", "#b8860b", "#7a4fa3", INK, GREY)
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.evaluation import EvaluationOptions, Score, evaluate
 from slipwise.logs import Log
-from slipwise.thesis.bench import ENDINGS, Bench, MissingLogError
+from slipwise.thesis.fixture import ENDINGS, Fixture, MissingLogError
 
 HUSKY = "husky/tile_deflated_tyres"
 WARTHOG_FOLDERS = ("warthog", "warthog_windows")
@@ -49,20 +49,20 @@ class MeanRatios:
     worst_position: float
 
 
-def warthog_names(bench: Bench) -> list[str]:
+def warthog_names(fixture: Fixture) -> list[str]:
     """Return the names of all Warthog logs of the data folder.
 
     Raises:
         MissingLogError: there is none.
     """
     names = []
-    if bench.data is not None:
+    if fixture.data is not None:
         for folder in WARTHOG_FOLDERS:
-            for path in sorted((bench.data / folder).glob("*")):
+            for path in sorted((fixture.data / folder).glob("*")):
                 ending = next((end for end in ENDINGS if end and path.name.endswith(end)), None)
                 if ending is not None:
                     names.append(f"{folder}/{path.name.removesuffix(ending)}")
-        names += [name for name in WARTHOG_LOGS if any(_at(bench, name))]
+        names += [name for name in WARTHOG_LOGS if any(_at(fixture, name))]
     if not names:
         raise MissingLogError(
             "the Warthog's logs are missing",
@@ -71,11 +71,13 @@ def warthog_names(bench: Bench) -> list[str]:
     return names
 
 
-def _at(bench: Bench, name: str) -> Iterable[bool]:
-    return ((bench.data / f"{name}{ending}").exists() for ending in ENDINGS if bench.data is not None)
+def _at(fixture: Fixture, name: str) -> Iterable[bool]:
+    return ((fixture.data / f"{name}{ending}").exists() for ending in ENDINGS if fixture.data is not None)
 
 
-def log_scores(bench: Bench, names: Sequence[str], progress: Callable[[str, float], None]) -> list[LogScores]:
+def log_scores(
+    fixture: Fixture, names: Sequence[str], progress: Callable[[str, float], None]
+) -> list[LogScores]:
     """Score all methods on logs, from wheel speeds and from commands where a log has them.
 
     Raises:
@@ -83,7 +85,7 @@ def log_scores(bench: Bench, names: Sequence[str], progress: Callable[[str, floa
     """
     found = []
     for done, name in enumerate(names):
-        log = bench.real_log(name)
+        log = fixture.real_log(name)
         for place, input_name in enumerate(INPUTS):
             progress(f"{name}, {input_name}", (done + place / len(INPUTS)) / len(names))
             try:

@@ -9,8 +9,7 @@ import numpy as np
 
 from slipwise.evaluation.slip_surfaces import LARGEST_PROCESS
 from slipwise.number_text import DASH, number_text
-from slipwise.thesis.bench import Bench
-from slipwise.thesis.exhibit import Exhibit, exhibit_of_log
+from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import Bars, Panel
 from slipwise.thesis.real_log_scores import (
@@ -26,6 +25,7 @@ from slipwise.thesis.real_log_scores import (
     mean_ratios,
     warthog_names,
 )
+from slipwise.thesis.thesis_figure import ThesisFigure, figure_of_log
 
 Progress = Callable[[str, float], None]
 
@@ -42,38 +42,38 @@ MARKS = {
     "delayed-state": "DS",
 }
 SHOWS = (
-    "Every surface of chapter 5 and every estimator of chapter 6, beside their rivals. Each window is "
+    "Every surface of chapter 5 and every estimator of chapter 6, beside their baselines. Each window is "
     "predicted from what was known one horizon before it, and the second half of the windows counts; errors "
-    "are ratios to those of none, the plain model that believes the wheels or the commands. Batch alone has "
+    "are ratios to those of none, the kinematic baseline without slip. Batch alone has "
     "learned the windows that it is judged on. Surfaces and estimators learn the terms of odd-even-10. "
     "In the picture: SR slip-ratio-ekf, LS least squares, GP Gaussian process, BLR Bayesian surface, GD "
     "gradient descent, EKF ekf-thesis, DS delayed-state."
 )
 
 
-def real_log_exhibits(bench: Bench, progress: Progress) -> list[Exhibit]:
-    """Make the exhibits of the real logs."""
+def real_log_figures(fixture: Fixture, progress: Progress) -> list[ThesisFigure]:
+    """Make the figures and tables of the real logs."""
     return [
-        exhibit_of_log(
+        figure_of_log(
             "real-log-husky",
             ADDED,
             "Surfaces and estimators on a Husky",
-            lambda: husky(bench, lambda what, share: progress(what, 0.25 * share)),
+            lambda: husky(fixture, lambda what, share: progress(what, 0.25 * share)),
         ),
-        exhibit_of_log(
+        figure_of_log(
             "real-logs-warthog",
             ADDED,
             "Surfaces and estimators on a Warthog",
-            lambda: warthog(bench, lambda what, share: progress(what, 0.25 + 0.75 * share)),
+            lambda: warthog(fixture, lambda what, share: progress(what, 0.25 + 0.75 * share)),
         ),
     ]
 
 
-def husky(bench: Bench, progress: Progress) -> Exhibit:
+def husky(fixture: Fixture, progress: Progress) -> ThesisFigure:
     """All methods on 200 held commands of a Husky on tiles: the experiment of chapter 4, driven by others."""
-    found = log_scores(bench, [HUSKY], progress)
+    found = log_scores(fixture, [HUSKY], progress)
     means = {log.input: {m: mean_ratios([log], m) for m in METHODS} for log in found}
-    return Exhibit(
+    return ThesisFigure(
         "real-log-husky",
         ADDED,
         "Surfaces and estimators on a Husky",
@@ -88,12 +88,12 @@ def husky(bench: Bench, progress: Progress) -> Exhibit:
     )
 
 
-def warthog(bench: Bench, progress: Progress) -> Exhibit:
+def warthog(fixture: Fixture, progress: Progress) -> ThesisFigure:
     """All methods on all logs of the Warthog."""
-    found = log_scores(bench, warthog_names(bench), progress)
+    found = log_scores(fixture, warthog_names(fixture), progress)
     inputs = {name: [log for log in found if log.input == name] for name in INPUTS}
     means = {name: {m: mean_ratios(logs, m) for m in METHODS} for name, logs in inputs.items() if logs}
-    return Exhibit(
+    return ThesisFigure(
         "real-logs-warthog",
         ADDED,
         "Surfaces and estimators on a Warthog",
@@ -175,8 +175,8 @@ def _mean_table(means: Means) -> Grid:
 
 
 def _logs(ratios: dict[str, MeanRatios | None]) -> int:
-    plain = ratios["none"]
-    return plain.logs if plain else 0
+    baseline = ratios["none"]
+    return baseline.logs if baseline else 0
 
 
 def _all_logs(input_name: str, logs: Sequence[LogScores]) -> Grid:
@@ -214,9 +214,9 @@ def _agrees(means: Means) -> str:
         ]
         said.append(f"from the {input_name} input, {', '.join(parts)}")
     return (
-        f"Of the plain model's position error, {'; '.join(said)}. Surfaces: least squares, Gaussian process, "
-        "Bayesian. The thesis finds the three similar, and its filter about twice as good as gradient "
-        "descent: 0.23 and 0.45 in Table 6.2, in-sample."
+        f"Of the kinematic baseline's position error, {'; '.join(said)}. Surfaces: least squares, Gaussian "
+        "process, Bayesian. The thesis finds the three similar, and its filter about twice as good as "
+        "gradient descent: 0.23 and 0.45 in Table 6.2, in-sample."
     )
 
 

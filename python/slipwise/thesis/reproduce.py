@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the exhibits of all chapters in two processes."""
+"""Makes the figures and tables of all chapters in two processes."""
 
 from __future__ import annotations
 
@@ -13,61 +13,61 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError, SlipwiseError
-from slipwise.thesis.bench import FULL, Bench, BenchSize, load_simulator
-from slipwise.thesis.chapter2 import chapter2_exhibits
-from slipwise.thesis.chapter3 import chapter3_exhibits
-from slipwise.thesis.chapter4 import chapter4_exhibits
-from slipwise.thesis.chapter5 import chapter5_exhibits
-from slipwise.thesis.chapter6 import chapter6_exhibits
-from slipwise.thesis.consistency import consistency_exhibits
-from slipwise.thesis.exhibit import Exhibit
-from slipwise.thesis.real_logs import real_log_exhibits
+from slipwise.thesis.chapter2 import chapter2_figures
+from slipwise.thesis.chapter3 import chapter3_figures
+from slipwise.thesis.chapter4 import chapter4_figures
+from slipwise.thesis.chapter5 import chapter5_figures
+from slipwise.thesis.chapter6 import chapter6_figures
+from slipwise.thesis.consistency import consistency_figures
+from slipwise.thesis.fixture import FULL, Fixture, FixtureSize, load_simulator
+from slipwise.thesis.real_logs import real_log_figures
+from slipwise.thesis.thesis_figure import ThesisFigure
 
 if TYPE_CHECKING:
     from multiprocessing.queues import SimpleQueue
 
 Progress = Callable[[str, float], None]  # what is being done, and which share of it is done, 0 to 1
-MakeExhibits = Callable[[Bench, Progress], list[Exhibit]]
+MakeFigures = Callable[[Fixture, Progress], list[ThesisFigure]]
 WORKERS = 2
 POLL = 0.2  # [s] between looks at what the workers report
 
 
 @dataclass(frozen=True)
 class Chapter:
-    """A part of the reproduction; `make_exhibits` is a function of a module, called in another process."""
+    """A part of the reproduction; `make_figures` is a function of a module, called in another process."""
 
     key: str  # for `--only`, as "chapter-4"
     title: str
-    make_exhibits: MakeExhibits
+    make_figures: MakeFigures
 
 
 @dataclass(frozen=True)
 class ChapterResult:
-    """The exhibits of a chapter."""
+    """The figures and tables of a chapter."""
 
     key: str
     title: str
-    exhibits: tuple[Exhibit, ...]
+    figures: tuple[ThesisFigure, ...]
 
 
 CHAPTERS = (
-    Chapter("chapter-2", "Chapter 2: related work", chapter2_exhibits),
-    Chapter("chapter-3", "Chapter 3: the vehicle's dynamics", chapter3_exhibits),
-    Chapter("chapter-4", "Chapter 4: steady state", chapter4_exhibits),
-    Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_exhibits),
-    Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_exhibits),
-    Chapter("real-logs", "Beyond: all methods on real logs", real_log_exhibits),
-    Chapter("consistency", "Beyond: is the stated uncertainty true?", consistency_exhibits),
+    Chapter("chapter-2", "Chapter 2: related work", chapter2_figures),
+    Chapter("chapter-3", "Chapter 3: the vehicle's dynamics", chapter3_figures),
+    Chapter("chapter-4", "Chapter 4: steady state", chapter4_figures),
+    Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_figures),
+    Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_figures),
+    Chapter("real-logs", "Beyond: all methods on real logs", real_log_figures),
+    Chapter("consistency", "Beyond: is the stated uncertainty true?", consistency_figures),
 )
 
 
 @dataclass(frozen=True)
-class BenchPlan:
-    """What a worker makes its bench from."""
+class FixturePlan:
+    """What a worker makes its fixture from."""
 
     seed: int = 1
     data: Path | None = None  # folder of real logs
-    size: BenchSize = FULL
+    size: FixtureSize = FULL
 
 
 def chosen_chapters(only: Sequence[str], chapters: Sequence[Chapter] = CHAPTERS) -> tuple[Chapter, ...]:
@@ -86,17 +86,17 @@ def chosen_chapters(only: Sequence[str], chapters: Sequence[Chapter] = CHAPTERS)
 
 
 def reproduce(
-    plan: BenchPlan,
+    plan: FixturePlan,
     *,
     chapters: Sequence[Chapter] = CHAPTERS,
     progress: Progress = lambda _what, _share: None,
 ) -> tuple[ChapterResult, ...]:
-    """Make the exhibits; the same plan gives the same exhibits, but for times that were measured.
+    """Make the figures and tables; the same plan gives the same ones, but for times that were measured.
 
     Args:
         plan: seed, folder of real logs, and size of the simulated drives.
         chapters: which to make.
-        progress: told what is being done and which share of the whole is done, 0 to 1.
+        progress: called with what is being done and which share of the whole is done, 0 to 1.
 
     Raises:
         SlipwiseError: an extra is not installed, a log cannot be read, or a worker was ended from outside.
@@ -124,13 +124,15 @@ def reproduce(
             raise
     progress("done", 1.0)
     return tuple(
-        ChapterResult(chapter.key, chapter.title, tuple(exhibits))
-        for chapter, exhibits in zip(chapters, made, strict=True)
+        ChapterResult(chapter.key, chapter.title, tuple(figures))
+        for chapter, figures in zip(chapters, made, strict=True)
     )
 
 
 def _follow(
-    futures: Sequence[Future[list[Exhibit]]], reports: SimpleQueue[tuple[str, str, float]], progress: Progress
+    futures: Sequence[Future[list[ThesisFigure]]],
+    reports: SimpleQueue[tuple[str, str, float]],
+    progress: Progress,
 ) -> None:
     """Report progress until all futures are done or one has failed."""
     shares: dict[str, float] = {}
@@ -147,21 +149,21 @@ def _follow(
 class _Worker:
     """What a worker process keeps from chapter to chapter."""
 
-    bench: Bench
+    fixture: Fixture
     reports: SimpleQueue[tuple[str, str, float]]
 
 
-def _start(plan: BenchPlan, reports: SimpleQueue[tuple[str, str, float]]) -> None:
+def _start(plan: FixturePlan, reports: SimpleQueue[tuple[str, str, float]]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent ends the workers
     load_simulator()
-    _Worker.bench = Bench(seed=plan.seed, data=plan.data, size=plan.size)
+    _Worker.fixture = Fixture(seed=plan.seed, data=plan.data, size=plan.size)
     _Worker.reports = reports
 
 
-def _make(chapter: Chapter) -> list[Exhibit]:
+def _make(chapter: Chapter) -> list[ThesisFigure]:
     def progress(what: str, share: float) -> None:
         _Worker.reports.put((chapter.key, what, share))
 
-    exhibits = chapter.make_exhibits(_Worker.bench, progress)
+    figures = chapter.make_figures(_Worker.fixture, progress)
     progress("done", 1.0)
-    return exhibits
+    return figures

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the exhibits as one HTML page, and as Markdown with pictures."""
+"""Writes the figures and tables as one HTML page, and as Markdown with pictures."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from slipwise.thesis.reproduce import ChapterResult
 
 
 def write_reproduction(folder: Path, chapters: Sequence[ChapterResult]) -> dict[str, Path]:
-    """Write `index.html`, and `markdown/README.md` with a PNG per drawn exhibit beside it.
+    """Write `index.html`, and `markdown/README.md` with a PNG per drawn figure beside it.
 
     Without Matplotlib, which draws the pictures, the Markdown is left out.
 
@@ -31,11 +31,11 @@ def write_reproduction(folder: Path, chapters: Sequence[ChapterResult]) -> dict[
         return files
     files["markdown"] = folder / "markdown" / "README.md"
     for chapter in chapters:
-        for exhibit in chapter.exhibits:
-            if exhibit.panels:
-                picture = draw_png(exhibit)
+        for figure in chapter.figures:
+            if figure.panels:
+                picture = draw_png(figure)
                 write_whole(
-                    files["markdown"].with_name(f"{exhibit.key}.png"),
+                    files["markdown"].with_name(f"{figure.key}.png"),
                     lambda path, picture=picture: _write_bytes(path, picture),  # type: ignore[misc]
                 )
     write_text_whole(files["markdown"], markdown(chapters))

@@ -20,7 +20,7 @@ def test_a_chapter_is_made_again_and_listed(slipwise: Slipwise, folder: Path) ->
     result = slipwise("reproduce", "thesis", "--only", "chapter-3", "-o", "out", "--json", "result.json")
     assert (result.code, result.err) == (0, "")
     assert "Equation 3.9" in result.out
-    assert "2 exhibits were made, 0 could not be." in result.out
+    assert "2 figures and tables were made, 0 could not be." in result.out
     names = {str(path.relative_to("out")) for path in Path("out").rglob("*.*")}
     pictures = {"markdown/equation-3-8.png", "markdown/equation-3-9.png"}
     assert names == {"index.html", "markdown/README.md"} | pictures

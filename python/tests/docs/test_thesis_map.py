@@ -18,7 +18,7 @@ SECTIONS = {"8.1", "8.1.1", "8.2", "8.3", "8.4"}
 
 PYTHON = re.compile(r"`(slipwise(?:\.\w+)+)`")
 CPP = re.compile(r"\[`(\w+)`\]\(\.\./(cpp/include/[\w/]+\.hpp)\)")
-EXHIBIT = re.compile(r"exhibit `([a-z0-9-]+)`")
+MADE = re.compile(r"(?:figure|table) `([a-z0-9-]+)`")
 
 
 def numbered() -> set[str]:
@@ -71,7 +71,7 @@ def test_a_python_name_can_be_imported(name: str) -> None:
 
 def test_every_python_cell_has_a_name() -> None:
     assert not [
-        row[0] for row in ROWS if row[2] != "–" and not (PYTHON.findall(row[2]) or EXHIBIT.findall(row[2]))
+        row[0] for row in ROWS if row[2] != "–" and not (PYTHON.findall(row[2]) or MADE.findall(row[2]))
     ]
     assert not [row[0] for row in ROWS if row[3] != "–" and not CPP.findall(row[3])]
 
@@ -88,7 +88,7 @@ def test_cpp_names_are_declared_in_their_headers() -> None:
     assert not gone
 
 
-def exhibit_keys_written(key: str) -> bool:
+def key_is_written(key: str) -> bool:
     """Whether the reproduction's sources write this key, whole or put together of two strings."""
     sources = sorted((ROOT / "python/slipwise/thesis").glob("*.py"))
     nodes = [node for path in sources for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
@@ -99,21 +99,21 @@ def exhibit_keys_written(key: str) -> bool:
 
 
 @pytest.mark.slow
-def test_every_exhibit_named_is_made_under_the_number_of_its_row() -> None:
-    named = [(key, row[0]) for row in ROWS for key in EXHIBIT.findall(row[2])]
+def test_every_figure_named_is_made_under_the_number_of_its_row() -> None:
+    named = [(key, row[0]) for row in ROWS for key in MADE.findall(row[2])]
     assert len(named) > 25
     for key, number in named:
         plain = f"equation {number.strip('()')}" if number.startswith("(") else number.lower()
         assert key.startswith(plain.replace(" ", "-").replace(".", "-")), (key, number)
-    assert not {key for key, _ in named if not exhibit_keys_written(key)}
-    assert not exhibit_keys_written("figure-9-9")
+    assert not {key for key, _ in named if not key_is_written(key)}
+    assert not key_is_written("figure-9-9")
 
 
-def test_exhibits_beyond_the_thesis_are_made() -> None:
+def test_figures_beyond_the_thesis_are_made() -> None:
     text = PAGE.read_text(encoding="utf-8")
     named = code_words(text[text.index("## Beyond the thesis") :])
     assert len(named) > 4
-    assert not {key for key in named if not exhibit_keys_written(key)}
+    assert not {key for key in named if not key_is_written(key)}
 
 
 def test_every_erratum_is_linked_from_its_number() -> None:

@@ -145,7 +145,7 @@ def expected(model: Model, commands: Floats, window: Window) -> Floats:
             *(np.array([value]) for value in (window.start - 10.0, drive[0], 0.0, drive[1]))
         )
         twist = _core.BodyTwist(drive[0], 0.0, drive[1])
-        segment = segment.with_known_drive(held, window.start, twist)
+        segment = segment.with_measured_actuator(held, window.start, twist)
     path = _core.integrate_segment(model.motion, model.mean, track, segment, _core.Integrator.Exact)
     return np.asarray(path.poses[-1])
 

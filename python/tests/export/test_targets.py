@@ -38,7 +38,7 @@ def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> No
     head = export_model(make_model(made), target.name, name="mine.yaml").text[:1200]
     for words in (
         f"slipwise {version('slipwise')}, model mine.yaml",
-        "learned by slipwise 0.1.0",
+        "learned by slipwise 0.2.0",
         "drives/monday.mcap (sha256 abababababababab)",
         "verdict: good. It misses by 3 cm.",
         "speeds -0.5 to 1.5 m/s",

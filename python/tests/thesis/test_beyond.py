@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exhibits beyond the thesis: no method without its rivals, and covariances held against the truth."""
+"""Figures beyond the thesis: no method without its baselines, and covariances held against the truth."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from sample_logs import Drive, simulated_log
 
 import slipwise as sw
 from slipwise import _core
-from slipwise.thesis import SMALL, Bench, Exhibit
-from slipwise.thesis.consistency import consistency_exhibits
+from slipwise.thesis import SMALL, Fixture, ThesisFigure
+from slipwise.thesis.consistency import consistency_figures
 from slipwise.thesis.monte_carlo import ESTIMATORS, Feeding, judged, known_run, learned, nees_band
 from slipwise.thesis.real_log_scores import METHODS, mean_ratios, warthog_names
-from slipwise.thesis.real_logs import SHORT, real_log_exhibits
+from slipwise.thesis.real_logs import SHORT, real_log_figures
 
 pytestmark = pytest.mark.slow
 
@@ -38,43 +38,43 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def exhibits(folder: Path) -> dict[str, Exhibit]:
+def figures(folder: Path) -> dict[str, ThesisFigure]:
     pytest.importorskip("sklearn", reason="the Gaussian process needs scikit-learn")
-    return {exhibit.key: exhibit for exhibit in real_log_exhibits(Bench(data=folder), quiet)}
+    return {figure.key: figure for figure in real_log_figures(Fixture(data=folder), quiet)}
 
 
-def test_every_method_stands_beside_its_rivals(exhibits: dict[str, Exhibit]) -> None:
-    (wheel, command) = exhibits["real-log-husky"].grids
+def test_every_method_stands_beside_its_baselines(figures: dict[str, ThesisFigure]) -> None:
+    (wheel, command) = figures["real-log-husky"].grids
     shown = [row[0].removesuffix(" (not causal)") for row in wheel.rows]
     assert shown == [SHORT[method] for method in METHODS]
     assert {row[0] for row in wheel.rows} - {row[0] for row in command.rows} == {"slip-ratio-ekf"}
     assert "batch (not causal)" in {row[0] for row in wheel.rows}
-    means, *logs = exhibits["real-logs-warthog"].grids
+    means, *logs = figures["real-logs-warthog"].grids
     assert [row[0] for row in means.rows] == [SHORT[method] for method in METHODS]
     assert [[row[0] for row in grid.rows] for grid in logs] == [["warthog/grass", "warthog_windows/sand"]] * 2
     assert float(means.rows[0][1]) == 1.0
 
 
-def test_sentences_hold_the_numbers_of_the_tables(exhibits: dict[str, Exhibit]) -> None:
-    exhibit = exhibits["real-logs-warthog"]
-    means = exhibit.grids[0]
+def test_sentences_hold_the_numbers_of_the_tables(figures: dict[str, ThesisFigure]) -> None:
+    figure = figures["real-logs-warthog"]
+    means = figure.grids[0]
     ratios = {row[0]: row[1] for row in means.rows}
     surfaces = ", ".join(ratios[name] for name in ("least-squares", "gaussian-process", "bayesian"))
-    assert f"from the wheel input, the surfaces leave {surfaces}" in exhibit.agrees
+    assert f"from the wheel input, the surfaces leave {surfaces}" in figure.agrees
     causal = {name: float(number) for name, number in ratios.items() if name not in ("none", "batch")}
     best = min(causal.values())
-    assert any(f"{name} leaves least" in exhibit.differs for name, value in causal.items() if value == best)
+    assert any(f"{name} leaves least" in figure.differs for name, value in causal.items() if value == best)
 
 
-def test_without_logs_each_exhibit_says_which_and_how_to_give_them(tmp_path: Path) -> None:
-    for bench in (Bench(), Bench(data=tmp_path)):
-        husky, warthog = real_log_exhibits(bench, quiet)
+def test_without_logs_each_figure_says_which_and_how_to_give_them(tmp_path: Path) -> None:
+    for fixture in (Fixture(), Fixture(data=tmp_path)):
+        husky, warthog = real_log_figures(fixture, quiet)
         assert "husky/tile_deflated_tyres is missing" in husky.missing
         assert "the Warthog's logs are missing" in warthog.missing
 
 
 def test_all_warthog_logs_of_the_folder_are_taken(folder: Path) -> None:
-    assert warthog_names(Bench(data=folder)) == ["warthog/grass", "warthog_windows/sand"]
+    assert warthog_names(Fixture(data=folder)) == ["warthog/grass", "warthog_windows/sand"]
 
 
 def test_a_mean_over_no_log_is_none() -> None:
@@ -82,8 +82,8 @@ def test_a_mean_over_no_log_is_none() -> None:
 
 
 def test_the_consistency_table_has_every_estimator_and_places_it() -> None:
-    (exhibit,) = consistency_exhibits(Bench(size=SMALL), quiet)
-    (table,) = exhibit.grids
+    (figure,) = consistency_figures(Fixture(size=SMALL), quiet)
+    (table,) = figure.grids
     assert [row[0] for row in table.rows] == 2 * [feeding.label for feeding in ESTIMATORS]
     low, high = nees_band(SMALL.seeds, 10)
     for row in table.rows:
@@ -92,7 +92,7 @@ def test_the_consistency_table_has_every_estimator_and_places_it() -> None:
     places = {row[0]: row[4] for row in table.rows if row[1] == "slip and pose noise"}
     assert places["ekf-thesis, 20 Hz, (6.7)"] == "above"
     assert places["gradient-descent, 20 Hz"] == "below"
-    assert "ekf-thesis, 20 Hz, (6.7)" in exhibit.differs
+    assert "ekf-thesis, 20 Hz, (6.7)" in figure.differs
 
 
 def test_true_parameters_have_no_error_and_the_prior_is_its_own_measure() -> None:

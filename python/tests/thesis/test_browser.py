@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from reporting.browser import Browser
 from reporting.page_privacy import assert_sends_nothing
-from thesis.toy_chapters import exhibit, solid, toy_results
+from thesis.toy_chapters import figure, solid, toy_results
 
 from slipwise.thesis import ChapterResult
 from slipwise.thesis.draw_page import draw_page
@@ -42,9 +42,9 @@ def test_no_button_sends_anything(browser: Browser, tmp_path: Path) -> None:
 
 
 def test_of_many_surfaces_only_those_near_the_window_are_drawn(browser: Browser, tmp_path: Path) -> None:
-    exhibits = tuple(exhibit(f"figure-8-{place}", solid(place)) for place in range(20))
+    figures = tuple(figure(f"figure-8-{place}", solid(place)) for place in range(20))
     page = tmp_path / "index.html"
-    page.write_text(draw_page([ChapterResult("many", "Many surfaces", exhibits)]), encoding="utf-8")
+    page.write_text(draw_page([ChapterResult("many", "Many surfaces", figures)]), encoding="utf-8")
     browser.open(page, width=1280)
     for place in (19, 0):
         browser.value(f"document.getElementById('figure-8-{place}').scrollIntoView({{behavior: 'instant'}})")

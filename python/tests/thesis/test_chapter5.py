@@ -14,8 +14,8 @@ from steady_paths import drawn_group
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.surfaces import BayesianSurface, GaussianProcessSurface, LeastSquaresSurface, as_basis_model
-from slipwise.thesis import SMALL, Bench, Exhibit, Points, Surface
-from slipwise.thesis.chapter5 import chapter5_exhibits
+from slipwise.thesis import SMALL, Fixture, Points, Surface, ThesisFigure
+from slipwise.thesis.chapter5 import chapter5_figures
 from slipwise.thesis.chapter5_examples import examples_of, husky_examples
 
 pytestmark = pytest.mark.slow
@@ -23,31 +23,31 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("mujoco")
 pytest.importorskip("sklearn")
 
-Exhibits = dict[str, Exhibit]
+Figures = dict[str, ThesisFigure]
 THESIS = _core.named_basis("thesis-15")
 
 
 @pytest.fixture(scope="module")
-def exhibits() -> Exhibits:
-    told: list[float] = []
-    made = chapter5_exhibits(Bench(size=SMALL), lambda _what, share: told.append(share))
-    assert told == sorted(told)
-    assert all(0.0 <= share < 1.0 for share in told)
-    return {exhibit.key: exhibit for exhibit in made}
+def figures() -> Figures:
+    reported: list[float] = []
+    made = chapter5_figures(Fixture(size=SMALL), lambda _what, share: reported.append(share))
+    assert reported == sorted(reported)
+    assert all(0.0 <= share < 1.0 for share in reported)
+    return {figure.key: figure for figure in made}
 
 
-def test_every_figure_and_table_is_there_and_told_with_finite_numbers(exhibits: Exhibits) -> None:
-    assert {"figure-5-1", "figure-5-2", "figure-5-3", "table-5-scores", "table-5-times"} <= set(exhibits)
-    for exhibit in exhibits.values():
-        text = f"{exhibit.shows} {exhibit.agrees} {exhibit.differs}"
-        assert not re.search(r"\bnan\b|\binf\b|–", text), exhibit.key
+def test_every_figure_and_table_is_there_with_finite_numbers(figures: Figures) -> None:
+    assert {"figure-5-1", "figure-5-2", "figure-5-3", "table-5-scores", "table-5-times"} <= set(figures)
+    for figure in figures.values():
+        text = f"{figure.shows} {figure.agrees} {figure.differs}"
+        assert not re.search(r"\bnan\b|\binf\b|–", text), figure.key
 
 
-def test_surfaces_have_a_finite_mean_a_positive_spread_and_their_examples(exhibits: Exhibits) -> None:
+def test_surfaces_have_a_finite_mean_a_positive_spread_and_their_examples(figures: Figures) -> None:
     for key in ("figure-5-1", "figure-5-2", "figure-5-3"):
-        assert len(exhibits[key].panels) == 3
-        assert "is missing" in exhibits[key].source
-        for panel in exhibits[key].panels:
+        assert len(figures[key].panels) == 3
+        assert "is missing" in figures[key].source
+        for panel in figures[key].panels:
             surface = next(series for series in panel.series if isinstance(series, Surface))
             points = next(series for series in panel.series if isinstance(series, Points))
             assert np.isfinite(surface.z).all()
@@ -57,22 +57,22 @@ def test_surfaces_have_a_finite_mean_a_positive_spread_and_their_examples(exhibi
             assert np.ptp(points.z) > 0.0
 
 
-def test_every_surface_beats_no_slip_on_commands_it_has_not_learned(exhibits: Exhibits) -> None:
-    for grid in exhibits["table-5-scores"].grids:
-        plain, *surfaces = [float(row[grid.columns.index("angular [mrad/s]")]) for row in grid.rows]
+def test_every_surface_beats_no_slip_on_commands_it_has_not_learned(figures: Figures) -> None:
+    for grid in figures["table-5-scores"].grids:
+        baseline, *surfaces = [float(row[grid.columns.index("angular [mrad/s]")]) for row in grid.rows]
         assert len(surfaces) == 6
-        assert max(surfaces) < plain / 3.0
+        assert max(surfaces) < baseline / 3.0
 
 
-def test_a_process_that_is_too_large_to_time_is_called_an_estimate(exhibits: Exhibits) -> None:
-    (grid,) = exhibits["table-5-times"].grids
+def test_a_process_that_is_too_large_to_time_is_called_an_estimate(figures: Figures) -> None:
+    (grid,) = figures["table-5-times"].grids
     process = next(row for row in grid.rows if row[0] == "Gaussian process")
     assert [cell.startswith("about") for cell in process[1:]] == [False, True, True] * 2
     assert not any("about" in cell for row in grid.rows for cell in row if row is not process)
 
 
 def test_a_real_husky_loses_half_of_its_turn_on_tile(real_log_dir: Path) -> None:
-    examples = husky_examples(Bench(data=real_log_dir))
+    examples = husky_examples(Fixture(data=real_log_dir))
     assert len(examples.learned) + len(examples.held_out) == len(examples.whole) == 200
     surface = LeastSquaresSurface(_core.named_basis("odd-even-10"))
     surface.fit(examples.learned)

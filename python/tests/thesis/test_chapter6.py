@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 6 on small drives: what is recorded is what is evaluated, and exhibits hold what they claim."""
+"""Chapter 6 on small drives: what is recorded is what is evaluated, and figures hold what they claim."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import predictions_of
 from slipwise.logs import Log
-from slipwise.thesis import SMALL, Bench, Exhibit, Heat, Line
-from slipwise.thesis.chapter6 import chapter6_exhibits
+from slipwise.thesis import SMALL, Fixture, Heat, Line, ThesisFigure
+from slipwise.thesis.chapter6 import chapter6_figures
 from slipwise.thesis.chapter6_circling import circling
 from slipwise.thesis.chapter6_convergence import without_slip
 from slipwise.thesis.chapter6_jacobian import shares_wrong
@@ -33,48 +33,48 @@ pytestmark = pytest.mark.slow
 
 pytest.importorskip("mujoco")
 
-Exhibits = dict[str, Exhibit]
+Figures = dict[str, ThesisFigure]
 
 
 @pytest.fixture(scope="module")
-def bench() -> Bench:
-    return Bench(size=SMALL)
+def fixture() -> Fixture:
+    return Fixture(size=SMALL)
 
 
 @pytest.fixture(scope="module")
-def exhibits(bench: Bench) -> Exhibits:
-    told: list[float] = []
-    made = chapter6_exhibits(bench, lambda _what, share: told.append(share))
-    assert told == sorted(told)
-    assert all(0.0 <= share < 1.0 for share in told)
-    return {exhibit.key: exhibit for exhibit in made}
+def figures(fixture: Fixture) -> Figures:
+    reported: list[float] = []
+    made = chapter6_figures(fixture, lambda _what, share: reported.append(share))
+    assert reported == sorted(reported)
+    assert all(0.0 <= share < 1.0 for share in reported)
+    return {figure.key: figure for figure in made}
 
 
 @pytest.fixture(scope="module")
-def circles(bench: Bench) -> Log:
-    return circling(bench, "tyre-force")
+def circles(fixture: Fixture) -> Log:
+    return circling(fixture, "tyre-force")
 
 
-def test_every_figure_and_table_is_there_and_told_with_finite_numbers(exhibits: Exhibits) -> None:
-    names = {exhibit.thesis for exhibit in exhibits.values()}
+def test_every_figure_and_table_is_there_with_finite_numbers(figures: Figures) -> None:
+    names = {figure.thesis for figure in figures.values()}
     assert {f"Figure 6.{place}" for place in range(1, 8)} | {"Table 6.2"} <= names
-    for exhibit in exhibits.values():
-        text = f"{exhibit.shows} {exhibit.agrees} {exhibit.differs}"
-        assert not re.search(r"\bnan\b|\binf\b|–", text), exhibit.key
-        assert not re.search(r"[.:] [a-z]\w* is best", text), exhibit.key
+    for figure in figures.values():
+        text = f"{figure.shows} {figure.agrees} {figure.differs}"
+        assert not re.search(r"\bnan\b|\binf\b|–", text), figure.key
+        assert not re.search(r"[.:] [a-z]\w* is best", text), figure.key
 
 
-def test_slip_surfaces_bring_a_drive_near_to_physics(exhibits: Exhibits) -> None:
-    lines = {line.label: line for line in exhibits["figure-6-1"].panels[0].series if isinstance(line, Line)}
+def test_slip_surfaces_bring_a_drive_near_to_physics(figures: Figures) -> None:
+    lines = {line.label: line for line in figures["figure-6-1"].panels[0].series if isinstance(line, Line)}
     ends = {label: np.array([line.x[-1], line.y[-1]]) for label, line in lines.items()}
     physics = ends["rigid-body physics"]
     ideal = np.linalg.norm(ends["ideal: commands without slip"] - physics)
     assert np.linalg.norm(ends["mean surfaces"] - physics) < 0.2 * ideal
 
 
-def test_table_has_every_estimator_and_learning_beats_no_slip(exhibits: Exhibits) -> None:
+def test_table_has_every_estimator_and_learning_beats_no_slip(figures: Figures) -> None:
     for ground in ("tyre-force", "contact-friction"):
-        for grid in exhibits[f"table-6-2-{ground}"].grids[:2]:
+        for grid in figures[f"table-6-2-{ground}"].grids[:2]:
             rows = {row[0]: row for row in grid.rows}
             assert set(METHODS) < set(rows)
             place = grid.columns.index("honest position [m]")
@@ -84,9 +84,9 @@ def test_table_has_every_estimator_and_learning_beats_no_slip(exhibits: Exhibits
 
 def test_ratios_of_the_thesis_are_those_of_its_errors() -> None:
     errors = {name: (float(position[:4]), float(heading[:4])) for name, position, heading, _ in PRINTED}
-    for name, _, _, told in PRINTED:
-        ratios = [plain / mine for plain, mine in zip(errors["None"], errors[name], strict=True)]
-        np.testing.assert_allclose([float(value) for value in told.split(", ")], ratios, rtol=0.02)
+    for name, _, _, better in PRINTED:
+        ratios = [baseline / mine for baseline, mine in zip(errors["None"], errors[name], strict=True)]
+        np.testing.assert_allclose([float(value) for value in better.split(", ")], ratios, rtol=0.02)
 
 
 def contest_of(**in_sample: tuple[float, float]) -> Contest:
@@ -95,9 +95,9 @@ def contest_of(**in_sample: tuple[float, float]) -> Contest:
 
 
 def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
-    plain, default = (1.0, 0.8), (0.1, 0.02)
-    as_printed = contest_of(none=plain, auto=default, gradient_descent=(0.4, 0.08), ekf_thesis=(0.2, 0.04))
-    turned = contest_of(none=plain, auto=(0.3, 0.02), gradient_descent=(0.2, 0.08), ekf_thesis=(0.4, 0.04))
+    baseline, default = (1.0, 0.8), (0.1, 0.02)
+    as_printed = contest_of(none=baseline, auto=default, gradient_descent=(0.4, 0.08), ekf_thesis=(0.2, 0.04))
+    turned = contest_of(none=baseline, auto=(0.3, 0.02), gradient_descent=(0.2, 0.08), ekf_thesis=(0.4, 0.04))
     contests = {"wheel": as_printed, "command": turned}
     gained, ordered = gain_findings(contests), order_findings(contests)
     assert [finding.same for finding in gained] == [True, True, False, False]
@@ -106,23 +106,23 @@ def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
     assert ordered[2].text == "from commands in position (0.400 beside 0.200 m)"
 
 
-def test_the_table_says_where_it_contradicts_the_thesis(exhibits: Exhibits) -> None:
+def test_the_table_says_where_it_contradicts_the_thesis(figures: Figures) -> None:
     """Each in-sample comparison of its own rows stands once, on the side where it belongs."""
     for ground in ("tyre-force", "contact-friction"):
-        exhibit = exhibits[f"table-6-2-{ground}"]
-        for grid, name in zip(exhibit.grids, ("commands", "wheel speeds"), strict=False):
+        figure = figures[f"table-6-2-{ground}"]
+        for grid, name in zip(figure.grids, ("commands", "wheel speeds"), strict=False):
             rows = {row[0]: row for row in grid.rows}
             for what, unit in (("position", "m"), ("heading", "rad")):
                 place = grid.columns.index(f"in-sample {what} [{unit}]")
                 kalman, descent = (rows[n][place].split(" ±")[0] for n in ("ekf-thesis", "gradient-descent"))
                 text = f"from {name} in {what} ({kalman} beside {descent} {unit})"
                 agrees = float(kalman) < float(descent)
-                assert (text in exhibit.agrees) is agrees
-                assert (text in exhibit.differs) is not agrees
+                assert (text in figure.agrees) is agrees
+                assert (text in figure.differs) is not agrees
 
 
-def test_correlations_are_ones_on_the_diagonal(exhibits: Exhibits) -> None:
-    for panel in exhibits["figure-6-6"].panels:
+def test_correlations_are_ones_on_the_diagonal(figures: Figures) -> None:
+    for panel in figures["figure-6-6"].panels:
         (heat,) = panel.series
         assert isinstance(heat, Heat)
         np.testing.assert_allclose(np.diag(heat.values), 1.0)
@@ -130,7 +130,7 @@ def test_correlations_are_ones_on_the_diagonal(exhibits: Exhibits) -> None:
 
 
 @pytest.mark.parametrize("name", ["gradient-descent", "ekf-thesis", "iekf", "delayed-state"])
-def test_a_recording_believes_what_the_evaluation_does(name: str, circles: Log) -> None:
+def test_a_recording_has_the_posterior_of_the_evaluation(name: str, circles: Log) -> None:
     course = Course(name)
     recording = record(circles, course)
     settings = course.settings.model_copy(update={"estimator": name})
@@ -151,8 +151,8 @@ def test_the_exact_jacobian_changes_what_the_filter_learns(circles: Log) -> None
 
 def test_residuals_without_slip_are_those_of_the_plain_model(circles: Log) -> None:
     recording = record(circles, Course("iekf"))
-    plain = baseline_predictor(recording.course.settings)
-    predictions = predictions_of(plain, recording.windows, recording.fed)
+    baseline = baseline_predictor(recording.course.settings)
+    predictions = predictions_of(baseline, recording.windows, recording.fed)
     np.testing.assert_allclose(without_slip(recording), predictions.residual, atol=1e-12)
 
 

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.slow
 pytest.importorskip("matplotlib")
 
 
-def test_markdown_holds_every_exhibit_with_its_picture_table_and_words() -> None:
+def test_markdown_holds_every_figure_with_its_picture_table_and_words() -> None:
     text = markdown(toy_results())
     assert "### Figure 9.9: Toy figure-9-1" in text
     assert "![Figure 9.9: Toy figure-9-1](figure-9-1.png)" in text
@@ -44,9 +44,9 @@ def test_links_of_the_contents_lead_to_headings() -> None:
 def test_pictures_are_small_and_the_same_bytes_each_time() -> None:
     from PIL import Image
 
-    for exhibit in toy_results()[0].exhibits[:2]:
-        picture = draw_png(exhibit)
-        assert picture == draw_png(exhibit)
+    for figure in toy_results()[0].figures[:2]:
+        picture = draw_png(figure)
+        assert picture == draw_png(figure)
         assert len(picture) <= LARGEST
         assert Image.open(io.BytesIO(picture)).width > 600
         assert b"matplotlib" not in picture.lower()
@@ -61,9 +61,9 @@ def test_page_draws_every_panel_says_every_word_and_forbids_every_request() -> N
     for words in ("What &lt;b&gt;is&lt;/b&gt; shown.", "It agrees.", "Differs, and why.", "a|b", "A note."):
         assert words in seen
     assert "Not made: the log nobody/has_this is missing" in seen
-    for exhibit in toy_results()[0].exhibits:
-        assert f'href="#{exhibit.key}"' in html
-        assert f'id="{exhibit.key}"' in html
+    for figure in toy_results()[0].figures:
+        assert f'href="#{figure.key}"' in html
+        assert f'id="{figure.key}"' in html
 
 
 def test_everything_is_written_whole(tmp_path: Path) -> None:

@@ -10,22 +10,22 @@ from thesis.toy_chapters import FAILING, TOY
 
 from slipwise.errors import SettingsError
 from slipwise.thesis import CHAPTERS, SMALL, reproduce
-from slipwise.thesis.reproduce import BenchPlan, chosen_chapters
+from slipwise.thesis.reproduce import FixturePlan, chosen_chapters
 
 pytestmark = pytest.mark.slow
 
-PLAN = BenchPlan(size=SMALL)
+PLAN = FixturePlan(size=SMALL)
 
 
 def test_chapters_come_back_in_their_order_and_report_progress(tmp_path: Path) -> None:
-    told: list[tuple[str, float]] = []
-    plan = BenchPlan(size=SMALL, data=tmp_path)
-    made = reproduce(plan, chapters=(TOY,), progress=lambda what, share: told.append((what, share)))
+    reported: list[tuple[str, float]] = []
+    plan = FixturePlan(size=SMALL, data=tmp_path)
+    made = reproduce(plan, chapters=(TOY,), progress=lambda what, share: reported.append((what, share)))
     assert [chapter.key for chapter in made] == ["toy"]
-    assert [exhibit.key for exhibit in made[0].exhibits] == ["figure-9-1", "figure-9-2", "figure-9-3"]
-    assert f"({tmp_path})" in made[0].exhibits[2].missing
-    assert ("toy: half", 0.5) in told
-    assert told[-1] == ("done", 1.0)
+    assert [figure.key for figure in made[0].figures] == ["figure-9-1", "figure-9-2", "figure-9-3"]
+    assert f"({tmp_path})" in made[0].figures[2].missing
+    assert ("toy: half", 0.5) in reported
+    assert reported[-1] == ("done", 1.0)
 
 
 def test_an_error_in_a_chapter_says_what_where_and_what_to_do() -> None:
@@ -36,7 +36,7 @@ def test_an_error_in_a_chapter_says_what_where_and_what_to_do() -> None:
 
 def test_a_negative_seed_is_refused() -> None:
     with pytest.raises(SettingsError, match="-1"):
-        reproduce(BenchPlan(seed=-1))
+        reproduce(FixturePlan(seed=-1))
 
 
 def test_chapters_are_chosen_by_key_and_unknown_ones_are_named() -> None:

@@ -9,18 +9,18 @@ from slipwise.errors import SettingsError
 from slipwise.thesis import (
     Band,
     Bars,
-    Bench,
     Chapter,
     ChapterResult,
     ErrorBars,
-    Exhibit,
+    Fixture,
     Grid,
     Heat,
     Line,
     Panel,
     Points,
     Surface,
-    exhibit_of_log,
+    ThesisFigure,
+    figure_of_log,
     outline,
     paths_line,
 )
@@ -56,9 +56,9 @@ def solid(place: int = 0) -> Panel:
     return Panel("Surface", "V [m/s]", "ω [rad/s]", (surface, Points(X, X, X**2)), z_label="slip [m/s]")
 
 
-def exhibit(key: str, *parts: Panel | Grid) -> Exhibit:
-    """Return an exhibit of some parts."""
-    return Exhibit(
+def figure(key: str, *parts: Panel | Grid) -> ThesisFigure:
+    """Return a figure of some parts."""
+    return ThesisFigure(
         key,
         "Figure 9.9",
         f"Toy {key}",
@@ -73,32 +73,32 @@ def exhibit(key: str, *parts: Panel | Grid) -> Exhibit:
 TABLE = Grid("A table", ("name", "error [m]"), (("a|b", "1"), ("c_d", "2")), note="A note.")
 
 
-def toy_exhibits(bench: Bench, progress: Progress) -> list[Exhibit]:
-    """Make a few exhibits, one of which needs a log."""
+def toy_figures(fixture: Fixture, progress: Progress) -> list[ThesisFigure]:
+    """Make a few figures, one of which needs a log."""
     progress("half", 0.5)
-    missing = exhibit_of_log("figure-9-3", "Figure 9.3", "Of a log", lambda: _of_log(bench))
+    missing = figure_of_log("figure-9-3", "Figure 9.3", "Of a log", lambda: _of_log(fixture))
     return [
-        exhibit("figure-9-1", FLAT, BARS, HEAT, TABLE),
-        exhibit("figure-9-2", solid(), LOGARITHMIC, NAMED),
+        figure("figure-9-1", FLAT, BARS, HEAT, TABLE),
+        figure("figure-9-2", solid(), LOGARITHMIC, NAMED),
         missing,
     ]
 
 
-def _of_log(bench: Bench) -> Exhibit:
-    bench.real_log("nobody/has_this")
+def _of_log(fixture: Fixture) -> ThesisFigure:
+    fixture.real_log("nobody/has_this")
     raise AssertionError("the log is not there")
 
 
-def failing_exhibits(bench: Bench, progress: Progress) -> list[Exhibit]:
+def failing_figures(fixture: Fixture, progress: Progress) -> list[ThesisFigure]:
     """Fail as a chapter may."""
     raise SettingsError("a chapter went wrong", where="toy", advice="mend it")
 
 
-TOY = Chapter("toy", "A toy chapter", toy_exhibits)
-FAILING = Chapter("failing", "A chapter that fails", failing_exhibits)
+TOY = Chapter("toy", "A toy chapter", toy_figures)
+FAILING = Chapter("failing", "A chapter that fails", failing_figures)
 
 
 def toy_results() -> tuple[ChapterResult, ...]:
-    """Return the toy chapter's exhibits."""
-    exhibits = toy_exhibits(Bench(), lambda _what, _share: None)
-    return (ChapterResult(TOY.key, TOY.title, tuple(exhibits)),)
+    """Return the toy chapter's figures."""
+    figures = toy_figures(Fixture(), lambda _what, _share: None)
+    return (ChapterResult(TOY.key, TOY.title, tuple(figures)),)

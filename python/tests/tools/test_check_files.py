@@ -55,3 +55,19 @@ def test_only_files_that_git_does_not_ignore_are_checked(tmp_path: Path) -> None
         (tmp_path / name).write_text("pass\n", encoding="utf-8")
     (fault,) = check(tmp_path)
     assert fault.startswith("seen one.py: ")
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["wanders", "SlipWander", "check_wander", "its belief", "kept_beliefs", "ColouredSlip", "learn anew"],
+)
+def test_a_retired_word_is_refused_in_the_product_with_what_replaces_it(text: str) -> None:
+    source = f"{PYTHON}# {text}\n"
+    (fault,) = faults_of("python/slipwise/a.py", source)
+    assert "is retired; write " in fault
+    assert faults_of("python/tests/a.py", source) == []
+
+
+@pytest.mark.parametrize("text", ["a new one", "coloured noise", "a command and its chain", "yaw and error"])
+def test_other_words_are_not(text: str) -> None:
+    assert faults_of("python/slipwise/a.py", f"{PYTHON}# {text}\n") == []

@@ -7,6 +7,8 @@ import tomllib
 import pytest
 from tools.requirements import ROOT, requirements
 
+#: Extras behind the project's name, or behind the dot of a checkout: slipwise[gp], ".[plot,sim]".
+EXTRAS = re.compile(r"(?:\bslipwise|(?<![\w\])])\.)\[([a-z][a-z, -]*)\]")
 PROJECT = {
     "build-system": {"requires": ["builder>=1"]},
     "project": {
@@ -30,19 +32,32 @@ def test_an_extra_that_names_others_stands_for_theirs() -> None:
     assert requirements(PROJECT, "all") == ["drawing>=1", "mujoco>=3"]
 
 
-def test_every_extra_that_an_error_advises_exists() -> None:
+def test_every_extra_that_a_page_or_an_error_names_exists() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
-    sources = [*(ROOT / "python/slipwise").rglob("*.py"), *(ROOT / "docs").rglob("*.md"), ROOT / "README.md"]
-    advised = {
-        extra
-        for source in sources
-        for names in re.findall(
-            r"install ['\"]*(?:slipwise|\.)\[([^\]]+)\]", source.read_text(encoding="utf-8")
-        )
+    pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md"), *(ROOT / "examples").rglob("*.md")]
+    named = {
+        extra.strip()
+        for source in [*pages, *(ROOT / "python/slipwise").rglob("*.py")]
+        for names in EXTRAS.findall(source.read_text(encoding="utf-8"))
         for extra in names.split(",")
     }
-    assert {"gp", "plot", "sim"} <= advised
-    assert advised <= set(project["project"]["optional-dependencies"])
+    assert {"gp", "pandas", "plot", "sim", "thesis"} <= named
+    assert named <= set(project["project"]["optional-dependencies"])
+
+
+@pytest.mark.parametrize(
+    ("text", "names"),
+    [
+        ('pip install "slipwise[gp]"', ["gp"]),
+        ("needs slipwise[gp, sim]", ["gp, sim"]),
+        ('`".[plot]"`', ["plot"]),
+        ("pip install .[sim]", ["sim"]),
+        ("slipwise[0]", []),
+        ("path.[sim]", []),
+    ],
+)
+def test_extras_are_found_in_text(text: str, names: list[str]) -> None:
+    assert EXTRAS.findall(text) == names
 
 
 def test_an_unknown_part_is_refused() -> None:

@@ -38,7 +38,7 @@ bool unlimited(const CommandLimits& limits);
 /// Whether the sides are limited; if not, track and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
-/// Whether a axis, or some axis, ramps.
+/// Whether an axis, or some axis, ramps.
 bool limits_rates(const AxisLimits& limits);
 bool limits_rates(const CommandLimits& limits);
 /// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top, track or gain not positive.

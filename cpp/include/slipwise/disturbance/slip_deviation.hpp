@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far slip is now from what was learned, under one guess of how it wanders (derivations.md, section 18).
+// How far slip is now from what was learned, under one candidate of its disturbance (derivations.md, section 18).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,7 @@ struct ObservedSlip {
   ByDeviation by_deviation;
 };
 
-/// A Kalman filter over the deviation of the wandering terms. It holds still within a segment and decays between their
+/// A Kalman filter over the deviation of the disturbed terms. It holds still within a segment and decays between their
 /// middles.
 class SlipDeviation {
  public:
@@ -27,9 +27,9 @@ class SlipDeviation {
   using StateMatrix =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMostDisturbed, kMostDisturbed>;
 
-  SlipDeviation(const SlipDisturbance& wander, const DisturbedTerms& terms);
+  SlipDeviation(const SlipDisturbance& disturbance, const DisturbedTerms& terms);
 
-  /// How many terms wander.
+  /// How many terms have a disturbance.
   Eigen::Index size() const { return mean_.size(); }
   /// Takes in a segment that follows all that were taken in before.
   void follow(const ObservedSlip& observed);

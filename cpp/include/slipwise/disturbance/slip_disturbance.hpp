@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Slip that wanders about what was learned, and what the last segments say of where it is now.
+// The slip disturbance about what was learned, and what the last segments say of where it is now.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +17,10 @@
 namespace slipwise {
 
 struct DisturbanceSettings {
-  /// Candidate standard deviations of a wandering term, as fractions of its prior standard deviation [-].
+  /// Candidate standard deviations of a disturbed term, as fractions of its prior standard deviation [-].
   std::vector<double> fractions = {0.1, 0.3};
   std::vector<double> time_constants = {5.0, 20.0};  ///< candidates [s]
-  double white = 0.5;                                ///< weight beforehand of slip that does not wander [-]
+  double white = 0.5;                                ///< prior weight of no slip disturbance [-]
   WeightingSettings weighting{.learning_rate = 1.0, .share = 0.01};
 };
 
@@ -42,13 +42,13 @@ struct ExpectedPoses {
 };
 
 /// Adds to the shares of V and w in the slip rates a deviation that decays, follows it through the last segments, and
-/// carries it into a prediction. How far and how slowly slip wanders is weighted among candidates by what they predict;
-/// the first candidate is that it does not (derivations.md, section 18).
+/// carries it into a prediction. How large and how slow the disturbance is is weighted among candidates by what they
+/// predict; the first candidate is that it does not (derivations.md, section 18).
 class DisturbanceFilter {
  public:
   /// \throws std::invalid_argument when a fraction or a time constant is not positive and finite.
   explicit DisturbanceFilter(const DisturbanceSettings& settings);
-  DisturbanceFilter() = default;  ///< slip that does not wander
+  DisturbanceFilter() = default;  ///< no slip disturbance
   /// As it was learned before, to predict with.
   /// \throws std::invalid_argument when the law's numbers contradict each other.
   explicit DisturbanceFilter(DisturbanceModel law);
@@ -89,7 +89,7 @@ class DisturbanceFilter {
 
   DisturbanceModel law_;
   WeightingSettings weighting_;
-  Eigen::VectorXd prior_;     ///< weights beforehand
+  Eigen::VectorXd prior_;     ///< prior weights
   std::size_t observed_ = 0;  ///< segments weighted by
 };
 

@@ -70,7 +70,7 @@ class BayesianRegression {
   std::size_t count_ = 0;
 };
 
-/// A regression on the latest examples alone; made anew from them now and then, so that rounding does not add up.
+/// A regression on the latest examples alone; made again from them now and then, so that rounding does not add up.
 class SlidingRegression {
  public:
   /// \throws std::invalid_argument when the window is empty.
@@ -82,7 +82,7 @@ class SlidingRegression {
 
  private:
   std::size_t window_;
-  std::size_t removed_ = 0;  // since the regression was made anew
+  std::size_t removed_ = 0;  // since the regression was made again
   std::deque<RegressionExample> examples_;
   BayesianRegression regression_;
 };

@@ -41,7 +41,7 @@ class CausalFilter {
   /// What learning goes on from: the noise is taken to be of the shape given.
   const Estimate& estimate() const { return state_.estimate; }
   /// The same with a covariance that also holds where it is not, or where slip is correlated in time.
-  Estimate stated() const;
+  Estimate reported() const;
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
   /// Learned factor of the noise variances of (x, y, theta).

@@ -17,7 +17,7 @@ struct IekfSettings {
   double tolerance = 1e-2;  ///< iterations stop when they lower the MAP cost (in units of NIS) by less than this [-]
   int halvings = 4;         ///< step halvings per iteration before the iteration is given up
   double huber = 2.5;       ///< a residual of more than this many sigma counts for less [-]
-  double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is left out [-]
+  double gate = 50.0;       ///< NIS (3 degrees of freedom) beyond which a segment is rejected [-]
 
   MapSettings map() const { return {.iterations = iterations, .tolerance = tolerance, .halvings = halvings}; }
 };
@@ -28,7 +28,7 @@ struct IekfUpdate {
   Eigen::Vector3d innovation;             ///< measured minus predicted chart (x, y, theta), before the update
   Eigen::Matrix3d innovation_covariance;  ///< S = J P J^T + R before the update
   double nis;                             ///< innovation^T S^-1 innovation
-  double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where left out
+  double weight;                          ///< Huber weight, 1 where nothing was unusual, 0 where rejected
   Status status;
   SegmentLinearization at = {};  ///< at the estimate's mean, as `iekf_update` returns it
 };

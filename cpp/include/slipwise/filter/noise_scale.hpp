@@ -34,7 +34,7 @@ class NoiseScale {
   void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
              const Eigen::Vector3d& expected);
   /// Follows the next residuals as fast as those of the first segments, from the present value.
-  void hurry() { segments_ = std::min(segments_, settings_.prior_segments); }
+  void reset_gain() { segments_ = std::min(segments_, settings_.prior_segments); }
   /// Forgets all residuals.
   void restart() { *this = NoiseScale(settings_); }
   /// The same as `learn` for a model that never learns the segment: of its squared error, the parameters explain

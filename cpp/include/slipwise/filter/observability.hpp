@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the data say of each parameter: posterior against prior, the direction known least, and look-alikes.
+// What the data say of each parameter: posterior against prior, the direction known least, and confounded parameters.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighing candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that falls
+// Weighting candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that falls
 // with time (Herbster and Warmuth 1998; van Erven, Gruenwald and de Rooij 2012).
 #pragma once
 
@@ -12,12 +12,12 @@ namespace slipwise {
 struct WeightingSettings {
   double learning_rate =
       0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double share = 0.05;  ///< part of the weight that segment n spreads anew, 1/n where that is less: poor candidates
+  double share = 0.05;  ///< part of the weight that segment n redistributes, 1/n where that is less: poor candidates
                         ///< lead while data are few, and the longer one has led, the less is a change expected [-]
 };
 
 /// The weights after candidates predicted a segment with these log scores, `observed` segments having spoken before;
-/// what is spread anew is spread by `prior`, their weights beforehand (derivations.md, section 7).
+/// what is redistributed is spread by `prior`, their prior weights (derivations.md, section 7).
 /// \throws std::invalid_argument when there is not one score and one prior weight per weight.
 Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
                                 const Eigen::VectorXd& prior, const WeightingSettings& settings, std::size_t observed);

@@ -23,10 +23,10 @@ struct WindowModel {
   auto observed_noise() const { return noise.topLeftCorner(measured, measured); }
 };
 
-/// The passage from a state at the start on.
+/// The model from a state at the start on.
 using MeasurementFunction = std::function<WindowModel(const Eigen::VectorXd& state)>;
 
-/// A state at the start, and the passage from there.
+/// A state at the start, and the model from there.
 struct WindowPoint {
   Eigen::VectorXd state;
   WindowModel at;
@@ -35,10 +35,10 @@ struct WindowPoint {
 /// S = H P H^T + R of what is measured.
 Eigen::MatrixXd innovation_covariance(const Estimate& prior, const WindowModel& at);
 
-/// The most probable state at the start, given the prior and what was measured: from `expected`, the passage of the
+/// The most probable state at the start, given the prior and what was measured: from `expected`, the model of the
 /// prior's mean. Where not even the first step helps, that mean.
-WindowPoint settle(const Estimate& prior, WindowModel expected, const MeasurementFunction& predict,
-                   const Eigen::VectorXd& measured, const IekfSettings& settings);
+WindowPoint most_probable_start(const Estimate& prior, WindowModel expected, const MeasurementFunction& predict,
+                                const Eigen::VectorXd& measured, const IekfSettings& settings);
 
 /// The state at the start given what was measured, its covariance alone.
 Eigen::MatrixXd start_covariance(const Estimate& prior, const WindowModel& at);

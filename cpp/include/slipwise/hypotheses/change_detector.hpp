@@ -45,7 +45,7 @@ using ChangeKinds = std::vector<std::vector<Eigen::Index>>;
 
 /// A Bayesian likelihood ratio over the last segments, averaged over the kinds of change and weighted against what is
 /// nominal on this ground: residuals that are always small tell of a change sooner, and neighbouring residuals that are
-/// always alike (coloured slip) are no change.
+/// always alike (a slip disturbance) are no change.
 class ChangeDetector {
  public:
   /// `kinds` are lists of columns of the `by_change` that `see` is given. Without any, nothing is ever found.
@@ -54,7 +54,7 @@ class ChangeDetector {
 
   /// Tests whether the ground changed before this segment or one of the last. `innovation` had covariance `covariance`
   /// under what was learned before; `by_change` is its derivative by changes in units of their nominal size. After an
-  /// alarm the test starts anew.
+  /// alarm the test starts again.
   ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighing several models by how well they predict, and their average as one model over all their terms.
+// Weighting several models by how well they predict, and their average as one model over all their terms.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,8 +19,7 @@ namespace slipwise {
 
 struct ModelAverageSettings {
   WeightingSettings weighting = {};
-  double largest_basis =
-      0.4;  ///< weight beforehand of the basis with the most terms: of all, it is best most often [-]
+  double largest_basis = 0.4;  ///< prior weight of the basis with the most terms: of all, it is best most often [-]
   ChangeSettings change = {};
 };
 
@@ -74,7 +73,7 @@ class ModelAverage {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.observed_,
       self.speeds_, self.changing_, self.before_);
-    a(self.detector_, self.change_, self.learning_, self.update_, self.on_trial_, self.announced_);
+    a(self.detector_, self.change_, self.learning_, self.update_, self.undecided_, self.announced_);
     self.check_sizes();
   }
 
@@ -93,8 +92,8 @@ class ModelAverage {
   void update_next_filter();
   void reweigh();
   ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
-  void doubt();
-  void settle();
+  void branch();
+  void resolve();
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
 
@@ -102,7 +101,7 @@ class ModelAverage {
   std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
   std::vector<std::vector<Eigen::Index>> places_;  ///< of each model's parameters in the union
   ModelAverageSettings settings_;
-  Eigen::VectorXd prior_;     ///< weights of the bases beforehand
+  Eigen::VectorXd prior_;     ///< prior weights of the bases
   Eigen::VectorXd weights_;   ///< one per filter
   std::size_t observed_ = 0;  ///< segments weighted by
   DrivenSpeeds speeds_;
@@ -112,7 +111,7 @@ class ModelAverage {
   ChangeTest change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  int on_trial_ = 0;        ///< segments until the models that forgot have to have proved better
+  int undecided_ = 0;       ///< segments until the models that forgot have to have proved better
   bool announced_ = false;  ///< whether the test itself raised an alarm for them
 };
 

@@ -56,7 +56,7 @@ class ActuatorChannel {
   void learn_size(const Eigen::VectorXd& innovation, const Cholesky& covariance, const Eigen::MatrixXd& noise);
   using Values = std::function<Eigen::VectorXd(const Eigen::VectorXd& state)>;
   Eigen::MatrixXd second_order(const Values& values, const WindowPoint& point) const;
-  void carry_times(const Estimate& before);
+  void reparametrise_times(const Estimate& before);
 
   ChannelModel model_;
   std::vector<std::size_t> live_;  ///< axes that are followed, by their places among the parts

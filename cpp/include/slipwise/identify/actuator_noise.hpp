@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a axis's measured speed is not its actuator: white noise of the samples, and a deviation that wanders
+// What of an axis's measured speed is not its actuator: white noise of the samples, and a correlated deviation
 // (derivations.md, section 4).
 #pragma once
 
@@ -11,7 +11,7 @@ namespace slipwise {
 /// Shape of that noise. The deviation is a Gauss-Markov process (Ornstein and Uhlenbeck).
 struct ActuatorNoise {
   double white = 1.0;          ///< variance of one sample
-  double wander = 0.0;         ///< variance of the deviation
+  double deviation = 0.0;      ///< variance of the deviation
   double time_constant = 1.0;  ///< of the deviation [s]
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is asked of a axis of the drive, and what is measured of it.
+// What is asked of an axis of the drive, and what is measured of it.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace slipwise {
 
-/// A command in a axis.
+/// A command in an axis.
 struct Asked {
   double speed;
   SideCommand of_side;  // of the sides alone

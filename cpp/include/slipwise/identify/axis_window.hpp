@@ -29,14 +29,14 @@ struct ChannelWindow {
 /// The axis that follows this part of the inputs through a channel's parameters.
 ActuatorAxis axis_of(double BodyTwist::* part, const ChannelParameters& parameters);
 
-/// A axis's state and the variances of its parts.
+/// An axis's state and the variances of its parts.
 struct FirstAxisState {
   AxisVector mean, variance;
 };
 
-/// Of a axis that was not followed until the window only the range of its speeds is known; none where it does not move.
-/// `wander` is the variance of its deviation.
-std::optional<FirstAxisState> first_state(const ChannelWindow& window, const ActuatorAxis& axis, double wander);
+/// Of an axis that was not followed until the window only the range of its speeds is known; none where it does not
+/// move. `deviation` is the variance of its deviation.
+std::optional<FirstAxisState> first_state(const ChannelWindow& window, const ActuatorAxis& axis, double deviation);
 
 /// The axis through the window from the fast and the slow part at its start; derivatives by lags and delay are by their
 /// logarithms, as the channel's parameters are.
@@ -44,9 +44,9 @@ AxisMotion axis_through(const ChannelWindow& window, const ActuatorAxis& axis, c
 
 /// The K means of the window, and after them the state at its end.
 struct AxisWindow {
-  Eigen::VectorXd value;                                               ///< [K + 3]
-  Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters> by_chain;  ///< [K + 3, 5] by the channel's parameters
-  Eigen::Matrix<double, Eigen::Dynamic, kAxisStates> by_state;         ///< [K + 3, 3] by the state at the start
+  Eigen::VectorXd value;                                                  ///< [K + 3]
+  Eigen::Matrix<double, Eigen::Dynamic, kChannelParameters> by_actuator;  ///< [K + 3, 5] by the channel's parameters
+  Eigen::Matrix<double, Eigen::Dynamic, kAxisStates> by_state;            ///< [K + 3, 3] by the state at the start
 };
 
 AxisWindow axis_window(const ChannelWindow& window, const ActuatorAxis& axis, const AxisVector& start,

@@ -20,7 +20,7 @@ std::vector<std::size_t> places_in_twist(const std::vector<double BodyTwist::*>&
 /// The reverse. \throws std::invalid_argument where there is no such place.
 std::vector<double BodyTwist::*> parts_of_twist(const std::vector<std::size_t>& places);
 
-/// Lanes that share their parameters, what is believed of these beforehand, and what else moves the wheels.
+/// Axes that share their parameters, their prior, and what else moves the wheels.
 struct ChannelModel {
   std::vector<double BodyTwist::*> parts;
   Estimate prior;
@@ -43,7 +43,7 @@ inline constexpr double kSameStamp = 1e-6;  ///< [s] windows closer than this me
 /// -2 log density under a Student t of `count` values, without constants.
 double student_cost(double nis, double log_determinant, Eigen::Index count);
 
-/// By how much the noise of a window is larger than nominal, by the rule of the IEKF; none where it is left out.
+/// By how much the noise of a window is larger than nominal, by the rule of the IEKF; none where it is rejected.
 double noise_inflation(double nis, Eigen::Index count, const IekfSettings& settings);
 
 struct ChannelRun {
@@ -53,12 +53,12 @@ struct ChannelRun {
   double until = -std::numeric_limits<double>::infinity();  ///< [s] the end
 };
 
-/// A axis's state for given parameters, and how it moves with them.
+/// An axis's state for given parameters, and how it moves with them.
 struct FollowedAxis {
   std::size_t place;  ///< among the parts
   AxisVector mean;
   Eigen::Matrix<double, kAxisStates, kAxisStates> covariance;
-  Eigen::Matrix<double, kAxisStates, kChannelParameters> by_chain;
+  Eigen::Matrix<double, kAxisStates, kChannelParameters> by_actuator;
 };
 
 /// For given parameters the actuator is linear in its state, and the axes are independent: small filters follow them

@@ -26,7 +26,7 @@ struct FoundLimit {
   double gain;   ///< of having it over not having it, in -2 log likelihood
 };
 
-/// What the commands reached in a axis: beyond it no limit can show.
+/// What the commands reached in an axis: beyond it no limit can show.
 struct AxisReach {
   double slowest = 0.0;  ///< command that is not zero
   double fastest = 0.0;  ///< command

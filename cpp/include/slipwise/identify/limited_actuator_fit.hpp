@@ -72,10 +72,10 @@ struct ScoredActuator {
 /// alone. So it is for one thread.
 class LimitedActuatorFit {
  public:
-  /// `prior` is of gain, delay and lag; the track between the sides is believed near `track` [m].
+  /// `prior` is of gain, delay and lag; the track between the sides is near `track` [m].
   LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior, double track);
 
-  /// No limits, and the actuator that is believed in before any data.
+  /// No limits, and the actuator of the prior.
   LimitedActuator start() const;
   ScoredActuator scored(const LimitedActuator& drive) const;
   /// Over the actuator and over the limits that limit anything, dead-bands held. Steps gain less and less: it stops

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smooth parameters of a limited drive in a row, on a logarithmic scale where positive, and what is believed of
-// them.
+// The smooth parameters of a limited drive in a row, on a logarithmic scale where positive, and their prior.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +10,7 @@
 namespace slipwise {
 
 /// In a row: gain, log lag and log delay per channel, log track, and per axis log top, acceleration, braking.
-inline constexpr int kChainPart = 6;
+inline constexpr int kActuatorPart = 6;
 inline constexpr int kTrackPlace = 6;
 inline constexpr int kFirstLimit = 7;
 inline constexpr int kLimitsPerAxis = 3;  ///< dead-bands are no smooth parameters

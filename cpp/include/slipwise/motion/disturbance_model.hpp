@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How slip wanders about what was learned: Gauss-Markov processes on its linear terms (derivations.md, section 18).
+// The slip disturbance about what was learned: Gauss-Markov processes on its linear terms (derivations.md, section 18).
 #pragma once
 
 #include <Eigen/Core>
@@ -9,20 +9,21 @@
 
 namespace slipwise {
 
-/// One guess of how slip wanders: first-order Gauss-Markov processes of one time constant.
+/// One candidate of the slip disturbance: first-order Gauss-Markov processes of one time constant.
 struct SlipDisturbance {
   double drift;          ///< of the forward and sideways terms, as a fraction of their prior std [-]
   double turn;           ///< of the angular terms [-]
   double time_constant;  ///< [s]
 };
 
-/// How slip wanders, as far as it is known: guesses and how likely each is. Without any, it does not.
+/// The slip disturbance, as far as it is known: candidates and how likely each is. Without any, there is none.
 struct DisturbanceModel {
   std::vector<SlipDisturbance> candidates;
   Eigen::VectorXd weights;  ///< not negative, their sum is 1
 };
 
-/// The terms that may wander: the shares of V in the forward and sideways slip rates, of V and w in the angular one.
+/// The terms that may have a disturbance: the shares of V in the forward and sideways slip rates, of V and w in the
+/// angular one.
 struct DisturbedTerms {
   std::vector<Eigen::Index> places;  ///< of their parameters
   Eigen::VectorXd prior_std;         ///< [places]
@@ -31,7 +32,7 @@ struct DisturbedTerms {
 
   Eigen::Index size() const { return prior_std.size(); }
   /// Variances of the terms under one guess, before anything recent is known.
-  Eigen::VectorXd variances(const SlipDisturbance& wander) const;
+  Eigen::VectorXd variances(const SlipDisturbance& disturbance) const;
 };
 
 inline constexpr Eigen::Index kMostDisturbed = 4;
@@ -47,7 +48,8 @@ double variance_over(double spans);
 /// Variances, of the terms, of the mean of slip over `seconds` about what was learned, when nothing recent is known.
 Eigen::VectorXd nominal_variances(const DisturbanceModel& law, const DisturbedTerms& terms, double seconds);
 
-/// Covariance of the parameters' mean over `seconds`: that of what was learned, and of the slip that wanders about it.
+/// Covariance of the parameters' mean over `seconds`: that of what was learned, and of the the slip disturbance about
+/// it.
 Eigen::MatrixXd covariance_over(const MotionModel& model, const Eigen::Ref<const Eigen::MatrixXd>& learned,
                                 const DisturbanceModel& law, const Eigen::Ref<const Eigen::VectorXd>& prior_std,
                                 double seconds);

@@ -46,7 +46,7 @@ class MotionModel {
   const Basis& basis() const { return basis_; }
   ActuatorParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
-  Eigen::Index actuator_size() const { return static_cast<Eigen::Index>(chain_places_.size()); }
+  Eigen::Index actuator_size() const { return static_cast<Eigen::Index>(actuator_places_.size()); }
   Eigen::Index mount_size() const { return learned_.mount ? kMountParameters : 0; }
   Eigen::Index size() const { return slip_size() + actuator_size() + mount_size(); }
   std::vector<ParameterInfo> parameters() const;
@@ -56,9 +56,9 @@ class MotionModel {
   Pose2 mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
   /// Which of the actuator's parameters (in ActuatorModel's order) the model's actuator parameters are, one after the
   /// other.
-  const std::vector<Eigen::Index>& chain_places() const { return chain_places_; }
+  const std::vector<Eigen::Index>& actuator_places() const { return actuator_places_; }
   /// Derivative of each of those by the model's parameter: d exp(log s) / d log s = s, or 1.
-  Eigen::VectorXd chain_scales(const ActuatorModel& actuator) const;
+  Eigen::VectorXd actuator_scales(const ActuatorModel& actuator) const;
 
   /// `log_time_derivative` of each time whose logarithm is learned, 1 for the other parameters.
   Eigen::VectorXd log_time_derivatives(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
@@ -70,7 +70,7 @@ class MotionModel {
   Basis basis_;
   ActuatorParameters learned_;
   std::vector<Eigen::Index> actuator_rows_;  ///< in the table of what may be learned of the actuator
-  std::vector<Eigen::Index> chain_places_;
+  std::vector<Eigen::Index> actuator_places_;
 };
 
 }  // namespace slipwise

@@ -58,7 +58,7 @@ class HorizonErrors {
   void learn(double end, Structure structure, double squared, double nominal_squared);
   /// The Student t without recent segments, from all errors.
   StudentT nominal(Structure structure) const;
-  /// Stamps begin anew: all errors so far are known.
+  /// Stamps begin again: all errors so far are known.
   void restart_clock();
 
   /// Names what is saved.

@@ -111,7 +111,7 @@ class MotionLearner {
   /// Stamp of the newest measurement of the run [s]; minus infinity before the first.
   double newest() const { return stream_.newest(); }
 
-  /// Names what is saved. Where slip is now is found anew from the rest.
+  /// Names what is saved. Where slip is now is found again from the rest.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.stream_, self.hypotheses_, self.disturbance_, self.waiting_, self.started_, self.known_);

@@ -28,7 +28,7 @@ struct MeasuredPose {
 
 /// What the gate makes of the poses.
 struct GatedPoses {
-  std::vector<MeasuredPose> accepted;  ///< in order, their frames numbered anew where poses jump
+  std::vector<MeasuredPose> accepted;  ///< in order, their frames numbered again where poses jump
   std::vector<MeasuredPose> outliers;  ///< lone poses far from their neighbours
   std::vector<MeasuredPose> jumps;     ///< the first pose after each jump that lasts
 };

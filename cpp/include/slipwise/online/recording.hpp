@@ -38,7 +38,7 @@ struct CutRuns {
 /// The segments that a learner with these settings learns.
 CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs);
 
-/// The poses of a recorded run as a learner uses them: outliers rejected, frames numbered anew where poses jump.
+/// The poses of a recorded run as a learner uses them: outliers rejected, frames numbered again where poses jump.
 GatedPoses gate_poses(const Recording& run, double unknown_after);
 
 }  // namespace slipwise

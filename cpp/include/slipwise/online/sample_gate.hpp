@@ -32,10 +32,10 @@ class StampGate {
 };
 
 /// Speeds that no ground robot can have, judged by the samples before them alone: more than 20 m/s or rad/s, more than
-/// ten times the fastest that was believed, and either above 100 or alone.
+/// ten times the fastest that was accepted, and either above 100 or alone.
 class SpeedGate {
  public:
-  /// Whether the speed [m/s or rad/s] is to be believed.
+  /// Whether the speed [m/s or rad/s] is accepted.
   bool plausible(double value);
 
   /// Names what is saved.
@@ -45,8 +45,8 @@ class SpeedGate {
   }
 
  private:
-  double before_ = 0.0;   ///< the last one, believed or not
-  double fastest_ = 0.0;  ///< that was believed
+  double before_ = 0.0;   ///< the last one, accepted or not
+  double fastest_ = 0.0;  ///< that was accepted
 };
 
 }  // namespace slipwise

@@ -62,17 +62,17 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
 }
 
 /// What a kernel is made for. None: every period is one part without lag. Response: gains and slow parts as well.
-enum class Chain : std::uint8_t { None, Delays, Lags, Response };
+enum class Actuator : std::uint8_t { None, Delays, Lags, Response };
 
 /// One channel of the drive: the input that acts, and what its lags hold.
-template <class L, Chain kActuator>
+template <class L, Actuator kActuator>
 struct ChannelLanes {
   L::Vector input;
   L::Vector fast;
   std::ptrdiff_t next;  ///< the period whose command acts next
 };
 template <class L>
-struct ChannelLanes<L, Chain::Response> {
+struct ChannelLanes<L, Actuator::Response> {
   L::Vector input;
   L::Vector fast;
   L::Vector slow;
@@ -80,21 +80,21 @@ struct ChannelLanes<L, Chain::Response> {
 };
 
 /// The next command begins to act.
-template <class L, Chain kActuator, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, typename Scalar = L::Scalar>
 SLIPWISE_LANES void tell(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                          const CommandSource<Scalar>& source, ChannelLanes<L, kActuator>& channel) {
   read_commands<L>(job, block, source, channel.next, channel.input);
   ++channel.next;
 }
 
-template <class L, Chain kActuator, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, typename Scalar = L::Scalar>
 SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block,
                                   const CommandSource<Scalar>& source, std::ptrdiff_t shift,
                                   ChannelLanes<L, kActuator>& channel) {
   channel.next = job.start_row - shift - 1;
   tell(job, block, source, channel);
   load(source.start->fast, channel.fast);
-  if constexpr (kActuator == Chain::Response) {
+  if constexpr (kActuator == Actuator::Response) {
     load(source.start->slow, channel.slow);
   }
 }
@@ -102,17 +102,17 @@ SLIPWISE_LANES void start_channel(const LaneJob<Scalar>& job, const LaneBlock<Sc
 /// The drive's mean over a part; its lags move on to the part's end. The speed goes by sums of input and output rather
 /// than by the gap between them: where it passes zero it keeps its digits, which the curvature of thesis 5.1 needs
 /// there.
-template <class L, Chain kActuator, bool kBySums, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, bool kBySums, typename Scalar = L::Scalar>
 SLIPWISE_LANES void advance(const LaneLag<Scalar>& lag, ChannelLanes<L, kActuator>& channel, typename L::Vector& mean) {
-  if constexpr (kActuator == Chain::Response) {
+  if constexpr (kActuator == Actuator::Response) {
     mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast + channel.slow * lag.mean_by_slow;
     channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
     channel.slow = channel.input * lag.slow_by_input + channel.slow * lag.slow_by_slow;
-  } else if constexpr (kActuator == Chain::Lags && !kBySums) {
+  } else if constexpr (kActuator == Actuator::Lags && !kBySums) {
     const typename L::Vector gap = channel.fast - channel.input;
     mean = channel.input + gap * lag.mean_by_fast;
     channel.fast = channel.input + gap * lag.fast_by_fast;
-  } else if constexpr (kActuator == Chain::Lags) {
+  } else if constexpr (kActuator == Actuator::Lags) {
     mean = channel.input * lag.mean_by_input + channel.fast * lag.mean_by_fast;
     channel.fast = channel.input * lag.fast_by_input + channel.fast * lag.fast_by_fast;
   } else {

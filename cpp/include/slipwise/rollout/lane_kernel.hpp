@@ -14,7 +14,7 @@
 namespace slipwise {
 
 /// A robot in every lane: its drive and where it is.
-template <class L, Chain kActuator>
+template <class L, Actuator kActuator>
 struct RobotLanes {
   ChannelLanes<L, kActuator> v;
   ChannelLanes<L, kActuator> omega;
@@ -35,7 +35,7 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
 }
 
 /// The tangent of one part: the drive moves on, and slips.
-template <class L, Chain kActuator, bool kQuadratic, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, bool kQuadratic, typename Scalar = L::Scalar>
 SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
                                RobotLanes<L, kActuator>& robot, TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
@@ -52,7 +52,7 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, Chain kActuator, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
 SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
@@ -67,16 +67,16 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
     const LanePart<Scalar>& part = job.parts[i];
-    if (kActuator == Chain::None || part.next_v) {
+    if (kActuator == Actuator::None || part.next_v) {
       tell(job, block, source_v, robot.v);
     }
-    if (kActuator == Chain::None || part.next_omega) {
+    if (kActuator == Actuator::None || part.next_omega) {
       tell(job, block, source_omega, robot.omega);
     }
     TangentLanes<L> tangent;
     drive_part<L, kActuator, kQuadratic>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);
-    if constexpr (kActuator == Chain::None) {
+    if constexpr (kActuator == Actuator::None) {
       output.write_period(robot.path, period);
       ++period;
       continue;
@@ -107,7 +107,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, Chain kActuator, bool kQuadratic, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, bool kQuadratic, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const unsigned fault = roll_block_as<L, kActuator, kQuadratic, false>(job, block);
   return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kActuator, kQuadratic, true>(job, block);
@@ -115,33 +115,33 @@ unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bl
 
 /// What the job needs a kernel for.
 template <typename Scalar>
-SLIPWISE_LANES Chain chain_of(const LaneJob<Scalar>& job) {
+SLIPWISE_LANES Actuator actuator_of(const LaneJob<Scalar>& job) {
   if (job.responds) {
-    return Chain::Response;
+    return Actuator::Response;
   }
   if (job.lags) {
-    return Chain::Lags;
+    return Actuator::Lags;
   }
-  return job.part_end == 1 && job.pieces == 1 ? Chain::None : Chain::Delays;
+  return job.part_end == 1 && job.pieces == 1 ? Actuator::None : Actuator::Delays;
 }
 
 template <class Level, bool kQuadratic, typename Scalar>
 unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Level, Scalar>;
-  switch (chain_of(job)) {
-    case Chain::Response:
-      return roll_block_with<L, Chain::Response, kQuadratic>(job, block);
-    case Chain::Lags:
-      return roll_block_with<L, Chain::Lags, kQuadratic>(job, block);
-    case Chain::None:
+  switch (actuator_of(job)) {
+    case Actuator::Response:
+      return roll_block_with<L, Actuator::Response, kQuadratic>(job, block);
+    case Actuator::Lags:
+      return roll_block_with<L, Actuator::Lags, kQuadratic>(job, block);
+    case Actuator::None:
       if constexpr (Level::kSingleLoop) {
-        return roll_block_with<L, Chain::None, kQuadratic>(job, block);
+        return roll_block_with<L, Actuator::None, kQuadratic>(job, block);
       }
       break;
-    case Chain::Delays:
+    case Actuator::Delays:
       break;
   }
-  return roll_block_with<L, Chain::Delays, kQuadratic>(job, block);
+  return roll_block_with<L, Actuator::Delays, kQuadratic>(job, block);
 }
 
 template <class Level, typename Scalar>

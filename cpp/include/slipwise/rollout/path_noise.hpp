@@ -16,12 +16,12 @@ namespace slipwise {
 
 /// The learned uncertainty of a model.
 struct ModelUncertainty {
-  Eigen::MatrixXd covariance;  ///< of the parameters
-  MotionNoise noise;           ///< its pose noise is not used: a rollout starts at a given pose
+  Eigen::MatrixXd covariance;                       ///< of the parameters
+  MotionNoise noise;                                ///< its pose noise is not used: a rollout starts at a given pose
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< learned factor of the variances of (x, y, theta)
   double growth = 1.0;                              ///< factor of all variances at the horizon in question
-  DisturbanceModel wander{};                        ///< of slip about the parameters
-  Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip wanders
+  DisturbanceModel disturbance{};                   ///< of slip about the parameters
+  Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip has a disturbance
 };
 
 /// A model with its parameters, how uncertain it is, and what stays the same over all rollouts.
@@ -36,7 +36,7 @@ struct UncertainModel {
 /// finite.
 void check_uncertainty(const UncertainModel& model);
 
-/// The terms that wander; none without a law.
+/// The disturbed terms; none without a law.
 DisturbedTerms disturbed_terms_of(const UncertainModel& model);
 
 /// The model that only drives: no slip, the same actuator. Its paths say how far the drive moves.

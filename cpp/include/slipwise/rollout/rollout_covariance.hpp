@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How uncertain the poses of rollouts are: parameters, slip that wanders and slip noise (derivations.md, section 16).
+// How uncertain the poses of rollouts are: parameters, the slip disturbance and slip noise (derivations.md, section
+// 16).
 #pragma once
 
 #include <span>
@@ -10,7 +11,7 @@ namespace slipwise {
 
 /// Writes the covariance of every pose, (xx, xy, yy, xt, yt, tt) of the world chart, into `out`
 /// [6 * periods * rollouts]: six blocks of rows of periods. It costs two rollouts in double per parameter and per
-/// term that wanders, and one for the drive alone.
+/// disturbed term, and one for the drive alone.
 /// \throws std::invalid_argument as rollout_batch does, and when the uncertainty or the length of `out` does not fit.
 void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>& batch, std::span<double> out,
                         const RolloutOptions& options = {});

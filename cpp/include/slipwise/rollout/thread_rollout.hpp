@@ -51,7 +51,7 @@ SLIPWISE_LANES unsigned find_unused_faults(const ThreadJob<Scalar>& given, std::
 }
 
 /// Drives one rollout and says what went wrong, as bits.
-template <Chain kActuator, bool kQuadratic, bool kWide, typename Scalar>
+template <Actuator kActuator, bool kQuadratic, bool kWide, typename Scalar>
 SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t rollout) {
   LaneJob<Scalar> job = given.job;
   job.parts = given.parts;
@@ -75,15 +75,15 @@ SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t 
 /// Calls `work.call<kActuator, kQuadratic, kWide>()` with what the job needs.
 template <bool kQuadratic, bool kWide, typename Scalar, class Work>
 void with_thread_actuator(const LaneJob<Scalar>& job, const Work& work) {
-  switch (chain_of(job)) {
-    case Chain::None:
-      return work.template call<Chain::None, kQuadratic, kWide>();
-    case Chain::Delays:
-      return work.template call<Chain::Delays, kQuadratic, kWide>();
-    case Chain::Lags:
-      return work.template call<Chain::Lags, kQuadratic, kWide>();
-    case Chain::Response:
-      return work.template call<Chain::Response, kQuadratic, kWide>();
+  switch (actuator_of(job)) {
+    case Actuator::None:
+      return work.template call<Actuator::None, kQuadratic, kWide>();
+    case Actuator::Delays:
+      return work.template call<Actuator::Delays, kQuadratic, kWide>();
+    case Actuator::Lags:
+      return work.template call<Actuator::Lags, kQuadratic, kWide>();
+    case Actuator::Response:
+      return work.template call<Actuator::Response, kQuadratic, kWide>();
   }
 }
 template <typename Scalar, class Work>

@@ -17,7 +17,7 @@ class BatchEstimator {
   /// Keeps the segment; the update is that of the filter that runs along.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
   const MotionModel& model() const { return filter_.model(); }
-  /// The MAP fit over all segments, made anew by each call; before the first segment, the prior.
+  /// The MAP fit over all segments, made again by each call; before the first segment, the prior.
   Estimate estimate() const;
   /// The posterior of the filter that runs along.
   Estimate running() const { return filter_.estimate(); }

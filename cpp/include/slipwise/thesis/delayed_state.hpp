@@ -35,7 +35,7 @@ class DelayedState {
   /// Takes in a pose measured now.
   void correct(const Pose2& measured);
 
-  /// The same by segments: one that begins where the last ended shares its pose; any other begins anew. Predicts from
+  /// The same by segments: one that begins where the last ended shares its pose; any other begins again. Predicts from
   /// the clone at the start, linearised again where the update settles. The innovation is that of the pose at the end.
   IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
 

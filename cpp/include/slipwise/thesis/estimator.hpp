@@ -17,7 +17,7 @@
 
 namespace slipwise {
 
-/// What an estimator is: it learns segments in the order of time, and says what it believes.
+/// What an estimator is: it learns segments in the order of time, and reports its posterior.
 template <typename T>
 concept SegmentEstimator =
     std::copyable<T> && requires(T estimator, const T& known, const InputTrack& inputs, const Segment& segment,

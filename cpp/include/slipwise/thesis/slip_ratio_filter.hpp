@@ -55,7 +55,7 @@ class SlipRatioFilter {
   SlipRatioUpdate learn(const InputTrack& wheels, const Segment& segment);
 
   SlipRatios slip() const { return SlipRatios::from_vector(estimate_.mean); }
-  /// Belief about (left, right, angle).
+  /// Posterior of (left, right, angle).
   const Estimate& estimate() const { return estimate_; }
   /// The same posterior about the parameters of full-linear-6; its covariance has rank 3.
   Estimate linear_estimate() const;

@@ -24,7 +24,7 @@ struct SlipRatios {
 inline constexpr double kLargestSlipRatio = 0.95;  ///< estimators keep |i| below it: at 1 a side stands still [-]
 inline constexpr double kLargestSlipAngle = 1.0;   ///< and |angle| below this: at pi/2 the tangent is infinite [rad]
 
-/// The nearest slip ratios that an estimator may believe in.
+/// The nearest slip ratios that an estimator may take.
 inline SlipRatios bounded(const SlipRatios& slip) {
   return {.left = std::clamp(slip.left, -kLargestSlipRatio, kLargestSlipRatio),
           .right = std::clamp(slip.right, -kLargestSlipRatio, kLargestSlipRatio),

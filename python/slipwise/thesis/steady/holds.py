@@ -36,7 +36,7 @@ class Hold:
 
 
 def find_holds(inputs: Inputs, rules: HoldRules = HoldRules()) -> tuple[Hold, ...]:
-    """Return the holds of one run in order of time, without those in which the robot was told to stand.
+    """Return the holds of one run in order of time, without those in which the robot was commanded to stand.
 
     A hold ends where the command changes or is unknown, and at the last sample.
     """

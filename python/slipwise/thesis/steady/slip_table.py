@@ -28,9 +28,7 @@ class SlipRow:
     segments: int
     slip: Triple
     sigma: Triple  # of the fitted mean
-    bar: (
-        Triple | None
-    )  # of one segment's mean slip, sqrt(q / length): the bars of 4.9; None: it cannot be told
+    bar: Triple | None  # of one segment's mean slip, sqrt(q / length): the bars of 4.9; None: it is unknown
 
 
 def slip_table(groups: Sequence[SteadyGroup], rules: SlipFitRules = PLAIN) -> tuple[SlipRow, ...]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the tables of files in ARCHITECTURE.md from the sentence that each file starts with."""
+"""Writes the tables of files in docs/files.md from the sentence that each file starts with."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "ARCHITECTURE.md"
+PAGE = ROOT / "docs" / "files.md"
 SOURCES = (".py", ".sh", ".hpp", ".cpp", ".cu")
 REGION = re.compile(r"<!-- files: (?P<folders>[^>]+) -->\n.*?<!-- end -->", re.DOTALL)
 LICENCE = "SPDX-License-Identifier"

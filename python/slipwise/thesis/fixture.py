@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The drives that the exhibits are made from: simulated once each when first asked for, or real logs."""
+"""What the figures are made from: simulated drives, each made once when first needed, and real logs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from slipwise.simulation.engine import load_mujoco
 SPEEDS = (0.5, 1.0, 1.5, 2.0)  # [m/s]
 CURVATURES = (0.1, 0.25, 0.5)  # [1/m], driven to both sides
 CIRCLE = (0.5, 0.5)  # [m/s], [1/m] of figure 4.1
-WANDER = (0.05, 0.1)  # [m/s], [rad/s] by which drives wander around what they hold, anew every 0.05 s
+DISTURBANCE = (0.05, 0.1)  # [m/s], [rad/s] added to held commands, drawn again every 0.05 s
 STD_XY, STD_YAW = 0.005, 0.015  # [m], [rad] of a measured pose under held commands
 ENDINGS = (".csv.gz", ".csv", ".parquet", ".mcap", "")
 
@@ -29,7 +29,7 @@ class MissingLogError(LogError):
 
 
 @dataclass(frozen=True)
-class BenchSize:
+class FixtureSize:
     """How much is simulated."""
 
     circle_speeds: tuple[float, ...] = SPEEDS  # [m/s]
@@ -41,8 +41,8 @@ class BenchSize:
     seeds: int = 100  # drives of known slip and noise
 
 
-FULL = BenchSize()
-SMALL = BenchSize(
+FULL = FixtureSize()
+SMALL = FixtureSize(
     circle_speeds=(1.0, 2.0),
     circle_time=9.2,
     one_circle_time=18.0,
@@ -53,10 +53,10 @@ SMALL = BenchSize(
 )
 
 
-class Bench:
+class Fixture:
     """Drives by name. The same seed and size give the same drives."""
 
-    def __init__(self, *, seed: int = 1, data: Path | None = None, size: BenchSize = FULL) -> None:
+    def __init__(self, *, seed: int = 1, data: Path | None = None, size: FixtureSize = FULL) -> None:
         """Simulate nothing yet.
 
         Args:
@@ -69,7 +69,7 @@ class Bench:
         self._logs: dict[str, Log] = {}
 
     def circles(self, ground: str = "tyre-force") -> Simulation:
-        """Return held commands: speeds times curvatures to both sides; the drives wander around them."""
+        """Return held commands: speeds times curvatures to both sides; drives are disturbed."""
         held = [
             (v, side * curvature * v)
             for v, curvature, side in itertools.product(self.size.circle_speeds, CURVATURES, (1, -1))
@@ -113,16 +113,16 @@ class Bench:
         return self._logs[name]
 
     def _held(self, name: str, held: list[tuple[float, float]], time: float, ground: str) -> Simulation:
-        """Drive commands (v, omega), each for `time`; the log does not hold how the drives wander."""
+        """Drive commands (v, omega), each for `time`; the log does not hold the disturbance."""
         if name not in self._made:
-            told = _one_after_the_other([hold(v, omega, time) for v, omega in held])
+            commanded = _one_after_the_other([hold(v, omega, time) for v, omega in held])
             rng = np.random.Generator(np.random.PCG64([self.seed, len(held)]))
-            off = rng.standard_normal((2, len(told))) * np.array(WANDER)[:, None]
-            driven = replace(told, v=told.v + off[0], omega=told.omega + off[1])
+            off = rng.standard_normal((2, len(commanded))) * np.array(DISTURBANCE)[:, None]
+            driven = replace(commanded, v=commanded.v + off[0], omega=commanded.omega + off[1])
             duration = time * len(held)
             scenario = Scenario(duration, commands=driven, ground=ground, std_xy=STD_XY, std_yaw=STD_YAW)
             simulation = simulate(scenario, seed=self.seed)
-            runs = tuple(replace(run, commands=told) for run in simulation.log.runs)
+            runs = tuple(replace(run, commands=commanded) for run in simulation.log.runs)
             self._made[name] = replace(simulation, log=replace(simulation.log, runs=runs))
         return self._made[name]
 

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from slipwise.thesis.bench import MissingLogError
+from slipwise.thesis.fixture import MissingLogError
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import Panel
 
 
 @dataclass(frozen=True, eq=False)
-class Exhibit:
+class ThesisFigure:
     """Numbers in the sentences are those of this run: build the sentences from results."""
 
     key: str  # lower case, digits and hyphens, unique: name of the picture and anchor, as "figure-4-2"
@@ -26,11 +26,11 @@ class Exhibit:
     missing: str = ""  # what is missing and how to give it; then there is nothing else to show
 
     def __post_init__(self) -> None:
-        """Refuse an exhibit that shows something and does not say what."""
-        told = {"shows": self.shows, "agrees": self.agrees, "differs": self.differs, "source": self.source}
-        empty = [name for name, text in told.items() if not text.strip()]
+        """Refuse a figure that shows something and does not say what."""
+        texts = {"shows": self.shows, "agrees": self.agrees, "differs": self.differs, "source": self.source}
+        empty = [name for name, text in texts.items() if not text.strip()]
         if not self.missing and (empty or not self.parts):
-            raise ValueError(f"exhibit {self.key}: empty {', '.join([*empty, 'parts' * (not self.parts)])}")
+            raise ValueError(f"{self.key}: empty {', '.join([*empty, 'parts' * (not self.parts)])}")
 
     @property
     def panels(self) -> tuple[Panel, ...]:
@@ -43,9 +43,9 @@ class Exhibit:
         return tuple(part for part in self.parts if isinstance(part, Grid))
 
 
-def exhibit_of_log(key: str, thesis: str, title: str, make: Callable[[], Exhibit]) -> Exhibit:
-    """Return what `make` makes from a real log, or an exhibit that says which log is missing."""
+def figure_of_log(key: str, thesis: str, title: str, make: Callable[[], ThesisFigure]) -> ThesisFigure:
+    """Return what `make` makes from a real log, or a figure that says which log is missing."""
     try:
         return make()
     except MissingLogError as error:
-        return Exhibit(key, thesis, title, missing=str(error))
+        return ThesisFigure(key, thesis, title, missing=str(error))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An exhibit says what it shows, or what is missing; panels and tables are consistent."""
+"""A figure says what it shows, or what is missing; panels and tables are consistent."""
 
 from __future__ import annotations
 
@@ -7,24 +7,24 @@ import numpy as np
 import pytest
 from thesis.toy_chapters import FLAT, TABLE, toy_results
 
-from slipwise.thesis import Exhibit, Grid, Heat, Line, Panel, outline, paths_line
+from slipwise.thesis import Grid, Heat, Line, Panel, ThesisFigure, outline, paths_line
 
 
-def test_an_exhibit_without_words_or_parts_is_refused() -> None:
+def test_a_figure_without_words_or_parts_is_refused() -> None:
     with pytest.raises(ValueError, match="agrees, differs"):
-        Exhibit("figure-1", "Figure 1", "Title", "shows", " ", "", "source", (FLAT,))
+        ThesisFigure("figure-1", "Figure 1", "Title", "shows", " ", "", "source", (FLAT,))
     with pytest.raises(ValueError, match="parts"):
-        Exhibit("figure-1", "Figure 1", "Title", "shows", "agrees", "differs", "source")
+        ThesisFigure("figure-1", "Figure 1", "Title", "shows", "agrees", "differs", "source")
 
 
-def test_parts_are_told_apart_in_their_order() -> None:
-    exhibit = toy_results()[0].exhibits[0]
-    assert [panel.title for panel in exhibit.panels] == ["Lines", "Bars", "Correlation"]
-    assert exhibit.grids == (TABLE,)
+def test_parts_are_separated_in_their_order() -> None:
+    figure = toy_results()[0].figures[0]
+    assert [panel.title for panel in figure.panels] == ["Lines", "Bars", "Correlation"]
+    assert figure.grids == (TABLE,)
 
 
 def test_a_missing_log_leaves_a_sentence_that_says_which_and_how_to_give_it() -> None:
-    missing = toy_results()[0].exhibits[2]
+    missing = toy_results()[0].figures[2]
     assert missing.parts == ()
     assert "nobody/has_this" in missing.missing
     assert "SLIPWISE_DATA or --data" in missing.missing
