@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighting candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that falls
-// with time (Herbster and Warmuth 1998; van Erven, Gruenwald and de Rooij 2012).
+// Weighting candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that
+// falls with time (Herbster and Warmuth 1998; van Erven, Gruenwald and de Rooij 2012).
 #pragma once
 
 #include <Eigen/Core>
