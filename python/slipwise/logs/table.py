@@ -134,7 +134,8 @@ def read_csv(
         column_types=types, null_values=EMPTY_CELLS, strings_can_be_null=True, auto_dict_encode=True
     )
     parse = arrow_csv.ParseOptions(invalid_row_handler=skip_row)
-    read = arrow_csv.ReadOptions(column_names=header, skip_rows=skip)
+    # A thread of Arrow that still holds `skip_row` when Python ends, as after an error, would abort it.
+    read = arrow_csv.ReadOptions(column_names=header, skip_rows=skip, use_threads=False)
     try:
         arrow = arrow_csv.read_csv(
             pa.BufferReader(content), read_options=read, parse_options=parse, convert_options=convert
