@@ -24,12 +24,7 @@ class AxisWalk {
         stepper_(axis.response, kPlaces),
         now_(time),
         next_(inputs.count_until(time - axis.delay)) {
-    Value fast{.value = start.fast}, slow{.value = start.slow};
-    if constexpr (N > 0) {
-      fast.derivative[kFast] = 1.0;
-      slow.derivative[kSlow] = 1.0;
-    }
-    stepper_.start(fast, slow);
+    stepper_.start(starting(start.fast, kFast), starting(start.slow, kSlow));
     hold(next_ == 0 ? 0.0 : inputs_.sample(next_ - 1).*axis_.part);
   }
 
@@ -75,6 +70,15 @@ class AxisWalk {
     step(AxisDecay(axis_.response, then - now_), by_delay(moves - moves_));
     now_ = then;
     moves_ = moves;
+  }
+
+  /// What a mode holds at the start, which is the parameter at `place`.
+  static Value starting(double value, Eigen::Index place) {
+    if constexpr (N > 0) {
+      return {.value = value, .derivative = Row::Unit(place)};
+    } else {
+      return {.value = value};
+    }
   }
 
   static Row by_delay(double moves) {

@@ -90,8 +90,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 
 }  // namespace
 
-// NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and settings with
-// defaults.
+// NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and the settings.
 IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);

@@ -269,7 +269,8 @@ ScoredActuator LimitedActuatorFit::refine(const LimitedActuator& drive, int step
     if (search.judge(trial.loss.total)) {
       const double gained = best.loss.total - trial.loss.total;
       best = std::move(trial);
-      if (--steps == 0 || best.loss.total - steps * gained > wanted) {
+      --steps;
+      if (steps == 0 || best.loss.total - steps * gained > wanted) {
         break;
       }
       at_best = equations(best, free);
