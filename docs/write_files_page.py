@@ -52,7 +52,7 @@ def table(folders: list[str]) -> str:
 
 
 def rewritten(text: str) -> str:
-    """Return the page with every table of files made anew."""
+    """Return the page with every table of files made again."""
 
     def region(match: re.Match[str]) -> str:
         folders = match["folders"].split()

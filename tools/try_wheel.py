@@ -35,7 +35,7 @@ def the_wheel(folder: Path) -> Path:
 
 
 def write_log(path: Path) -> None:
-    """Write the drive of a robot that turns less than it is told, with lag: commands and poses as CSV."""
+    """Write the drive of a robot that turns less than commanded, with lag: commands and poses as CSV."""
     x = y = yaw = speed = rate = 0.0
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)

@@ -159,7 +159,7 @@ TEST_CASE("a change of ground is found while driving, and learned faster than wi
   CHECK(seeing.state().weights.size() == 1);
 }
 
-TEST_CASE("on a new ground candidates are dealt as much weight as at first, on the old one ever less") {
+TEST_CASE("on a new ground candidates get as much weight as at first, on the old one ever less") {
   const MotionModel real(named_basis("edd-2"), {});
   const std::vector<double> start{0.0}, zero{0.0};
   const InputTrack parked(start, zero, zero, zero);

@@ -48,12 +48,6 @@ struct BatchPoint {
   NormalEquations equations;
   double cost;
   std::vector<SegmentLinearization> at;  ///< the data
-
-  /// Names what is saved.
-  template <class Self, class Archive>
-  static void archive(Self& self, Archive& a) {
-    a(self.equations.information, self.equations.gradient, self.cost, self.at);
-  }
 };
 
 /// What is new in the error of a datum, given that of the one before: a block of the Cholesky factor of all errors.

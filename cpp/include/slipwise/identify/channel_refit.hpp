@@ -28,8 +28,7 @@ class ChannelFit {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.model_, self.size_, self.search_, self.at_best_.information, self.at_best_.gradient, self.best_, self.walk_,
-      self.done_);
+    a(self.model_, self.size_, self.search_, self.at_best_, self.best_, self.walk_, self.done_);
   }
 
  private:

@@ -43,9 +43,8 @@ class GaussNewton {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.settings_.iterations, self.settings_.relative, self.settings_.absolute, self.settings_.longest_step,
-      self.candidate_, self.best_, self.cost_);
-    a(self.step_, self.fraction_, self.iterations_, self.begun_, self.converged_, self.over_);
+    a(self.settings_, self.candidate_, self.best_, self.cost_, self.step_, self.fraction_, self.iterations_,
+      self.begun_, self.converged_, self.over_);
   }
 
  private:
