@@ -96,10 +96,10 @@ def limits_line(scores: Sequence[ReplayScore]) -> str:
     mean = mean_replay(of_input(scores, "command"))
     if mean is None:
         return "No log has commands: limits were not looked for."
-    share = mean.limits_seconds / mean.seconds
+    fraction = mean.limits_seconds / mean.seconds
     return (
         "Limits of the actuator are looked for after learning and change none of these predictions: "
-        f"{share:.2f} times the default's processor time, kept on {mean.limits_kept} of {mean.logs} logs "
+        f"{fraction:.2f} times the default's processor time, kept on {mean.limits_kept} of {mean.logs} logs "
         f"with commands, {LIMITS.lines} lines."
     )
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Are lag, delay, gain, clock offset, lever arm and slip found, and is the stated uncertainty of each true?
+"""Are lag, delay, gain, clock offset, lever arm and slip found, and is the reported uncertainty of each true?
 
 For each seed a robot's parameters are drawn from the prior and a drive is simulated, without the core's
 actuator. Then it is learned: from commands alone, with the users' settings and once more with the true
@@ -43,7 +43,7 @@ BASIS = "edd-2"
 SPEEDS, YAW_RATES = (-0.5, 1.5), (-0.8, 0.8)  # m/s, rad/s
 HELD = (0.5, 4.0)  # s that a command lasts
 COMMAND_PERIOD = 0.05  # s
-LEARN = {"basis": BASIS, "mount": {"learn": True}}
+LEARN = {"basis": BASIS, "sensor_extrinsics": {"learn": True}}
 ROBOT = KnownRobot()
 TRUE_NOISE = {
     "psd_time": list(ROBOT.slip_psd),
@@ -70,7 +70,7 @@ class Found:
 
     @property
     def sigmas(self) -> float:
-        """How far off, in stated standard deviations."""
+        """How far off, in reported standard deviations."""
         return (self.value - self.true) / self.std
 
 
@@ -87,9 +87,9 @@ def drawn_robot(seed: int) -> KnownRobot:
         v, omega = mean + std * rng.standard_normal(2)
         return float(v), float(omega)
 
-    sensor = rng.standard_normal(3) * (prior.lever_std, prior.lever_std, prior.sensor_yaw_std)
+    sensor = rng.standard_normal(3) * (prior.extrinsics_std, prior.extrinsics_std, prior.sensor_yaw_std)
     return KnownRobot(
-        lag=lognormal(prior.lag),
+        lag=lognormal(prior.time_constant),
         delay=lognormal(prior.delay),
         basis=_core.named_basis(BASIS),
         slip=normal(0.0, 0.5 * prior.slip_fraction),
@@ -98,19 +98,19 @@ def drawn_robot(seed: int) -> KnownRobot:
 
 
 def with_response(robot: KnownRobot, seed: int) -> KnownRobot:
-    """The same robot with gains, a slow part and late poses, which wheel speeds can show."""
+    """The same robot with gains, a slow mode and late poses, which wheel speeds can show."""
     rng = np.random.default_rng([seed, 1])
     prior = _core.PriorSettings()
     gain = 1.0 + prior.gain_std * rng.standard_normal(2)
-    share = prior.slow_share_std * rng.standard_normal(2)
+    fraction = prior.slow_fraction_std * rng.standard_normal(2)
     slow = np.maximum(
-        prior.slow_lag * np.exp(prior.log_std * rng.standard_normal(2)), 2.0 * np.array(robot.lag)
+        prior.slow_time_constant * np.exp(prior.log_std * rng.standard_normal(2)), 2.0 * np.array(robot.lag)
     )
     return replace(
         robot,
         gain=(float(gain[0]), float(gain[1])),
-        slow_share=(float(share[0]), float(share[1])),
-        slow_lag=(float(slow[0]), float(slow[1])),
+        slow_fraction=(float(fraction[0]), float(fraction[1])),
+        slow_time_constant=(float(slow[0]), float(slow[1])),
         poses_late=abs(float(prior.clock_offset_std * rng.standard_normal())),
     )
 
@@ -132,11 +132,11 @@ def truth_of(robot: KnownRobot, *, wheels: bool) -> dict[str, float]:
     true = dict(zip(names, robot.slip, strict=True))
     for k, channel in enumerate(("v", "omega")):
         true |= {
-            f"log_lag_{channel}": float(np.log(robot.lag[k])),
+            f"log_time_constant_{channel}": float(np.log(robot.lag[k])),
             f"log_delay_{channel}": float(np.log(robot.delay[k] + late)),
             f"gain_{channel}": robot.gain[k],
-            f"slow_share_{channel}": robot.slow_share[k],
-            f"log_slow_lag_{channel}": float(np.log(robot.slow_lag[k])),
+            f"slow_fraction_{channel}": robot.slow_fraction[k],
+            f"log_slow_time_constant_{channel}": float(np.log(robot.slow_time_constant[k])),
         }
     sensor = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), robot.sensor, strict=True))
     return true | {"clock_offset": robot.poses_late} | sensor
@@ -197,19 +197,19 @@ def in_physics(seed: int) -> list[Found]:
     model = calibrate(log, input="command", settings=settings).model
     true = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), PHYSICS_SENSOR, strict=True))
     for channel, (lag, delay) in shown_responses(simulation.truth, run.commands, vehicle).items():
-        true[f"log_lag_{channel}"] = float(np.log(lag))
+        true[f"log_time_constant_{channel}"] = float(np.log(lag))
         true[f"log_delay_{channel}"] = float(np.log(delay + PHYSICS_LATE))
     known = [p for p in model.content.parameters if p.name in true]
     return [Found(p.name, true[p.name], p.value, p.std, p.prior_std) for p in known]
 
 
-def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str, Pair]:
+def shown_responses(truth: Truth, commanded: Inputs, vehicle: LandTamer) -> dict[str, Pair]:
     """Lag and delay [s] of speed and yaw rate by which a body's exact twist follows its commands best.
 
     The wheels have the vehicle's lag and delay. The body has some 25 ms more: its mass on soft tyres.
     """
     t = np.arange(0.0, truth.t[-1] + FINE / 2, FINE)
-    held = np.searchsorted(told.t, t, side="right") - 1
+    held = np.searchsorted(commanded.t, t, side="right") - 1
 
     def answer(wish: Floats, lag: float, delay: float) -> Floats:
         keep = np.exp(-FINE / lag)
@@ -217,7 +217,7 @@ def shown_responses(truth: Truth, told: Inputs, vehicle: LandTamer) -> dict[str,
         return np.asarray(np.interp(truth.t - delay, t + FINE, follows))
 
     def misfit(lag_delay: Floats, slips: Slips, twist: Floats) -> Floats:
-        v, omega = answer(told.v, *lag_delay), answer(told.omega, *lag_delay)
+        v, omega = answer(commanded.v, *lag_delay), answer(commanded.omega, *lag_delay)
         terms = np.stack(slips(v, omega), axis=1)
         return np.asarray(terms @ np.linalg.lstsq(terms, twist, rcond=None)[0] - twist)
 
@@ -245,24 +245,33 @@ def dull(seed: int) -> tuple[str, ...]:
     rng = np.random.default_rng([seed, 4])
     robot = drawn_robot(seed)
     t = np.round(np.arange(0.0, SETTLED + DULL_SECONDS, COMMAND_PERIOD), 6)
-    told = Inputs(t=t, v=np.full(len(t), rng.uniform(0.3, 1.5)), vy=np.zeros(len(t)), omega=np.zeros(len(t)))
-    run = known_run(robot, told, (SETTLED, SETTLED + DULL_SECONDS), random=rng)
+    commanded = Inputs(
+        t=t, v=np.full(len(t), rng.uniform(0.3, 1.5)), vy=np.zeros(len(t)), omega=np.zeros(len(t))
+    )
+    run = known_run(robot, commanded, (SETTLED, SETTLED + DULL_SECONDS), random=rng)
     log = Log(runs=(replace(run, wheels=None),))
-    return calibrate(log, input="command", settings=make_settings(LEARN)).verdict.undetermined
+    return calibrate(log, input="command", settings=make_settings(LEARN)).verdict.not_identifiable
 
 
-NOT_SHOWN = ("log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega", "sensor_x", "sensor_y")
+NOT_SHOWN = (
+    "log_time_constant_v",
+    "log_time_constant_omega",
+    "log_delay_v",
+    "log_delay_omega",
+    "sensor_x",
+    "sensor_y",
+)
 
 
 LEARNERS = {
     "commands alone": from_commands,
-    "commands alone, shape of the noise told": from_commands_told_noise,
+    "commands alone, shape of the noise commanded": from_commands_told_noise,
     "commands and wheels": from_wheels_too,
 }
 
 
 def table(runs: Sequence[list[Found]]) -> None:
-    """Print how often each parameter lies within its stated standard deviations."""
+    """Print how often each parameter lies within its reported standard deviations."""
     print(f"{'parameter':20s}  within 3   68 %    95 %    mean z   rms z   rms error   std / prior")
     every = []
     for rows in zip(*runs, strict=True):
@@ -305,7 +314,7 @@ def main() -> None:
         said = list(pool.map(dull, seeds, chunksize=2))
     print(f"\n== straight on at constant speed, {len(said)} runs of {DULL_SECONDS:g} s ==\n")
     for name in NOT_SHOWN:
-        print(f"{name:20s} said to be undetermined in {sum(name in names for names in said)}")
+        print(f"{name:20s} said to be not_identifiable in {sum(name in names for names in said)}")
     report["dull"] = [list(names) for names in said]
     if options.json:
         options.json.write_text(json.dumps(report, indent=1) + "\n", encoding="utf-8")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is the stated uncertainty of the parameters true? Seeded Monte-Carlo drives with known slip and noise.
+"""Is the reported uncertainty of the parameters true? Seeded Monte-Carlo drives with known slip and noise.
 
 For each run the true parameters are drawn from the prior, a ten-minute drive with white slip noise and pose
 noise is simulated step by step, and a filter learns from it: the IEKF on disjoint 5 s windows. For comparison
@@ -81,14 +81,14 @@ def compare_estimators(runs: int) -> dict[str, object]:
 def show(name: str, label: str, results: list[RunResult]) -> None:
     """Print one row of the table."""
     low, high = nees_band(len(results), _core.named_basis(name).size)
-    shares = [
+    fractions = [
         100.0 * np.mean([getattr(r, k) for r in results])
         for k in ("within_sigma", "within_90", "in_region_90")
     ]
     print(
         f"{name:12s} {label:21s} {len(results):5d} {np.mean([r.nees for r in results]):7.3f}"
         f"  {low:.3f} .. {high:.3f}"
-        f" {shares[0]:7.1f} % {shares[1]:9.1f} % {shares[2]:8.1f} %",
+        f" {fractions[0]:7.1f} % {fractions[1]:9.1f} % {fractions[2]:8.1f} %",
         flush=True,
     )
 

@@ -33,7 +33,7 @@ class DataSet:
     name: str  # folder/file without suffix
     path: Path
     horizon: float  # s
-    vendor_track_multiplier: float | None
+    vendor_wheel_separation_multiplier: float | None
 
 
 def input_names(log: Log) -> list[str]:

@@ -19,13 +19,13 @@ from slipwise.calibration.prepared_run import collect_windows, prepare_run
 from slipwise.errors import SlipwiseError
 from slipwise.logs import Inputs, Log, Poses, Run, open_log
 from slipwise.models import Model
-from slipwise.prediction import tail_at
-from slipwise.student import share_inside
+from slipwise.prediction import student_at
+from slipwise.student import fraction_inside
 
 Floats = NDArray[np.float64]
 
 HORIZONS = (1.0, 2.0, 5.0)  # s
-SHARES = (0.5, 0.9, 0.95)
+FRACTIONS = (0.5, 0.9, 0.95)
 FEWEST = 10  # windows of the second half
 BEFORE = 10.0  # s of inputs before the second half; no drive remembers more
 
@@ -36,7 +36,7 @@ class Coverage:
 
     horizon: float  # s
     windows: int
-    inside: tuple[float, ...]  # share within each of SHARES
+    inside: tuple[float, ...]  # fraction within each of FRACTIONS
 
 
 def halves(log: Log) -> tuple[Log, Log]:
@@ -84,18 +84,18 @@ def coverage(model: Model, log: Log) -> list[Coverage]:
 
 
 def _coverage(model: Model, predictions: Predictions) -> Coverage:
-    tail = tail_at(model, predictions.horizon)
-    inside = share_inside(predictions.stated_nis / tail.growth, np.full(len(predictions), tail.dof))
-    shares = tuple(float(np.mean(inside <= share)) for share in SHARES)
-    return Coverage(predictions.horizon, len(predictions), shares)
+    tail = student_at(model, predictions.horizon)
+    inside = fraction_inside(predictions.reported_nis / tail.inflation, np.full(len(predictions), tail.dof))
+    fractions = tuple(float(np.mean(inside <= fraction)) for fraction in FRACTIONS)
+    return Coverage(predictions.horizon, len(predictions), fractions)
 
 
-def _row(name: str, shares: Floats) -> str:
-    return f"{name:52}" + "".join(f"{100 * share:7.1f}" for share in shares)
+def _row(name: str, fractions: Floats) -> str:
+    return f"{name:52}" + "".join(f"{100 * fraction:7.1f}" for fraction in fractions)
 
 
 def main() -> None:
-    """Print the shares inside the 50, 90 and 95 % ellipsoids, per log and their means."""
+    """Print the fractions inside the 50, 90 and 95 % ellipsoids, per log and their means."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--filter", default="", help="only logs whose name contains this")
     wanted = parser.parse_args().filter
@@ -119,8 +119,8 @@ def main() -> None:
                 title = f"{data_set.name}, {name}, {row.horizon:g} s, {row.windows} windows"
                 print(_row(title, np.array(row.inside)), flush=True)
     print()
-    for (name, horizon), shares in sorted(found.items()):
-        print(_row(f"mean over {len(shares)} logs, {name}, {horizon:g} s", np.mean(shares, axis=0)))
+    for (name, horizon), fractions in sorted(found.items()):
+        print(_row(f"mean over {len(fractions)} logs, {name}, {horizon:g} s", np.mean(fractions, axis=0)))
 
 
 if __name__ == "__main__":

@@ -88,8 +88,8 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
 
     def work() -> None:
         average = _core.ModelAverage(BASIS, settings.bases(), False, False, False, *filters)
-        for track, segment in zip(windows.tracks, windows.segments, strict=True):
-            average.learn(track, segment)
+        for history, segment in zip(windows.histories, windows.segments, strict=True):
+            average.learn(history, segment)
 
     return work
 
@@ -97,12 +97,12 @@ def core_average(log: Log, length: float) -> Callable[[], None]:
 def core_filter(job: Job) -> tuple[Floats, Floats]:
     """Learn all windows with the core's IEKF."""
     estimate = job.prior
-    for track, segment in zip(job.windows.tracks, job.windows.segments, strict=True):
-        path = _core.integrate_segment(job.model, estimate.mean, track, segment, _core.Integrator.Exact)
+    for history, segment in zip(job.windows.histories, job.windows.segments, strict=True):
+        path = _core.integrate_segment(job.model, estimate.mean, history, segment, _core.Integrator.Exact)
         cov_z = _core.slip_covariance(path, job.shape) + _core.pose_noise_covariance(
             segment.measured, job.shape
         )
-        estimate = _core.iekf_update(job.model, estimate, track, segment, cov_z, job.settings).estimate
+        estimate = _core.iekf_update(job.model, estimate, history, segment, cov_z, job.settings).estimate
     return np.array(estimate.mean), np.array(estimate.covariance)
 
 
@@ -158,7 +158,7 @@ def time_update(log: Log, repeats: int) -> list[Figure]:
     """Time one update on a window of 100 steps, two iterations."""
     job = make_job(log, 5.0)
     middle = len(job.plain) // 2
-    segment, window, track = job.windows.segments[middle], job.plain[middle], job.windows.drive[0].track
+    segment, window, history = job.windows.segments[middle], job.plain[middle], job.windows.drive[0].history
     mean, covariance = np.array(job.prior.mean), np.array(job.prior.covariance)
     cov_z = numpy_filter.window_noise(window, mean, NOISE)
 
@@ -170,7 +170,7 @@ def time_update(log: Log, repeats: int) -> list[Figure]:
         numpy_filter.iekf_update(mean, covariance, window, cov_z, ITERATIONS)
 
     def with_core() -> None:
-        _core.iekf_update(job.model, job.prior, track, segment, cov_z, job.settings)
+        _core.iekf_update(job.model, job.prior, history, segment, cov_z, job.settings)
 
     words = f"one update, {len(window.v)} steps, {ITERATIONS} iterations"
     core = best(with_core, 100 * repeats)

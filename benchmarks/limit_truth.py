@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How true the limits found in wheel speeds are: simulated drives of known limits, and dull ones.
 
-Steps of speed and yaw rate through an actuator of known dead-band, top speed, acceleration and braking, of
+Steps of speed and yaw rate through an actuator of known dead-band, saturation and slew rates, of
 the sides or of speed and yaw rate, with white noise on the wheel speeds. Counted is how often each limit is
-found, how often the truth lies within 3 of its stated standard deviations, and how often a limit is found
+found, how often the truth lies within 3 of its reported standard deviations, and how often a limit is found
 that is not there.
 """
 

@@ -30,8 +30,8 @@ class MethodScore:
     coverage: tuple[float, float, float]  # of the 50, 90, 95 % ellipsoids
     normal_nis: float  # the NIS once errors are stretched to normal ones by the predicted t
     nis_chance: float  # that the mean NIS lies in the range asked for, where the predicted t are true
-    stated_nis: float  # with the usual covariance, that learns nothing from held-out errors
-    stated_coverage: tuple[float, float, float]
+    reported_nis: float  # with the usual covariance, that learns nothing from held-out errors
+    reported_coverage: tuple[float, float, float]
     windows: int  # held out
 
 
@@ -131,7 +131,7 @@ def _method_score(score: Score, predictions: Predictions) -> MethodScore:
         coverage=score.coverage,
         normal_nis=normal_score(predictions.inside[half]),
         nis_chance=chance_of_range(predictions, half),
-        stated_nis=score.stated_nis,
-        stated_coverage=score.stated_coverage,
+        reported_nis=score.reported_nis,
+        reported_coverage=score.reported_coverage,
         windows=score.windows,
     )

@@ -49,7 +49,7 @@ def _worse_than_plain(scores: list[dict[str, Any]], error: str) -> Loss:
         for where, (value, low, high) in ratios.items()
         if value > 1.0
     ]
-    return Loss(f"`auto` is worse than the plain model in {error}", tuple(places))
+    return Loss(f"`auto` is worse than the kinematic baseline in {error}", tuple(places))
 
 
 def _beaten(scores: list[dict[str, Any]], error: str) -> Loss:
@@ -70,7 +70,7 @@ def _beaten(scores: list[dict[str, Any]], error: str) -> Loss:
 
 def _beside_reference(comparisons: list[dict[str, Any]], k: int, error: str) -> Loss:
     places = [
-        f"{_where(c)}: {c['auto'][k]:.3f} against {c['reference_best'][k]:.3f}, where the plain model misses "
+        f"{_where(c)}: {c['auto'][k]:.3f} against {c['reference_best'][k]:.3f}, the baseline misses "
         f"by {c['none'][k]:.3f} in our windows and {c['reference_none'][k]:.3f} in the reference's"
         for c in comparisons
         if c["auto"][k] > CLEARLY * c["reference_best"][k]
@@ -80,10 +80,14 @@ def _beside_reference(comparisons: list[dict[str, Any]], k: int, error: str) -> 
 
 
 def _overconfident(scores: list[dict[str, Any]]) -> Loss:
-    shares = {
+    fractions = {
         _where(s): s["methods"]["auto"]["coverage"][1] for s in scores if s["windows"] >= FEWEST_WINDOWS
     }
-    places = [f"{where}: {100 * share:.0f} %" for where, share in shares.items() if share < LEAST_COVERAGE]
+    places = [
+        f"{where}: {100 * fraction:.0f} %"
+        for where, fraction in fractions.items()
+        if fraction < LEAST_COVERAGE
+    ]
     return Loss("The 90 % ellipsoid of `auto` holds far fewer of the poses", tuple(places))
 
 

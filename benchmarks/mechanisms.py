@@ -111,13 +111,15 @@ MECHANISMS = (
         ("identify/channel_refit", "identify/channel_run"),
         (("identify/actuator_filter", r"[rR]efit|past_"),),
     ),
-    Mechanism(Variant("slow mode of the actuator", numbers={f"{_FILTER}prior.slow_share_std": ALMOST_NONE})),
+    Mechanism(
+        Variant("slow mode of the actuator", numbers={f"{_FILTER}prior.slow_fraction_std": ALMOST_NONE})
+    ),
     Mechanism(Variant("gain of the actuator", numbers={f"{_FILTER}prior.gain_std": ALMOST_NONE})),
     Mechanism(
         Variant("clock offset", settings={"learn_clock_offset": False}),
         named=((_BANK, "clock"), ("motion/motion_model", "[cC]lock")),
     ),
-    Mechanism(Variant("fixed-share of bases", numbers={f"{_AVERAGE}weighting.share": ALMOST_NONE})),
+    Mechanism(Variant("fixed-share of bases", numbers={f"{_AVERAGE}weighting.fraction": ALMOST_NONE})),
     Mechanism(Variant("prior weight of the largest basis", numbers={f"{_AVERAGE}largest_basis": 0.5 / 1.2})),
     Mechanism(
         Variant("Huber weights", settings={"filter": {"huber": 1e6}}),

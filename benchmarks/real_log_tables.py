@@ -14,7 +14,7 @@ WIDTH = 37  # of a log's name
 
 @dataclass(frozen=True)
 class Target:
-    """What `auto` is to reach over all logs, relative to the plain model."""
+    """What `auto` is to reach over all logs, relative to the kinematic baseline."""
 
     position: float
     heading: float
@@ -22,7 +22,7 @@ class Target:
 
 
 def print_logs(scores: Sequence[LogScore]) -> None:
-    """Print one line per log: the plain model's errors, and `auto` beside the best fixed basis."""
+    """Print one line per log: the kinematic baseline's errors, and `auto` beside the best fixed basis."""
     print(
         f"{'':{WIDTH}} held  mean error of none   auto / none, 95 % interval"
         f"{'':32}best fixed basis, chosen afterwards     in ellipsoid [%]\n"
@@ -36,7 +36,7 @@ def print_logs(scores: Sequence[LogScore]) -> None:
             f"{none.position:7.3f} {none.heading:8.3f}   "
             f"{_interval(auto.position_ratio)}   {_interval(auto.heading_ratio)}   "
             f"{_best(s, 'position')} {_best(s, 'heading')}{auto.nis:6.2f} "
-            + "".join(f"{100 * share:4.0f}" for share in auto.coverage)
+            + "".join(f"{100 * fraction:4.0f}" for fraction in auto.coverage)
         )
 
 
@@ -103,7 +103,7 @@ def print_comparison(comparisons: Sequence[Comparison], missing: Sequence[str]) 
 
 
 def print_window_differences(comparisons: Sequence[Comparison]) -> None:
-    """Say where the reference scored other windows: there the plain model itself is not equally wrong."""
+    """Say where the reference scored other windows: there the kinematic baseline is not equally wrong."""
     print(
         f"{'':{WIDTH}}         error of none, ours / its{'':10}"
         "relative to its own none, auto / its best basis"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scores every method on every real log below SLIPWISE_DATA: held-out errors relative to the plain model."""
+"""Scores every method on every real log below SLIPWISE_DATA: held-out errors over the baseline's."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def score_log(data: DataSet) -> list[LogScore]:
     """Evaluate all methods on one log, with every input that the log has."""
     log = slipwise.open_log(data.path)
     options = slipwise.EvaluationOptions(
-        horizons=(data.horizon,), vendor_track_multiplier=data.vendor_track_multiplier
+        horizons=(data.horizon,), vendor_wheel_separation_multiplier=data.vendor_wheel_separation_multiplier
     )
     has = {
         "wheel": any(run.wheels is not None for run in log.runs),
@@ -65,9 +65,9 @@ def print_all(scores: Sequence[LogScore], comparisons: tuple[list[Comparison], l
             continue
         print(f"\n== {name} input ==\n")
         print_logs(group)
-        print("\nMean error relative to the plain model, position / heading:\n")
+        print("\nMean error relative to the kinematic baseline, position / heading:\n")
         print_ratios(group)
-        print("\nGeometric means over logs of the errors relative to the plain model:\n")
+        print("\nGeometric means over logs of the errors relative to the kinematic baseline:\n")
         print_means(group, target)
         print_few(group)
     for name in (*TARGETS, "both"):

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from log_score import LogScore
 
-SAME_WINDOWS = 0.02  # the sets of windows count as equal where the plain model's errors differ by less
+SAME_WINDOWS = 0.02  # the sets of windows count as equal where the kinematic baseline's errors differ by less
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Comparison:
     input: str
     windows: int
     reference_windows: int
-    none: tuple[float, float]  # m, rad: the plain model in our windows
+    none: tuple[float, float]  # m, rad: the kinematic baseline in our windows
     reference_none: tuple[float, float]
     auto: tuple[float, float]
     best: tuple[str, str]  # the reference's best bases for position and for heading
@@ -44,7 +44,7 @@ class Comparison:
 
     @property
     def same_windows(self) -> bool:
-        """Whether the plain model is equally wrong, so that the absolute errors can be compared."""
+        """Whether the kinematic baseline is equally wrong, so that the absolute errors can be compared."""
         pairs = zip(self.none, self.reference_none, strict=True)
         return all(abs(ours - theirs) <= SAME_WINDOWS * theirs + 0.001 for ours, theirs in pairs)
 

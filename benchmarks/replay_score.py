@@ -86,7 +86,7 @@ def replay_score(data: DataSet, log: Log, core: _core.LearnerSettings, *, limits
         position=float(learned.position_error[half].sum() / baseline.position_error[half].sum()),
         heading=float(learned.heading_error[half].sum() / baseline.heading_error[half].sum()),
         inside=coverage(learned.inside[half]),
-        inside_normal=normal_coverage(learned.stated_nis[half]),
+        inside_normal=normal_coverage(learned.reported_nis[half]),
         seconds=seconds,
         limits_seconds=time.process_time() - begin,
         limits_kept=found is not None and found.posterior is not None,

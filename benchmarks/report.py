@@ -20,7 +20,7 @@ NOT_MEASURED = (
     "Reading bags at full length: the longest logs are tidy CSV.",
     "Slopes: no log is judged apart for the gravity terms.",
     "Rivals other than the named bases, the vendor's multiplier, the static fit, numpy and filterpy.",
-    "Ground that changes within a log, but for robotino/table_gray.",
+    "Terrain that changes within a log, but for robotino/table_gray.",
 )
 
 

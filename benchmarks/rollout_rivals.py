@@ -53,7 +53,7 @@ def numba_rival(p: Floats, dt: float) -> Rival:
     """One rollout after the other in compiled loops, float32, one core."""
     import numba
 
-    share = p.astype(np.float32)
+    fraction = p.astype(np.float32)
     step, speed = np.float32(dt), np.float32(CURVATURE_SPEED**2)
     one, half, sixth, twelfth = (np.float32(x) for x in (1.0, 0.5, 1 / 6, 1 / 12))
     twentieth, thirtieth = np.float32(1 / 20), np.float32(1 / 30)
@@ -70,26 +70,26 @@ def numba_rival(p: Floats, dt: float) -> Rival:
                 f0, f1, f2, f3, f4 = e, a, e * a, e * e, a * a
                 x = (
                     a
-                    + share[0, 0] * f0
-                    + share[0, 1] * f1
-                    + share[0, 2] * f2
-                    + share[0, 3] * f3
-                    + share[0, 4] * f4
+                    + fraction[0, 0] * f0
+                    + fraction[0, 1] * f1
+                    + fraction[0, 2] * f2
+                    + fraction[0, 3] * f3
+                    + fraction[0, 4] * f4
                 ) * step
                 y = (
-                    share[1, 0] * f0
-                    + share[1, 1] * f1
-                    + share[1, 2] * f2
-                    + share[1, 3] * f3
-                    + share[1, 4] * f4
+                    fraction[1, 0] * f0
+                    + fraction[1, 1] * f1
+                    + fraction[1, 2] * f2
+                    + fraction[1, 3] * f3
+                    + fraction[1, 4] * f4
                 ) * step
                 t = (
                     w
-                    + share[2, 0] * f0
-                    + share[2, 1] * f1
-                    + share[2, 2] * f2
-                    + share[2, 3] * f3
-                    + share[2, 4] * f4
+                    + fraction[2, 0] * f0
+                    + fraction[2, 1] * f1
+                    + fraction[2, 2] * f2
+                    + fraction[2, 3] * f3
+                    + fraction[2, 4] * f4
                 ) * step
                 q = t * t
                 arc_a = one - q * sixth * (one - q * twentieth)

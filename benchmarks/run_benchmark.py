@@ -36,7 +36,7 @@ BENCHMARKS = (
     Benchmark("kernel", "The kernel, timed in C++", has_figures=False),
     Benchmark("filter_speed", "The filter beside numpy and filterpy", quick=("--quick",)),
     Benchmark("rollout", "Rollouts for planners, beside rivals", quick=("--quick",)),
-    Benchmark("consistency", "Consistency of the stated uncertainty", quick=("--runs", "10")),
+    Benchmark("consistency", "Consistency of the reported uncertainty", quick=("--runs", "10")),
     Benchmark(
         "actuator_truth",
         "Is the truth found, and its uncertainty true?",
@@ -45,7 +45,7 @@ BENCHMARKS = (
     ),
     Benchmark("real_logs", "The score on real logs", needs_data=True),
     Benchmark("file_coverage", "Ellipsoids from a model file", has_figures=False, needs_data=True),
-    Benchmark("ground_change", "Finding a change of ground", quick=("--quick",)),
+    Benchmark("terrain_change", "Finding a change of terrain", quick=("--quick",)),
     Benchmark("convergence", "Seconds of driving until the model has converged", needs_data=True),
     Benchmark("push_latency", "Time per push and per prediction, live", needs_data=True),
     Benchmark("day_of_driving", "Memory and time over a day of driving", quick=("--hours", "2")),

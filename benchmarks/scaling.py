@@ -119,7 +119,7 @@ def print_costs(costs: list[Cost]) -> None:
         )
     print(
         "\nGrowth of processor time from one length to the next (linear: as the length, less where start-up "
-        "counts),\nand of peak memory beside the growth of the log in memory:"
+        "counts),\nand of peak memory beside the inflation of the log in memory:"
     )
     for short, long in itertools.pairwise(costs):
         print(

@@ -39,7 +39,7 @@ FRACTIONS = frozenset(
     {
         "disturbance.white",
         "hypotheses.average.largest_basis",
-        "driven_speeds.kReferenceShare",
+        "driven_speeds.kReferenceFraction",
         "model_average.kChanged",
         "score_covariance.kMostTaken",
     }
@@ -52,7 +52,7 @@ NO_TUNING = frozenset(
         "halvings",
         "latency",
         "horizons",
-        "lever_std",
+        "extrinsics_std",
         "sensor_yaw_std",
         "unknown_after",
     }

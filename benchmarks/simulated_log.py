@@ -29,7 +29,7 @@ def simulated_log(
 ) -> Log:
     """Return a log of one run: held random wheel speeds, the poses they lead to, and pose noise.
 
-    The slip parameters are `slips` in turn, each for the same share of the time.
+    The slip parameters are `slips` in turn, each for the same fraction of the time.
     """
     rng = np.random.default_rng(seed)
     count = round(minutes * 60.0 * RATE)
@@ -63,13 +63,13 @@ def _poses(twist: Floats, slips: Sequence[Floats]) -> tuple[Floats, Floats, Floa
     """Integrate twists [N, 3] exactly, in chunks; return x, y [m] and yaw [rad] at every sample."""
     model = _core.MotionModel(_core.named_basis(BASIS), False, False)
     parts, origin = [], np.zeros(3)
-    for slip, share in zip(slips, np.array_split(twist, len(slips)), strict=True):
-        for begin in range(0, len(share), CHUNK):
-            v, vy, omega = share[begin : begin + CHUNK].T.copy()
+    for slip, fraction in zip(slips, np.array_split(twist, len(slips)), strict=True):
+        for begin in range(0, len(fraction), CHUNK):
+            v, vy, omega = fraction[begin : begin + CHUNK].T.copy()
             t = np.arange(len(v)) / RATE
-            track = _core.InputTrack(t, v, vy, omega)
+            history = _core.InputHistory(t, v, vy, omega)
             segment = _core.Segment(0.0, len(v) / RATE, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-            path = _core.integrate_segment(model, slip, track, segment, _core.Integrator.Exact)
+            path = _core.integrate_segment(model, slip, history, segment, _core.Integrator.Exact)
             world = _moved(origin, path.poses)
             parts.append(world[:-1])
             origin = world[-1]

@@ -16,9 +16,9 @@ from slipwise.planning import (
     Controller,
     Motion,
     MppiOptions,
-    Track,
+    ReferencePath,
+    baseline_motion,
     learned_motions,
-    plain_motion,
     vendor_motion,
 )
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
@@ -49,7 +49,7 @@ class Drive:
 
 
 def slalom() -> np.ndarray:
-    """Return the track's points [N, 2]: a sine whose width grows over the first metres."""
+    """Return the reference's points [N, 2]: a sine whose width grows over the first metres."""
     x = np.arange(0.0, LENGTH + 0.05, 0.1)
     return np.column_stack((x, SIDE * np.sin(2.0 * np.pi * x / WAVE) * np.clip(x / 3.0, 0.0, 1.0)))
 
@@ -57,11 +57,11 @@ def slalom() -> np.ndarray:
 def drive(method: str, motions: list[Motion], options: MppiOptions) -> Drive:
     """Drive the slalom once."""
     robot = LiveRobot(World(LandTamer(), "tyre-force", TyreLaw()), period=options.period)
-    controller = Controller(motions, Track(slalom(), SPEED), options=options)
+    controller = Controller(motions, ReferencePath(slalom(), SPEED), options=options)
     state, errors = robot.state(), []
-    while controller.track.progress < LENGTH - 2.0 and state.t < LONGEST:
+    while controller.reference.progress < LENGTH - 2.0 and state.t < LONGEST:
         state = robot.tell(*controller.command(state.pose, state.drive))
-        errors.append(controller.track.nearest(state.pose[:2])[1])
+        errors.append(controller.reference.nearest(state.pose[:2])[1])
     return Drive(
         method=method,
         across=options.across,
@@ -70,18 +70,18 @@ def drive(method: str, motions: list[Motion], options: MppiOptions) -> Drive:
         rms=float(np.sqrt(np.mean(np.square(errors)))),
         worst=float(np.abs(errors).max()),
         seconds=state.t,
-        finished=controller.track.progress >= LENGTH - 2.0,
+        finished=controller.reference.progress >= LENGTH - 2.0,
     )
 
 
 def methods() -> dict[str, list[Motion]]:
-    """Return what each method believes; the vendor's multiplier is the best constant for this ground."""
+    """Return what each method believes; the vendor's multiplier is the best constant for this terrain."""
     log = simulate(Scenario(duration=LEARNED_FROM), seed=5).log
     constant = sw.calibrate(log, input="command", basis="edd-2").model
     turn = {p.name: p.value for p in constant.content.parameters}["ang.w"]
     learned = sw.calibrate(log, input="command").model
     return {
-        "plain": [plain_motion()],
+        "plain": [baseline_motion()],
         "vendor": [vendor_motion(1.0 / (1.0 + turn))],
         "learned": learned_motions(learned),
     }

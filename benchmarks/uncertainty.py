@@ -21,14 +21,14 @@ NIS_RANGE = (2.5, 3.5)  # of the mean NIS of a log; 3 is true
 MANY_WINDOWS = 50  # held out
 _DRAWS, _SEED = 500, 3
 _CHI_SQUARE = np.linspace(0.0, 60.0, 6001)
-_CHI_SQUARE_SHARE = np.array(
+_CHI_SQUARE_FRACTION = np.array(
     [math.erf(math.sqrt(x / 2)) - math.sqrt(2 * x / math.pi) * math.exp(-x / 2) for x in _CHI_SQUARE]
 )
 
 
 def normal_score(inside: Floats) -> float:
     """Mean NIS once each error is stretched to a normal one by its predicted t; 3 where the t is true."""
-    return float(np.interp(inside, _CHI_SQUARE_SHARE, _CHI_SQUARE).mean())
+    return float(np.interp(inside, _CHI_SQUARE_FRACTION, _CHI_SQUARE).mean())
 
 
 def chance_of_range(predictions: Predictions, half: slice) -> float:
@@ -53,12 +53,12 @@ def print_coverage(scores: Sequence[LogScore], methods: Sequence[str]) -> None:
     for method in methods:
         having = [s.methods[method] for s in scores if method in s.methods]
         predicted, usual = (
-            "/".join(f"{100 * share:.1f}" for share in pooled(having, name))
-            for name in ("coverage", "stated_coverage")
+            "/".join(f"{100 * fraction:.1f}" for fraction in pooled(having, name))
+            for name in ("coverage", "reported_coverage")
         )
         print(
             f"{method:16}{sum(m.windows for m in having):7}   {predicted:16} {usual:16}"
-            f"{_share([m.nis for m in having]):>12} {_share([m.stated_nis for m in having]):>17}"
+            f"{_share([m.nis for m in having]):>12} {_share([m.reported_nis for m in having]):>17}"
         )
 
 
@@ -74,7 +74,7 @@ def print_chances(scores: Sequence[LogScore]) -> None:
         heavy = 100 * np.mean([m.nis_chance for m in autos])
         print(
             f"auto, {name} ({len(autos)}): mean NIS in 2.5-3.5 on {_share([m.nis for m in autos])} %\n"
-            f"  a perfect filter: {normal:.0f} % with normal errors, {heavy:.0f} % with the predicted tails\n"
+            f"  a perfect filter: {normal:.0f} % with normal errors, {heavy:.0f} % with the predicted t\n"
             f"  mean NIS of errors stretched to normal ones by their t in 2.5-3.5 on "
             f"{_share([m.normal_nis for m in autos])} %"
         )

@@ -2,7 +2,7 @@
 # %% [markdown]
 """A first model: simulate a robot, learn how it slips and lags, ask whether that helps, and predict."""
 
-# A planner tells a six-wheel skid-steered robot how fast to go. The robot turns less than it is told, and
+# A planner tells a six-wheel skid-steered robot how fast to go. The robot turns less than commanded, and
 # later. By how much? The drive below is simulated, so that nothing is needed but this file; with a log of
 # your own, replace `simulate` by `sw.open_log("run.mcap")`.
 
@@ -21,7 +21,7 @@ log = simulate(Scenario(duration=150.0), seed=3).log
 
 # %% [markdown]
 # Learn from the commands and the poses. The verdict compares the model with the plain one, "the robot does
-# what it is told", on predictions that were made before the data they are judged by had been learned.
+# what it is commanded", on predictions that were made before the data they are judged by had been learned.
 
 # %%
 result = sw.calibrate(log, input="command")
@@ -48,7 +48,7 @@ with tempfile.TemporaryDirectory() as folder:
 assert model.content == result.model.content
 
 # %% [markdown]
-# Where is the robot after 5 s of 1 m/s and 0.3 rad/s, starting at rest? As told, it would have turned by
+# Where is the robot after 5 s of 1 m/s and 0.3 rad/s, starting at rest? As commanded, it would have turned by
 # 1.5 rad.
 
 # %%

@@ -45,6 +45,6 @@ options = sw.EvaluationOptions(methods=("none", "auto"))
 evaluation = sw.evaluate(log, input="command", options=options)
 for horizon in evaluation.horizons:
     score = evaluation.score("auto", horizon)
-    inside = ", ".join(f"{100 * share:.0f} %" for share in score.coverage)
+    inside = ", ".join(f"{100 * fraction:.0f} %" for fraction in score.coverage)
     print(f"{horizon:g} s: NIS {score.nis:.1f}; inside the 50, 90, 95 % ellipsoids: {inside}")
 assert evaluation.score("auto", 2.0).coverage[1] > 0.7

@@ -2,7 +2,7 @@
 # %% [markdown]
 """Planning with a learned model: commands that bring a skidding robot to a pose, and round obstacles."""
 
-# A skid-steered robot that is told to turn at 1 rad/s may turn at 0.6. A planner that believes its commands
+# A skid-steered robot commanded to turn at 1 rad/s may turn at 0.6. A planner that believes its commands
 # misses the goal; one that plans through the learned model gives commands that arrive there.
 
 # %%
@@ -33,7 +33,7 @@ assert math.dist(trajectory.poses[-1][:2], goal[:2]) < 0.01
 
 # %% [markdown]
 # Does the robot get there? It drives the commands blindly: it never looks where it is. Beside it, the same
-# goal planned as if the robot did what it is told.
+# goal planned as if the robot did what it is commanded.
 
 # %%
 PERIOD = 0.02  # s

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # %% [markdown]
-"""Driving a slalom: the same MPPI controller through the plain model and through the learned one."""
+"""Driving a slalom: the same MPPI controller through the kinematic baseline and through the learned one."""
 
-# The robot answers its commands late and turns less than it is told. A controller that samples thousands of
+# The robot answers its commands late and turns less than commanded. A controller that samples thousands of
 # futures is only as good as the model that they are driven through.
 
 # %%
@@ -11,14 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 import slipwise as sw
-from slipwise.planning import Controller, Motion, MppiOptions, Track, learned_motions, plain_motion
+from slipwise.planning import Controller, Motion, MppiOptions, ReferencePath, baseline_motion, learned_motions
 from slipwise.simulation import LandTamer, LiveRobot, Scenario, TyreLaw, World, simulate
 
 log = simulate(Scenario(duration=240.0), seed=5).log
 model = sw.calibrate(log, input="command").model
 
 # %% [markdown]
-# The track, and one drive along it. The controller is called once per period, with the robot's pose and what
+# The path, and one drive along it. The controller is called once per period, with the robot's pose and what
 # its wheels do.
 
 # %%
@@ -30,22 +30,22 @@ options = MppiOptions(rollouts=1024)
 def drive(motions: list[Motion], seconds: float) -> np.ndarray:
     """Follow the slalom; return the cross-track errors [m]."""
     robot = LiveRobot(World(LandTamer(), "tyre-force", TyreLaw()), period=options.period)
-    controller = Controller(motions, Track(slalom, speed=1.0), options=options)
+    controller = Controller(motions, ReferencePath(slalom, speed=1.0), options=options)
     state, errors = robot.state(), []
-    while state.t < seconds and controller.track.progress < 15.0:
+    while state.t < seconds and controller.reference.progress < 15.0:
         v, omega = controller.command(state.pose, state.drive)
         state = robot.tell(v, omega)
-        errors.append(controller.track.nearest(state.pose[:2])[1])
+        errors.append(controller.reference.nearest(state.pose[:2])[1])
     return np.array(errors)
 
 
 # %% [markdown]
-# The plain model sees neither lag nor delay nor slip. `benchmarks/slalom.py` tunes every method alike, and
+# The baseline sees neither lag nor delay nor slip. `benchmarks/slalom.py` tunes every method alike, and
 # adds a vendor's multiplier.
 
 # %%
 rms = {}
-for name, motions in (("plain", [plain_motion()]), ("learned", learned_motions(model))):
+for name, motions in (("plain", [baseline_motion()]), ("learned", learned_motions(model))):
     errors = drive(motions, 18.0)
     rms[name] = float(np.sqrt(np.mean(errors**2)))
     print(f"{name}: cross-track error {rms[name]:.2f} m rms, {np.abs(errors).max():.2f} m at most")
@@ -58,7 +58,7 @@ assert rms["learned"] < 0.5 * rms["plain"]
 # %%
 careful = Controller(
     learned_motions(model, samples=3),
-    Track(slalom, speed=1.0),
+    ReferencePath(slalom, speed=1.0),
     options=MppiOptions(rollouts=512, risk=0.5),
 )
 v, omega = careful.command((0.0, 0.0, 0.0), (0.0, 0.0))

@@ -51,7 +51,7 @@ drawn.write_html(folder / "path.html", include_plotlyjs="directory")
 drawn  # noqa: B018 - a notebook shows it
 
 # %% [markdown]
-# How one number came about while the robot drove: the share of the yaw rate that slip takes away, with a band
+# How one number came about while the robot drove: the part of the yaw rate that slip takes away, with a band
 # of two standard deviations.
 
 # %%

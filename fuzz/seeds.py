@@ -25,7 +25,7 @@ ROWS = 30  # of a table, or of each topic of a bag
 _MAP = "image: map.pgm\nresolution: 0.5\norigin: [-1.0, -2.0, 0.0]\nnegate: 0\nfree_thresh: 0.196\n"
 _SETTINGS = (
     'basis = "edd-2"\nlearn_clock_offset = true\n'
-    "[window]\nlength = 1.0\nunknown_after = 0.4\n[prior]\nlag = 0.3\n"
+    "[segment]\nlength = 1.0\nunknown_after = 0.4\n[prior]\ntime_constant = 0.3\n"
     "delay = 0.2\n[noise]\npsd_motion = [0.001, 0.001, 0.001]\npose_std_xy = 0.02\n[filter]\nhuber = 2.0\n"
 )
 

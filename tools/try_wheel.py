@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 STEP = 0.05  # s between rows of the log
 SECONDS = 60.0  # length of the log
-TURNS = 0.8  # the robot's yaw rate as a share of the commanded one
+TURNS = 0.8  # the robot's yaw rate as a fraction of the commanded one
 LAG = 0.2  # s, of speed and yaw rate behind their commands
 COMMANDS = ((1.0, 0.4), (0.5, -0.5), (1.2, 0.0), (0.8, 0.6), (0.4, -0.3), (1.0, -0.6))  # m/s, rad/s
 

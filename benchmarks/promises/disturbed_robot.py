@@ -3,7 +3,7 @@
 
 It is commanded random speeds and yaw rates for 1 to 4 s each, 20 times a second; its actuators follow after
 a delay with a first-order lag, behind limits where it has any: nothing moves in the dead band, nothing is
-faster than the top, and what is asked for changes no faster than accelerating and braking allow. Slip rates
+faster than the saturation, and what is asked for changes no faster than the slew rates. Slip rates
 are those of `BASIS`, and noise: white, of a density that grows with the motion, or first-order Gauss-Markov
 fractions of v and omega with a correlation time of 5 s, or both. White noise is normal or, where asked,
 Student distributed and constant for 0.1 s. Poses and wheel speeds come 20 times a second, with normal noise;
@@ -131,13 +131,15 @@ def _followed(robot: Robot, commands: Inputs, channel: int, t: Floats) -> Floats
 
 def _limited(wish: Floats, limits: Limits) -> Floats:
     """What is let through of a speed that is asked for, step by step, from rest."""
-    clipped = np.where(np.abs(wish) < limits.dead_band, 0.0, np.clip(wish, -limits.top, limits.top))
-    if not np.isfinite(min(limits.acceleration, limits.braking)):
+    clipped = np.where(
+        np.abs(wish) < limits.dead_band, 0.0, np.clip(wish, -limits.saturation, limits.saturation)
+    )
+    if not np.isfinite(min(limits.slew_rate_up, limits.slew_rate_down)):
         return np.asarray(clipped)
     now, passed = 0.0, np.empty_like(clipped)
     for i, target in enumerate(clipped.tolist()):
         slower = now * target <= 0.0 or abs(target) < abs(now)
-        most = STEP * (limits.braking if slower and now != 0.0 else limits.acceleration)
+        most = STEP * (limits.slew_rate_down if slower and now != 0.0 else limits.slew_rate_up)
         change = min(max(target - now, -most), most)
         now = 0.0 if now * (now + change) < 0.0 else now + change  # through rest, then the other way
         passed[i] = now

@@ -33,7 +33,7 @@ LIMITS = {
 }
 NOISES = {
     "white": Disturbance(1.0, 0.0),
-    "tails": Disturbance(1.0, 0.0, degrees=4.0),
+    "students": Disturbance(1.0, 0.0, degrees=4.0),
     "both": Disturbance(0.5, 1.0),
 }
 MINUTES = (2.0, 5.0, 15.0)
@@ -85,7 +85,7 @@ def _off(model: Model, robot: Robot) -> tuple[tuple[float, ...], tuple[float, ..
     known = {each.name: each for each in model.content.parameters}
     lags, delays = [], []
     for axis, lag, delay in zip(("v", "omega"), robot.lag, robot.delay, strict=True):
-        if (found := known.get(f"log_lag_{axis}")) is not None:
+        if (found := known.get(f"log_time_constant_{axis}")) is not None:
             lags.append((found.value - float(np.log(lag))) / found.std)
         if (found := known.get(f"log_delay_{axis}")) is not None:
             delays.append((found.value - float(np.log(delay))) / found.std)

@@ -96,7 +96,9 @@ def _learned(robot: Robot, job: Job, at: float, settings: Settings) -> LearnedLo
     log = disturbed_run(robot, MINUTES, seed=job.seed, change=change).log
     if job.input == "command":
         log = Log(tuple(replace(part, wheels=None) for part in log.runs))
-    return learn_log(prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.vehicle.track))
+    return learn_log(
+        prepare_run(log, job.input), settings, (HORIZON,), keep=Keep(settings.vehicle.wheel_separation)
+    )
 
 
 def _alarms(learned: LearnedLog) -> np.ndarray:

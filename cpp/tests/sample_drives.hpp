@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 
 namespace slipwise::tests {
 
@@ -14,7 +14,7 @@ namespace slipwise::tests {
 using TwistOfTime = BodyTwist (*)(double t);
 
 /// Samples a drive every `period` seconds from `first` on, `count` times.
-inline InputTrack sampled(TwistOfTime drive, double first, double period, std::size_t count) {
+inline InputHistory sampled(TwistOfTime drive, double first, double period, std::size_t count) {
   std::vector<double> t, v, vy, omega;
   for (std::size_t i = 0; i < count; ++i) {
     t.push_back(first + period * static_cast<double>(i));

@@ -23,12 +23,12 @@ struct SimulationSettings {
 };
 
 struct SimulatedDrive {
-  InputTrack inputs;
+  InputHistory inputs;
   std::vector<Segment> segments;
 };
 
 /// Inputs that change to a new speed and curvature every two seconds, forwards.
-inline InputTrack random_inputs(std::mt19937_64& random, double length, double period) {
+inline InputHistory random_inputs(std::mt19937_64& random, double length, double period) {
   std::uniform_real_distribution<double> speed(0.4, 1.8), yaw(-1.0, 1.0);
   std::vector<double> t, v, vy, omega;
   const auto count = static_cast<std::size_t>(std::lround(length / period)) + 1;
@@ -89,7 +89,7 @@ inline SimulatedDrive simulate_drive(const MotionModel& model, const Eigen::Vect
 }
 
 /// R of a window: slip noise along the path that `mean` predicts, and the noise of both poses.
-inline Eigen::Matrix3d window_noise(const MotionModel& model, const Eigen::VectorXd& mean, const InputTrack& inputs,
+inline Eigen::Matrix3d window_noise(const MotionModel& model, const Eigen::VectorXd& mean, const InputHistory& inputs,
                                     const Segment& segment, const MotionNoise& noise) {
   return slip_covariance(integrate_segment(model, mean, inputs, segment), noise) +
          pose_noise_covariance(segment.measured, noise);

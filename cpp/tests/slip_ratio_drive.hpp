@@ -18,7 +18,7 @@ inline SimulatedDrive slip_ratio_drive(std::size_t windows, std::uint64_t seed, 
 }
 
 /// The drive's wheel speeds as one constant input: straight ahead at `v`.
-inline InputTrack straight_track(double v) {
+inline InputHistory straight_inputs(double v) {
   const std::vector<double> t{0.0}, speed{v}, zero{0.0};
   return {t, speed, zero, zero};
 }

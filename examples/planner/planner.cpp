@@ -27,7 +27,7 @@ slipwise::CommandLimits learned_limits() {
   return {.speed = {SLIPWISE_LIMITS_SPEED},
           .yaw_rate = {SLIPWISE_LIMITS_YAW_RATE},
           .side = {SLIPWISE_LIMITS_SIDE},
-          .track = SLIPWISE_LIMITS_TRACK,
+          .wheel_separation = SLIPWISE_LIMITS_WHEEL_SEPARATION,
           .gain_v = SLIPWISE_LIMITS_GAIN_V,
           .gain_omega = SLIPWISE_LIMITS_GAIN_OMEGA};
 }
@@ -42,7 +42,7 @@ int main() {
   for (const double rate : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
     // What the robot was commanded before still acts, because of lag and delay; each command is held until the next.
     const std::array<double, 2> t{0.0, now}, v{0.3, 1.0}, vy{0.0, 0.0}, omega{0.0, rate};
-    const slipwise::InputTrack commands = slipwise::limited_track({t, v, vy, omega}, learned_limits());
+    const slipwise::InputHistory commands = slipwise::limited_inputs({t, v, vy, omega}, learned_limits());
     const auto at = slipwise::linearize_segment(model, parameters, commands, {.start = now, .end = now + ahead});
     const slipwise::Pose2 pose = at.predicted;  // at.by_parameter is its derivative by the parameters
     const double miss = std::hypot(pose.x - goal_x, pose.y - goal_y);

@@ -40,20 +40,20 @@ void bind_settings(nb::module_& m) {
       .def_rw("slip_fraction", &PriorSettings::slip_fraction)
       .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
       .def_rw("sensor", &PriorSettings::sensor)
-      .def_rw("lever_std", &PriorSettings::lever_std)
+      .def_rw("extrinsics_std", &PriorSettings::extrinsics_std)
       .def_rw("sensor_yaw_std", &PriorSettings::sensor_yaw_std)
-      .def_rw("lag", &PriorSettings::lag)
+      .def_rw("time_constant", &PriorSettings::time_constant)
       .def_rw("delay", &PriorSettings::delay)
       .def_rw("log_std", &PriorSettings::log_std)
       .def_rw("gain_std", &PriorSettings::gain_std)
-      .def_rw("slow_share_std", &PriorSettings::slow_share_std)
-      .def_rw("slow_lag", &PriorSettings::slow_lag);
+      .def_rw("slow_fraction_std", &PriorSettings::slow_fraction_std)
+      .def_rw("slow_time_constant", &PriorSettings::slow_time_constant);
   nb::class_<NoiseSettings>(m, "NoiseSettings")
       .def(nb::init<>())
       .def_rw("shape", &NoiseSettings::shape)
       .def_rw("adapt", &NoiseSettings::adapt)
       .def_rw("prior_segments", &NoiseSettings::prior_segments)
-      .def_rw("memory", &NoiseSettings::memory)
+      .def_rw("forgetting_time", &NoiseSettings::forgetting_time)
       .def_rw("largest", &NoiseSettings::largest);
   nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
       .def(nb::init<>())
@@ -71,11 +71,11 @@ void bind_settings(nb::module_& m) {
       .def_rw("forget", &ChangeSettings::forget)
       .def_rw("trial", &ChangeSettings::trial)
       .def_rw("warm_up", &ChangeSettings::warm_up)
-      .def_rw("memory", &ChangeSettings::memory);
+      .def_rw("forgetting_time", &ChangeSettings::forgetting_time);
   nb::class_<WeightingSettings>(m, "WeightingSettings")
       .def(nb::init<>())
       .def_rw("learning_rate", &WeightingSettings::learning_rate)
-      .def_rw("share", &WeightingSettings::share);
+      .def_rw("fraction", &WeightingSettings::fraction);
   nb::class_<ModelAverageSettings>(m, "ModelAverageSettings")
       .def(nb::init<>())
       .def_rw("weighting", &ModelAverageSettings::weighting)
@@ -130,11 +130,11 @@ void bind_results(nb::module_& m) {
 }
 
 void bind_slip_ratios(nb::module_& m) {
-  m.attr("NOMINAL_TRACK") = kNominalTrack;
+  m.attr("NOMINAL_WHEEL_SEPARATION") = kNominalWheelSeparation;
   m.def("slip_ratio_model", &slip_ratio_model, "full-linear-6 behind an identity actuator.");
   nb::class_<SlipRatioFilterSettings>(m, "SlipRatioFilterSettings")
       .def(nb::init<>())
-      .def_rw("track", &SlipRatioFilterSettings::track)
+      .def_rw("wheel_separation", &SlipRatioFilterSettings::wheel_separation)
       .def_rw("prior_ratio_std", &SlipRatioFilterSettings::prior_ratio_std)
       .def_rw("prior_angle_std", &SlipRatioFilterSettings::prior_angle_std)
       .def_rw("walk_ratio", &SlipRatioFilterSettings::walk_ratio)
@@ -153,7 +153,7 @@ void bind_slip_ratios(nb::module_& m) {
       .def("linear_estimate", &SlipRatioFilter::linear_estimate, "The same about full-linear-6.");
   nb::class_<SlidingModeSettings>(m, "SlidingModeSettings")
       .def(nb::init<>())
-      .def_rw("track", &SlidingModeSettings::track)
+      .def_rw("wheel_separation", &SlidingModeSettings::wheel_separation)
       .def_rw("ratio_gain", &SlidingModeSettings::ratio_gain)
       .def_rw("angle_gain", &SlidingModeSettings::angle_gain)
       .def_rw("side_layer", &SlidingModeSettings::side_layer)
@@ -170,7 +170,7 @@ void bind_slip_ratios(nb::module_& m) {
 }
 
 BatchFit batch_fit_segments(const MotionModel& model, const Estimate& prior,
-                            const std::vector<const InputTrack*>& inputs, const std::vector<Segment>& segments,
+                            const std::vector<const InputHistory*>& inputs, const std::vector<Segment>& segments,
                             const std::vector<Eigen::Matrix3d>& noise, const BatchSettings& settings) {
   check_inputs(inputs, segments.size(), noise.size());
   std::vector<BatchDatum> data;
@@ -244,7 +244,7 @@ void bind_estimate(nb::module_& m) {
   bind_slip_rate_fit(m);
   bind_noise_fit(m);
   m.def("iekf_update",
-        nb::overload_cast<const MotionModel&, const Estimate&, const InputTrack&, const Segment&,
+        nb::overload_cast<const MotionModel&, const Estimate&, const InputHistory&, const Segment&,
                           const Eigen::Matrix3d&, const IekfSettings&>(&iekf_update),
         "model"_a, "prior"_a, "inputs"_a, "segment"_a, "noise"_a, "settings"_a);
   m.def("batch_fit", &batch_fit_segments, "model"_a, "prior"_a, "inputs"_a, "segments"_a, "noise"_a, "settings"_a);
@@ -278,7 +278,7 @@ void bind_estimate(nb::module_& m) {
       "observability",
       [](const Estimate& posterior, const Eigen::VectorXd& prior_std) { return observability(posterior, prior_std); },
       "posterior"_a, "prior_std"_a);
-  nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of ground.")
+  nb::class_<ChangeTest>(m, "ChangeTest", "The test of one segment for a change of terrain.")
       .def(nb::init<>())
       .def_ro("log_odds", &ChangeTest::log_odds)
       .def_ro("segments", &ChangeTest::segments)
@@ -309,7 +309,7 @@ void bind_estimate(nb::module_& m) {
       .def(nb::init<const PredictiveScore&>(), "other"_a, "A copy.")
       .def(
           "score",
-          [](PredictiveScore& score, const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+          [](PredictiveScore& score, const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
              const Segment& segment) {
             check_estimate(model, estimate);
             return score.score(model, estimate, inputs, segment);
@@ -320,19 +320,22 @@ void bind_estimate(nb::module_& m) {
       .def(
           "__init__",
           [](ModelAverage* self, std::string name, const std::vector<Basis>& bases, bool dynamics, bool clock_offset,
-             bool mount, const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
-            new (self)
-                ModelAverage(std::move(name), bases,
-                             {.dynamics = dynamics, .clock_offset = clock_offset, .mount = mount}, filter, settings);
+             bool sensor_extrinsics, const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
+            new (self) ModelAverage(
+                std::move(name), bases,
+                {.dynamics = dynamics, .clock_offset = clock_offset, .sensor_extrinsics = sensor_extrinsics}, filter,
+                settings);
           },
-          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "mount"_a, "filter"_a, "settings"_a)
+          "name"_a, "bases"_a, "dynamics"_a, "clock_offset"_a, "sensor_extrinsics"_a, "filter"_a, "settings"_a)
       .def_static(
           "with_delays",
-          [](std::string name, const std::vector<Basis>& bases, bool mount, const CausalFilterSettings& filter,
-             const ModelAverageSettings& settings) {
-            return ModelAverage(std::move(name), bases, {.mount = mount, .delays = true}, filter, settings);
+          [](std::string name, const std::vector<Basis>& bases, bool sensor_extrinsics,
+             const CausalFilterSettings& filter, const ModelAverageSettings& settings) {
+            return ModelAverage(std::move(name), bases, {.sensor_extrinsics = sensor_extrinsics, .delays = true},
+                                filter, settings);
           },
-          "name"_a, "bases"_a, "mount"_a, "filter"_a, "settings"_a, "Of delays alone, without an actuator model.")
+          "name"_a, "bases"_a, "sensor_extrinsics"_a, "filter"_a, "settings"_a,
+          "Of delays alone, without an actuator model.")
       .def("learn", &ModelAverage::learn, "inputs"_a, "segment"_a)
       .def("state", &ModelAverage::state)
       .def_prop_ro("change", [](const ModelAverage& average) { return ChangeTest(average.change()); })

@@ -53,7 +53,7 @@ void bind_smoother(nb::module_& m) {
       .def_rw("length", &DriftSettings::length);
   m.def(
       "rts_smooth",
-      [](const MotionModel& model, const Estimate& prior, const std::vector<const InputTrack*>& inputs,
+      [](const MotionModel& model, const Estimate& prior, const std::vector<const InputHistory*>& inputs,
          const std::vector<Segment>& segments, const std::vector<Eigen::Matrix3d>& noise, const DriftSettings& drift,
          const IekfSettings& iekf) {
         check_inputs(inputs, segments.size(), noise.size());

@@ -20,7 +20,7 @@ void bind_limits(nb::module_& m) {
   nb::class_<WheelRecord>(m, "WheelRecord", "Commands without a gap, and wheel twists beside them.")
       .def(
           "__init__",
-          [](WheelRecord* self, const InputTrack& commands, Rows wheels) {
+          [](WheelRecord* self, const InputHistory& commands, Rows wheels) {
             WheelRecord record{.commands = commands, .t = {}, .wheels = {}};
             for (std::size_t i = 0; i < wheels.shape(0); ++i) {
               const double* row = wheels.data() + 3 * i;
@@ -35,9 +35,9 @@ void bind_limits(nb::module_& m) {
           "commands"_a, "wheels"_a, "`wheels` are rows of t [s], v [m/s], omega [rad/s].");
   nb::enum_<LimitKind>(m, "LimitKind")
       .value("DeadBand", LimitKind::DeadBand)
-      .value("Top", LimitKind::Top)
-      .value("Acceleration", LimitKind::Acceleration)
-      .value("Braking", LimitKind::Braking);
+      .value("Saturation", LimitKind::Saturation)
+      .value("SlewRateUp", LimitKind::SlewRateUp)
+      .value("SlewRateDown", LimitKind::SlewRateDown);
   nb::enum_<LimitedAxis>(m, "LimitedAxis", "The commanded speed, the commanded yaw rate, or both sides.")
       .value("Speed", LimitedAxis::Speed)
       .value("YawRate", LimitedAxis::YawRate)
@@ -56,16 +56,16 @@ void bind_limits(nb::module_& m) {
       .def_prop_ro("limits", [](const LimitSearch& search) { return search.drive.limits; })
       .def_prop_ro("actuator", [](const LimitSearch& search) { return search.drive.actuator; })
       .def_ro("found", &LimitSearch::found)
-      .def_ro("track_std", &LimitSearch::track_std)
+      .def_ro("wheel_separation_std", &LimitSearch::wheel_separation_std)
       .def_ro("reach", &LimitSearch::reach);
   m.def(
       "find_limits",
-      [](const std::vector<WheelRecord>& records, const PriorSettings& prior, double track, double least_gain,
-         const LimitSearch* before) {
+      [](const std::vector<WheelRecord>& records, const PriorSettings& prior, double wheel_separation,
+         double least_gain, const LimitSearch* before) {
         const auto start = before == nullptr ? std::nullopt : std::optional<LimitedActuator>(before->drive);
-        return find_limits(records, prior, track, {.least_gain = least_gain}, start);
+        return find_limits(records, prior, wheel_separation, {.least_gain = least_gain}, start);
       },
-      "records"_a, "prior"_a, "track"_a, "least_gain"_a, "before"_a.none(),
+      "records"_a, "prior"_a, "wheel_separation"_a, "least_gain"_a, "before"_a.none(),
       "The limits that wheel speeds show; the search goes on from those found `before`.");
   m.attr("LEAST_LIMIT_GAIN") = LimitSearchSettings{}.least_gain;
 }

@@ -31,24 +31,25 @@ void bind_motion(nb::module_& m) {
           [](const Basis& basis, bool clock_offset) {
             return MotionModel(basis, {.dynamics = true, .clock_offset = clock_offset, .response = true});
           },
-          "basis"_a, "clock_offset"_a, "Lag, delay, gain and a slow part per channel, as wheel speeds show them.")
+          "basis"_a, "clock_offset"_a, "Lag, delay, gain and a slow mode per channel, as wheel speeds show them.")
       .def_static(
           "with_delays", [](const Basis& basis) { return MotionModel(basis, {.delays = true}); }, "basis"_a,
           "A delay per channel, and no actuator model behind it.")
       .def(
-          "with_mount",
-          [](const MotionModel& model, bool mount) {
+          "with_extrinsics",
+          [](const MotionModel& model, bool sensor_extrinsics) {
             ActuatorParameters learned = model.learned();
-            learned.mount = mount;
+            learned.sensor_extrinsics = sensor_extrinsics;
             return MotionModel(model.basis(), learned);
           },
-          "mount"_a, "The same with or without the pose of its pose sensor in base_link as three more parameters.")
+          "sensor_extrinsics"_a,
+          "The same with or without the pose of its pose sensor in base_link as three more parameters.")
       .def_prop_ro("basis", &MotionModel::basis)
       .def_prop_ro("dynamics", [](const MotionModel& model) { return model.learned().dynamics; })
       .def_prop_ro("delays", [](const MotionModel& model) { return model.learned().delays; })
       .def_prop_ro("clock_offset", [](const MotionModel& model) { return model.learned().clock_offset; })
       .def_prop_ro("response", [](const MotionModel& model) { return model.learned().response; })
-      .def_prop_ro("mount", [](const MotionModel& model) { return model.learned().mount; })
+      .def_prop_ro("sensor_extrinsics", [](const MotionModel& model) { return model.learned().sensor_extrinsics; })
       .def_prop_ro("size", &MotionModel::size)
       .def_prop_ro("slip_size", &MotionModel::slip_size)
       .def_prop_ro("actuator_size", &MotionModel::actuator_size)
@@ -64,12 +65,12 @@ void bind_motion(nb::module_& m) {
                               "One guess of the slip disturbance: Gauss-Markov processes of one time constant.")
       .def(
           "__init__",
-          [](SlipDisturbance* self, double drift, double turn, double time_constant) {
-            new (self) SlipDisturbance{drift, turn, time_constant};
+          [](SlipDisturbance* self, double linear, double angular, double time_constant) {
+            new (self) SlipDisturbance{linear, angular, time_constant};
           },
-          "drift"_a, "turn"_a, "time_constant"_a)
-      .def_ro("drift", &SlipDisturbance::drift)
-      .def_ro("turn", &SlipDisturbance::turn)
+          "linear"_a, "angular"_a, "time_constant"_a)
+      .def_ro("linear", &SlipDisturbance::linear)
+      .def_ro("angular", &SlipDisturbance::angular)
       .def_ro("time_constant", &SlipDisturbance::time_constant);
   nb::class_<DisturbanceModel>(m, "DisturbanceModel", "The slip disturbance: guesses and how likely each is.")
       .def(

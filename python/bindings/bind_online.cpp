@@ -80,7 +80,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("bases", &HypothesisSettings::bases)
       .def_rw("dynamics", &HypothesisSettings::dynamics)
       .def_rw("clock_offset", &HypothesisSettings::clock_offset)
-      .def_rw("mount", &HypothesisSettings::mount)
+      .def_rw("sensor_extrinsics", &HypothesisSettings::sensor_extrinsics)
       .def_rw("cascaded", &HypothesisSettings::cascaded)
       .def_rw("direct", &HypothesisSettings::direct)
       .def_rw("baseline", &HypothesisSettings::baseline)

@@ -35,8 +35,8 @@ void bind_settings(nb::module_& m) {
   nb::class_<DriveLimits>(m, "DriveLimits", "Limits of the commands [m/s, rad/s, 1/m, m/s^2].")
       .def(nb::init<double, double, double, double>(), "speed"_a, "yaw_rate"_a, "curvature"_a, "acceleration"_a)
       .def("check", &DriveLimits::check);
-  nb::class_<ActuatorState>(m, "ActuatorState", "What the drive does and was told last when a plan begins.")
-      .def(nb::init<BodyTwist, BodyTwist, std::optional<BodyTwist>>(), "drive"_a, "told"_a, "fast"_a.none());
+  nb::class_<ActuatorState>(m, "ActuatorState", "What the drive does and was commanded last when a plan begins.")
+      .def(nb::init<BodyTwist, BodyTwist, std::optional<BodyTwist>>(), "drive"_a, "commanded"_a, "fast"_a.none());
   nb::class_<TrajectorySettings>(m, "TrajectorySettings", "How trajectories are shaped.")
       .def(nb::init<>())
       .def_rw("cruise", &TrajectorySettings::cruise)

@@ -89,7 +89,7 @@ void bind_least_squares(nb::module_& m) {
   nb::class_<LeastSquaresFit>(m, "LeastSquaresFit", "Least squares that says what it cannot determine.")
       .def_ro("coefficients", &LeastSquaresFit::coefficients)
       .def_ro("covariance", &LeastSquaresFit::covariance)
-      .def_ro("undetermined", &LeastSquaresFit::undetermined)
+      .def_ro("not_identifiable", &LeastSquaresFit::not_identifiable)
       .def_ro("residual", &LeastSquaresFit::residual)
       .def_ro("leverage", &LeastSquaresFit::leverage)
       .def_prop_ro("rank", &LeastSquaresFit::rank)
@@ -114,7 +114,7 @@ void bind_regression(nb::module_& m) {
   bind_bayesian(m);
   bind_least_squares(m);
   m.def("feature_rows", &feature_rows, "basis"_a, "v"_a, "omega"_a,
-        "Features of every parameter on level ground, [n, parameters].");
+        "Features of every parameter on level terrain, [n, parameters].");
   m.def(
       "slip_prior_std",
       [](const Basis& basis, double v, double omega, double fraction) {

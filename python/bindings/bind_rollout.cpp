@@ -11,7 +11,7 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/rollout/gpu.hpp"
+#include "slipwise/rollout/gpu/gpu.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 #include "slipwise/rollout/rollout_covariance.hpp"
 #include "slipwise/rollout/sampled_futures.hpp"
@@ -120,19 +120,19 @@ void bind_uncertain(nb::module_& m) {
       .def(
           "__init__",
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
-             const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale, double growth,
-             const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period, double gx, double gy,
-             const CommandLimits* limits) {
+             const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale,
+             double inflation, const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period,
+             double gx, double gy, const CommandLimits* limits) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
             check_size(prior_std, model.size(), "the prior of a model");
             new (self) UncertainModel{model,
                                       parameters,
-                                      {covariance, noise, scale, growth, disturbance, prior_std},
+                                      {covariance, noise, scale, inflation, disturbance, prior_std},
                                       setting(period, gx, gy, limits)};
           },
-          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "growth"_a, "disturbance"_a, "prior_std"_a,
-          "period"_a, "gx"_a, "gy"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
+          "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "inflation"_a, "disturbance"_a,
+          "prior_std"_a, "period"_a, "gx"_a, "gy"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,

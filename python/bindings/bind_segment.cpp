@@ -85,7 +85,8 @@ void bind_segment(nb::module_& m) {
           "start"_a, "end"_a, "measured"_a, "initial"_a.none(), "gx"_a, "gy"_a)
       .def(
           "with_measured_actuator",
-          [](const Segment& segment, std::shared_ptr<const InputTrack> twist, double until, const BodyTwist& initial) {
+          [](const Segment& segment, std::shared_ptr<const InputHistory> twist, double until,
+             const BodyTwist& initial) {
             Segment known = segment;
             known.initial = initial;
             known.known = MeasuredActuator{std::move(twist), until};
@@ -152,12 +153,13 @@ void bind_segment(nb::module_& m) {
       .def_ro("pose_std_yaw", &MotionNoise::pose_std_yaw);
   m.def(
       "integrate_segment",
-      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs, const Segment& segment,
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
+         const Segment& segment,
          Integrator integrator) { return integrate_segment(model, parameters, inputs, segment, integrator); },
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a, "integrator"_a);
   m.def(
       "linearize_segment",
-      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs,
+      [](const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
          const Segment& segment) { return linearize_segment(model, parameters, inputs, segment); },
       "model"_a, "parameters"_a, "inputs"_a, "segment"_a);
   m.def("slip_covariance", &slip_covariance, "path"_a, "noise"_a);

@@ -47,13 +47,13 @@ void bind_slip_disturbance(nb::module_& m) {
       .def(nb::init<const DisturbanceFilter&>(), "other"_a)
       .def(
           "learn",
-          [](DisturbanceFilter& slip, const MotionPosterior& posterior, const InputTrack& inputs, const SlipNow& now,
+          [](DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs, const SlipNow& now,
              const Segment& segment) { slip.learn(posterior, now, {.inputs = inputs, .segment = segment}); },
           "posterior"_a, "inputs"_a, "now"_a, "segment"_a,
           "Weights the candidates by a segment, predicted from where slip was.")
       .def(
           "now",
-          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputTrack& inputs,
+          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
              const std::vector<Segment>& recent) {
             std::vector<DrivenSegment> driven;
             for (const Segment& segment : recent) {
@@ -64,7 +64,7 @@ void bind_slip_disturbance(nb::module_& m) {
           "posterior"_a, "inputs"_a, "recent"_a, "What recent segments say of the slip after them.")
       .def(
           "predict",
-          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputTrack& inputs,
+          [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
              const SlipNow& now,
              const Segment& segment) { return slip.predict(posterior, now, {.inputs = inputs, .segment = segment}); },
           "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "Predicts a segment from where slip is.")

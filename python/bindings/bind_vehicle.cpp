@@ -36,9 +36,9 @@ void bind_vehicle(nb::module_& m) {
       .def_ro("vy", &BodyTwist::vy)
       .def_ro("omega", &BodyTwist::omega);
   nb::class_<DifferentialDrive>(m, "DifferentialDrive", "Differential or skid-steer drive (thesis 2.2).")
-      .def(nb::init<double, double>(), "wheel_radius"_a, "track"_a)
+      .def(nb::init<double, double>(), "wheel_radius"_a, "wheel_separation"_a)
       .def_ro("wheel_radius", &DifferentialDrive::wheel_radius)
-      .def_ro("track", &DifferentialDrive::track)
+      .def_ro("wheel_separation", &DifferentialDrive::wheel_separation)
       .def(
           "twists",
           [](const DifferentialDrive& d, const Eigen::VectorXd& left, const Eigen::VectorXd& right) {

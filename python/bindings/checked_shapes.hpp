@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
@@ -39,7 +39,7 @@ inline void check_columns(const Eigen::MatrixXd& matrix, Eigen::Index expected, 
 }
 
 /// A list of inputs, as long as the lists beside it, in which none is missing.
-inline void check_inputs(const std::vector<const InputTrack*>& inputs, std::size_t segments, std::size_t noise) {
+inline void check_inputs(const std::vector<const InputHistory*>& inputs, std::size_t segments, std::size_t noise) {
   if (inputs.size() != segments || noise != segments) {
     throw std::invalid_argument("each segment needs inputs and noise, got " + std::to_string(segments) + " segments, " +
                                 std::to_string(inputs.size()) + " inputs and " + std::to_string(noise) + " noises");

@@ -85,7 +85,7 @@ def evaluate(  # noqa: PLR0913 - all but the log are options
         input: "command" or "wheel"; by default that of the model, or commands where the log has them.
         settings: how the methods learn.
         options: what to compare, and over which horizons.
-        progress: called with the method at work and the share done, 0 to 1.
+        progress: called with the method at work and the fraction done, 0 to 1.
 
     Raises:
         LogError: the log cannot be read, has no such input, no poses, or no window of any horizon.

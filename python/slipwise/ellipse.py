@@ -10,7 +10,7 @@ from slipwise.student import ellipse_squared
 
 Floats = NDArray[np.float64]
 
-_SHARE = 0.95
+_FRACTION = 0.95
 _POINTS = 49  # of the closed outline
 
 
@@ -22,7 +22,7 @@ def ellipse(centre: Floats, covariance: Floats, dof: float) -> Floats | None:
         covariance: of x, y [m^2], [2, 2].
         dof: degrees of freedom.
     """
-    return outline_of(centre, covariance, float(np.sqrt(ellipse_squared(_SHARE, dof))))
+    return outline_of(centre, covariance, float(np.sqrt(ellipse_squared(_FRACTION, dof))))
 
 
 def outline_of(centre: Floats, covariance: Floats, radius: float) -> Floats | None:

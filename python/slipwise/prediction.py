@@ -15,7 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.frames import data_frame
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
-from slipwise.models.schema import Tail
+from slipwise.models.schema import StudentT
 from slipwise.number_text import number_text
 from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
@@ -106,21 +106,21 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         if not np.isfinite(initial).all():
             raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
         _check_speeds("initial speeds", np.asarray(initial))
-    given = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    given = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
     known = _measured_actuator(begin, initial)
-    track = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
+    history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
-    now = disturbance.now(model.posterior, track, []) if slip_now is None else slip_now
+    now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
-        expected = disturbance.predict(model.posterior, track, now, segment)
+        expected = disturbance.predict(model.posterior, history, now, segment)
         poses.append(expected.pose)
-        covariance.append(expected.covariance * tail_at(model, seconds).growth)
-    dof = np.array([tail_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
+        covariance.append(expected.covariance * student_at(model, seconds).inflation)
+    dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
 
 
@@ -131,38 +131,38 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
         model: a learned model.
         inputs: held inputs of the kind that the model was learned from, since before the first window.
         windows: between two measured poses, in order of time, as long as those that the model was learned
-            from (`coloured.window` of the model file). Those of the last 30 s tell all there is to tell.
+            from (`slip_disturbance.segment` of the model file). Those of the last 30 s say all there is.
     """
-    track = model.driven(_core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega))
-    return _core.DisturbanceFilter(model.disturbance).now(model.posterior, track, list(windows))
+    history = model.driven(_core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega))
+    return _core.DisturbanceFilter(model.disturbance).now(model.posterior, history, list(windows))
 
 
 def _measured_actuator(
     begin: float, initial: tuple[float, float] | None
-) -> tuple[_core.InputTrack, float, _core.BodyTwist] | None:
+) -> tuple[_core.InputHistory, float, _core.BodyTwist] | None:
     """Speeds measured at `begin`, held while the poses, stamped late, were under way."""
     if initial is None:
         return None
     v, omega = initial
-    held = _core.InputTrack(*(np.array([value]) for value in (begin - LONGEST_OFFSET, v, 0.0, omega)))
+    held = _core.InputHistory(*(np.array([value]) for value in (begin - LONGEST_OFFSET, v, 0.0, omega)))
     return held, begin, _core.BodyTwist(v, 0.0, omega)
 
 
-def tail_at(model: Model, horizon: float) -> Tail:
+def student_at(model: Model, horizon: float) -> StudentT:
     """Growth of the covariance and degrees of freedom at a horizon [s].
 
     Their logarithms are interpolated between the horizons judged, and kept beyond them; without any, the
     covariance is taken as stated and nearly normal.
     """
-    tails = model.content.noise.tails
-    if not tails:
-        return Tail(growth=1.0, dof=MOST_DOF)
-    seconds = sorted(tails)
-    growth, dof = (
-        np.exp(np.interp(horizon, seconds, [np.log(getattr(tails[s], name)) for s in seconds]))
-        for name in ("growth", "dof")
+    students = model.content.noise.student_t
+    if not students:
+        return StudentT(inflation=1.0, dof=MOST_DOF)
+    seconds = sorted(students)
+    inflation, dof = (
+        np.exp(np.interp(horizon, seconds, [np.log(getattr(students[s], name)) for s in seconds]))
+        for name in ("inflation", "dof")
     )
-    return Tail(growth=float(growth), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+    return StudentT(inflation=float(inflation), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
 
 
 def _check_speeds(name: str, *speeds: Floats) -> None:

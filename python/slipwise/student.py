@@ -21,7 +21,7 @@ _CHUNK = 4096  # distances at a time, so that memory does not grow with the log
 _FARTHEST = 1e6  # squared distance that every ellipsoid asked for lies within
 
 
-def share_inside(squared: ArrayLike, dof: ArrayLike) -> Floats:
+def fraction_inside(squared: ArrayLike, dof: ArrayLike) -> Floats:
     """Probability of x, y, yaw to lie within a squared distance, [N]; 3 squared / dof is Fisher's F(3, dof).
 
     With a radius of √dof tan θ in the scale matrix, the density over θ is sin² θ cos^(dof - 1) θ; Gauss's
@@ -42,15 +42,15 @@ def _share(squared: Floats, dof: Floats) -> Floats:
     return np.asarray(2.0 * half * (density @ _WEIGHTS) / whole, dtype=np.float64)
 
 
-def ellipsoid_squared(share: float, dof: float) -> float:
-    """Squared distance in x, y, yaw within which `share` lies, by bisection."""
+def ellipsoid_squared(fraction: float, dof: float) -> float:
+    """Squared distance in x, y, yaw within which `fraction` lies, by bisection."""
     low, high = 0.0, _FARTHEST
     for _ in range(80):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if float(share_inside(middle, dof)[0]) < share else (low, middle)
+        low, high = (middle, high) if float(fraction_inside(middle, dof)[0]) < fraction else (low, middle)
     return high
 
 
-def ellipse_squared(share: float, dof: float) -> float:
-    """Squared distance in two of the coordinates within which `share` lies: F(2, dof) in closed form."""
-    return float((dof - 2.0) * math.expm1(-2.0 / dof * math.log1p(-share)))
+def ellipse_squared(fraction: float, dof: float) -> float:
+    """Squared distance in two of the coordinates within which `fraction` lies: F(2, dof) in closed form."""
+    return float((dof - 2.0) * math.expm1(-2.0 / dof * math.log1p(-fraction)))

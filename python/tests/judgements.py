@@ -19,10 +19,10 @@ def judged(
     baseline = [0.0 if ratio[0] != ratio[0] else 1.0 for ratio in (position, heading)]
     held_out = HeldOut(
         horizon=5.0,
-        windows=windows,
+        segments=windows,
         position=errors[0],
         heading=errors[1],
-        plain_position=baseline[0],
-        plain_heading=baseline[1],
+        baseline_position=baseline[0],
+        baseline_heading=baseline[1],
     )
     return Judgement(held_out, position, heading, consistency)

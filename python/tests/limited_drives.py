@@ -18,14 +18,14 @@ CHANNELS = _core.CommandLimits(
 )
 
 
-def track_of(commands: Inputs) -> _core.InputTrack:
+def track_of(commands: Inputs) -> _core.InputHistory:
     """Commands for the core."""
-    return _core.InputTrack(commands.t, commands.v, commands.vy, commands.omega)
+    return _core.InputHistory(commands.t, commands.v, commands.vy, commands.omega)
 
 
 def wheels_behind(limits: _core.CommandLimits, commands: Inputs, seed: int) -> Inputs:
     """What wheel speeds say at the stamps of the commands."""
-    limited = _core.limited_track(track_of(commands), limits, _core.RAMP_PIECE)
+    limited = _core.limited_inputs(track_of(commands), limits, _core.RAMP_PIECE)
     drive = _core.actuator_output(limited, CHAIN, commands.t, _core.BodyTwist(0.0, 0.0, 0.0))
     noise = np.random.Generator(np.random.PCG64(seed)).normal(size=drive.shape) * NOISE
     v, omega = np.ascontiguousarray((drive + noise).T)
@@ -48,7 +48,7 @@ def true_value(limits: _core.CommandLimits, found: _core.FoundLimit) -> float:
     kinds = _core.LimitKind
     return {
         kinds.DeadBand: axis.dead_band,
-        kinds.Top: axis.top,
-        kinds.Acceleration: axis.acceleration,
-        kinds.Braking: axis.braking,
+        kinds.Saturation: axis.saturation,
+        kinds.SlewRateUp: axis.slew_rate_up,
+        kinds.SlewRateDown: axis.slew_rate_down,
     }[found.kind]

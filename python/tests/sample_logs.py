@@ -131,7 +131,7 @@ def steady_run(
     pose_rate: float = 10.0,
     name: str = "steady",
 ) -> Run:
-    """A robot that does exactly what it is told: constant speed and yaw rate, without noise."""
+    """A robot that does exactly what it is commanded: constant speed and yaw rate, without noise."""
     t = np.round(np.arange(0.0, seconds + 1e-9, 1.0 / pose_rate), 6)
     path = np.array([_core.exp(np.array([v, 0.0, omega]) * s).vector() for s in t])
     inputs = held(np.round(np.arange(0.0, seconds + 1e-9, STEP), 6), v, omega)
@@ -163,10 +163,10 @@ def _through_chain(u: Floats, drive: Drive) -> tuple[Floats, Floats]:
     if drive.lag == 0.0:
         return delayed, delayed
     decay, output, mean = np.exp(-STEP / drive.lag), np.empty_like(delayed), np.empty_like(delayed)
-    share = drive.lag * (1.0 - decay) / STEP  # of the start's value in the mean over a step
+    fraction = drive.lag * (1.0 - decay) / STEP  # of the start's value in the mean over a step
     now = 0.0
     for i, target in enumerate(delayed.tolist()):
         output[i] = now
-        mean[i] = target + (now - target) * share
+        mean[i] = target + (now - target) * fraction
         now = target + (now - target) * decay
     return output, mean

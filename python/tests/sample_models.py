@@ -23,25 +23,27 @@ class Made:
     values: Mapping[str, float] = field(default_factory=dict)
     std: float = 0.01  # of every parameter
     commands: bool = False
-    response: bool = False  # gain and slow part of the drive; a gain of 0.9, 0.3 of it within 1.5 s
+    response: bool = False  # gain and slow mode of the drive; a gain of 0.9, 0.3 of it within 1.5 s
     delays: tuple[float, float] | None = None  # s, from commands without an actuator model
     clock_offset: float | None = None
     limits: Mapping[str, Mapping[str, float]] | None = None  # of the drive: kinds and values by axis
-    mount: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
+    sensor_extrinsics: tuple[float, float, float] | None = None  # of the pose sensor: x, y [m], yaw [rad]
     fraction: float = 0.05
     psd_motion: float = 1e-3
     psd_time: float = 0.0
     disturbance: tuple[float, float, float] | None = (
-        None  # drift, turn [-] and time constant [s] of disturbed slip
+        None  # linear, angular [-] and time constant [s] of disturbed slip
     )
-    growth: Mapping[float, float] = field(default_factory=dict)
+    inflation: Mapping[float, float] = field(default_factory=dict)
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
     speed: tuple[float, float] = SPEED
     yaw_rate: tuple[float, float] = YAW_RATE
     good: bool = True
-    sentence: str = "The learned model misses by 0.1 m after 5 s, where the plain model misses by 0.4 m."
+    sentence: str = (
+        "The learned model misses by 0.1 m after 5 s, where the kinematic baseline misses by 0.4 m."
+    )
     log: str = "drives/monday.mcap"
-    determined: bool = True
+    identifiable: bool = True
 
 
 def named(name: str, **values: float) -> Made:
@@ -50,9 +52,9 @@ def named(name: str, **values: float) -> Made:
 
 
 LIMITS: Mapping[str, Mapping[str, float]] = {
-    "speed": {"dead_band": 0.1, "top": 1.1, "acceleration": 0.8, "braking": 1.7},
-    "yaw_rate": {"dead_band": 0.06, "top": 0.7, "acceleration": 1.3, "braking": 0.9},
-    "side": {"dead_band": 0.05, "top": 1.2, "acceleration": 0.9, "braking": 1.1},
+    "speed": {"dead_band": 0.1, "saturation": 1.1, "slew_rate_up": 0.8, "slew_rate_down": 1.7},
+    "yaw_rate": {"dead_band": 0.06, "saturation": 0.7, "slew_rate_up": 1.3, "slew_rate_down": 0.9},
+    "side": {"dead_band": 0.05, "saturation": 1.2, "slew_rate_up": 0.9, "slew_rate_down": 1.1},
 }
 
 
@@ -61,14 +63,24 @@ def _limits(axes: Mapping[str, Mapping[str, float]]) -> dict[str, object]:
         axis: {kind: {"value": value, "std": 0.01} for kind, value in axes.get(axis, {}).items()}
         for axis in ("speed", "yaw_rate", "side")
     }
-    return {**learned, "track": 0.6, "track_std": 0.01, "gain_v": 1.1, "gain_omega": 0.9}
+    return {
+        **learned,
+        "wheel_separation": 0.6,
+        "wheel_separation_std": 0.01,
+        "gain_v": 1.1,
+        "gain_omega": 0.9,
+    }
 
 
-def _coloured(drift: float, turn: float, time_constant: float) -> dict[str, object]:
+def _slip_disturbance(linear: float, angular: float, time_constant: float) -> dict[str, object]:
     """The named guess, a slower one, and that there is none."""
-    guesses = ((0.0, 0.0, 1.0, 0.2), (drift, turn, time_constant, 0.5), (0.0, turn, 4.0 * time_constant, 0.3))
-    names = ("drift", "turn", "time_constant", "weight")
-    return {"window": 1.0, "candidates": [dict(zip(names, guess, strict=True)) for guess in guesses]}
+    guesses = (
+        (0.0, 0.0, 1.0, 0.2),
+        (linear, angular, time_constant, 0.5),
+        (0.0, angular, 4.0 * time_constant, 0.3),
+    )
+    names = ("linear", "angular", "time_constant", "weight")
+    return {"segment": 1.0, "candidates": [dict(zip(names, guess, strict=True)) for guess in guesses]}
 
 
 def make_model(made: Made) -> Model:
@@ -80,17 +92,17 @@ def make_model(made: Made) -> Model:
         motion = _core.MotionModel.with_delays(made.basis)
     else:
         motion = _core.MotionModel(made.basis, made.commands, offset)
-    motion = motion.with_mount(made.mount is not None)
-    sensor = made.mount or (0.0, 0.0, 0.0)
+    motion = motion.with_extrinsics(made.sensor_extrinsics is not None)
+    sensor = made.sensor_extrinsics or (0.0, 0.0, 0.0)
     values = dict(zip(("sensor_x", "sensor_y", "sensor_yaw"), sensor, strict=True))
     values |= {"clock_offset": made.clock_offset or 0.0}
     values |= dict(zip(("delay_v", "delay_omega"), made.delays or (0.0, 0.0), strict=True))
     for place in ("v", "omega"):
-        values |= {f"log_lag_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
+        values |= {f"log_time_constant_{place}": float(np.log(0.3)), f"log_delay_{place}": float(np.log(0.2))}
         values |= {
             f"gain_{place}": 0.9,
-            f"slow_share_{place}": 0.3,
-            f"log_slow_lag_{place}": float(np.log(1.5)),
+            f"slow_fraction_{place}": 0.3,
+            f"log_slow_time_constant_{place}": float(np.log(1.5)),
         }
     values |= dict(made.values)
     names = [info.name for info in motion.parameters]
@@ -102,7 +114,7 @@ def make_model(made: Made) -> Model:
             "value": values.get(info.name, 0.0),
             "std": made.std,
             "prior_std": 0.3,
-            "determined": made.determined,
+            "identifiable": made.identifiable,
         }
         for info in motion.parameters
     ]
@@ -119,7 +131,7 @@ def make_model(made: Made) -> Model:
         "response": made.response,
         "delays": made.delays is not None,
         "clock_offset": made.clock_offset is not None,
-        "mount": made.mount is not None,
+        "sensor_extrinsics": made.sensor_extrinsics is not None,
         "limits": None if made.limits is None else _limits(made.limits),
         "parameters": parameters,
         "covariance": (made.std**2 * np.eye(len(names))).tolist(),
@@ -129,17 +141,19 @@ def make_model(made: Made) -> Model:
             "fraction": [made.fraction] * 3,
             "pose_std_xy": 0.02,
             "pose_std_yaw": 0.01,
-            "scale": list(made.scale),
-            "tails": {seconds: {"growth": growth, "dof": 8.0} for seconds, growth in made.growth.items()},
+            "variance_scale": list(made.scale),
+            "student_t": {
+                seconds: {"inflation": inflation, "dof": 8.0} for seconds, inflation in made.inflation.items()
+            },
         },
-        "coloured": None if made.disturbance is None else _coloured(*made.disturbance),
+        "slip_disturbance": None if made.disturbance is None else _slip_disturbance(*made.disturbance),
         "range": {"speed": list(made.speed), "yaw_rate": list(made.yaw_rate), "slope": 0.0},
         "provenance": {
             "slipwise_version": "0.2.0",
             "logs": [{"path": made.log, "sha256": "ab" * 32}],
             "settings": {},
             "learned_seconds": 600.0,
-            "learned_windows": 600,
+            "learned_segments": 600,
         },
         "verdict": {"good": made.good, "sentence": made.sentence},
     }

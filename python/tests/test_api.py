@@ -89,7 +89,7 @@ def test_results_are_short_to_look_at(
         assert "array" not in repr(each)
     assert repr(log) == "<Log: 1 run, 40 s; commands, wheel speeds, 800 poses>"
     assert repr(sw.Settings()) == "Settings()"
-    assert repr(sw.make_settings({"basis": "edd-2", "window": {"length": 2.0}})) == (
+    assert repr(sw.make_settings({"basis": "edd-2", "segment": {"length": 2.0}})) == (
         "Settings(basis='edd-2', window={'length': 2.0})"
     )
     assert "of what its wheels say" in repr(result.model)
@@ -113,11 +113,13 @@ def test_a_parameter_is_found_by_its_physical_name() -> None:
     assert model["delay_v"].value == pytest.approx(0.2)
     assert model["delay_v"].std == pytest.approx(0.002)
     assert model["delay_v"].unit == "s"
-    assert model["limits.speed.top"].value == 1.1
+    assert model["limits.speed.saturation"].value == 1.1
     assert "delay_v" in model
     assert "log_delay_v" not in model
     assert list(model)[:2] == ["lon.V", "ang.w"]
-    with pytest.raises(ModelError, match=r"no parameter 'log_delay_v': it has lon\.V, ang\.w, lag_v"):
+    with pytest.raises(
+        ModelError, match=r"no parameter 'log_delay_v': it has lon\.V, ang\.w, time_constant_v"
+    ):
         model["log_delay_v"]
 
 

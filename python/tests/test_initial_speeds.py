@@ -20,20 +20,30 @@ Floats = NDArray[np.float64]
 
 NO_SLIP = _core.Basis("none", [], [], [])
 LAGS = ((0.02, 0.5), (0.3, 1.5), (0.1, 6.0))  # s, fast and slow
-SHARES = (0.0, 0.14, 0.5, 0.95, 1.0)
+FRACTIONS = (0.0, 0.14, 0.5, 0.95, 1.0)
 GAINS = (0.6, 1.0, 1.2)
 DELAYS = (0.001, 0.13, 0.4)  # s
 PARTS = (0.0, 0.3, 0.8, 1.0)  # of the command, measured at the start
-RAMPS = {"speed": {"acceleration": 0.8, "braking": 1.7}, "yaw_rate": {"acceleration": 1.3, "braking": 0.9}}
+RAMPS = {
+    "speed": {"slew_rate_up": 0.8, "slew_rate_down": 1.7},
+    "yaw_rate": {"slew_rate_up": 1.3, "slew_rate_down": 0.9},
+}
 
 
 def two_modes(
-    lags: tuple[float, float], share: float, gain: float, delay: float, limited: bool = False
+    lags: tuple[float, float], fraction: float, gain: float, delay: float, limited: bool = False
 ) -> Model:
     values = {}
     for place in ("v", "omega"):
-        values |= {f"log_lag_{place}": np.log(lags[0]), f"log_slow_lag_{place}": np.log(lags[1])}
-        values |= {f"slow_share_{place}": share, f"gain_{place}": gain, f"log_delay_{place}": np.log(delay)}
+        values |= {
+            f"log_time_constant_{place}": np.log(lags[0]),
+            f"log_slow_time_constant_{place}": np.log(lags[1]),
+        }
+        values |= {
+            f"slow_fraction_{place}": fraction,
+            f"gain_{place}": gain,
+            f"log_delay_{place}": np.log(delay),
+        }
     limits = RAMPS if limited else None
     return make_model(Made(NO_SLIP, values, commands=True, response=True, limits=limits))
 
@@ -51,14 +61,14 @@ def check_law(speed: Floats, command: float, gain: float, part: float) -> None:
         assert speed == pytest.approx(np.full(len(speed), gain * command), abs=1e-9)
 
 
-MODELS = list(product(LAGS, SHARES, GAINS, DELAYS))
+MODELS = list(product(LAGS, FRACTIONS, GAINS, DELAYS))
 
 
 @pytest.mark.parametrize("before", [0.0, 0.05, 0.7], ids=["first command", "just begun", "begun"])
 @pytest.mark.parametrize("command", [1.0, -0.7])
 def test_predicted_speed_stays_between_rest_and_command(command: float, before: float) -> None:
-    for lags, share, gain, delay in MODELS[::11]:
-        model = two_modes(lags, share, gain, delay)
+    for lags, fraction, gain, delay in MODELS[::11]:
+        model = two_modes(lags, fraction, gain, delay)
         for part in PARTS:
             initial = (part * gain * command, 0.0)
             path = predict(model, [(0.0, command, 0.0)], horizon=2.0, start=before, initial=initial)
@@ -76,8 +86,8 @@ def test_so_does_the_yaw_rate(before: float) -> None:
 
 @pytest.mark.parametrize("before", [0.0, 0.1, 0.7])
 def test_limits_keep_the_law(before: float) -> None:
-    for lags, share, delay in list(product(LAGS, SHARES, DELAYS))[::7]:
-        model = two_modes(lags, share, 0.9, delay, limited=True)
+    for lags, fraction, delay in list(product(LAGS, FRACTIONS, DELAYS))[::7]:
+        model = two_modes(lags, fraction, 0.9, delay, limited=True)
         for part in PARTS:
             path = predict(model, [(0.0, 1.0, 0.0)], horizon=2.0, start=before, initial=(part * 0.9, 0.0))
             check_law(speeds(path.poses, 0.1), 1.0, 0.9, part)
@@ -88,8 +98,8 @@ def test_limits_keep_the_law(before: float) -> None:
 @pytest.mark.parametrize("sent", [0, 1, 14])
 def test_rollouts_keep_the_law(sent: int, command: float, limited: bool) -> None:
     past = np.tile([command, 0.0], (sent, 1)) if sent else None
-    for lags, share, gain, delay in MODELS[::13]:
-        model = two_modes(lags, share, gain, delay, limited)
+    for lags, fraction, gain, delay in MODELS[::13]:
+        model = two_modes(lags, fraction, gain, delay, limited)
         for part in PARTS:
             start = Start(drive=(part * gain * command, 0.0), past=past)
             path = rollout(model, np.tile([command, 0.0], (1, 40, 1)), 0.05, start=start).path
@@ -114,7 +124,7 @@ def test_rollouts_start_as_predictions_do(sent: int, limited: bool) -> None:
 
 def test_what_a_planner_starts_with_goes_to_its_command() -> None:
     model = two_modes((0.3, 1.5), 0.4, 1.0, 0.2)
-    state = DriveState(drive=(0.7, 0.0), told=(0.7, 0.0))
+    state = DriveState(drive=(0.7, 0.0), commanded=(0.7, 0.0))
     options = TrajectoryOptions(cruise=0.7, end_speed=0.7)
     plan = Planner(model, limits=Limits(1.0, 1.0, 1.0), options=options).to((5.0, 0.0, 0.0), state=state)
     step = np.diff(plan.t)

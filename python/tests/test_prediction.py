@@ -18,8 +18,8 @@ from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Inputs
 from slipwise.models import Model
-from slipwise.models.schema import Tail
-from slipwise.prediction import predict, slip_seen, tail_at
+from slipwise.models.schema import StudentT
+from slipwise.prediction import predict, slip_seen, student_at
 from slipwise.student import MOST_DOF
 
 BASES = ["edd-2", "icr-3", "drive-5", "full-linear-6", "ipem-9", "odd-even-10", "thesis-15", "auto"]
@@ -54,14 +54,14 @@ def test_path_has_a_pose_every_tenth_and_at_the_horizon(model: Model) -> None:
 def test_prediction_is_the_cores_linearised_segment(model: Model) -> None:
     inputs = held(np.arange(0.0, 4.0, 0.5), 1.2, -0.4)
     path = predict(model, inputs, horizon=2.0, start=1.0, initial=(0.7, 0.1))
-    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    history = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
     twist = _core.BodyTwist(0.7, 0.0, 0.1)
     segment = _core.Segment(1.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), twist, 0.0, 0.0)
-    at = _core.linearize_segment(model.motion, model.mean, track, segment)
+    at = _core.linearize_segment(model.motion, model.mean, history, segment)
     assert path.poses[-1].tobytes() == at.predicted.vector().tobytes()
-    scale = np.array(model.content.noise.scale)
+    scale = np.array(model.content.noise.variance_scale)
     covariance = _core.prediction_covariance(at, model.covariance_over(2.0), model.noise, scale)
-    assert path.covariance[-1] == pytest.approx(covariance * tail_at(model, 2.0).growth)
+    assert path.covariance[-1] == pytest.approx(covariance * student_at(model, 2.0).inflation)
 
 
 def test_slip_that_wanders_is_part_of_the_covariance_and_of_a_prediction_that_has_seen_it() -> None:
@@ -88,11 +88,11 @@ def test_slip_that_wanders_is_part_of_the_covariance_and_of_a_prediction_that_ha
 
 def windows_of(model: Model, inputs: Inputs, count: int) -> list[_core.Segment]:
     """Windows of 1 s as a robot of this model would drive them."""
-    track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    history = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
     windows = []
     for start in range(count):
         bare = _core.Segment(start, start + 1.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-        path = _core.integrate_segment(model.motion, model.mean, track, bare, _core.Integrator.Exact)
+        path = _core.integrate_segment(model.motion, model.mean, history, bare, _core.Integrator.Exact)
         end = _core.Pose2(*path.poses[-1].tolist())
         windows.append(_core.Segment(start, start + 1.0, end, None, 0.0, 0.0))
     return windows
@@ -107,21 +107,21 @@ def test_uncertainty_grows_along_the_path(model: Model) -> None:
 
 
 def test_tails_are_interpolated_and_held_beyond_the_judged_horizons(model: Model) -> None:
-    tails = model.content.noise.tails
-    for name in ("growth", "dof"):
-        two, five = getattr(tails[2.0], name), getattr(tails[5.0], name)
-        assert getattr(tail_at(model, 1.0), name) == pytest.approx(getattr(tails[1.0], name))
-        assert getattr(tail_at(model, 0.1), name) == pytest.approx(getattr(tails[1.0], name))
-        assert getattr(tail_at(model, 60.0), name) == pytest.approx(five)
-        assert min(two, five) <= getattr(tail_at(model, 3.0), name) <= max(two, five)
-    assert predict(model, [[0.0, 1.0, 0.0]], horizon=2.0).dof[-1] == pytest.approx(tails[2.0].dof)
+    students = model.content.noise.student_t
+    for name in ("inflation", "dof"):
+        two, five = getattr(students[2.0], name), getattr(students[5.0], name)
+        assert getattr(student_at(model, 1.0), name) == pytest.approx(getattr(students[1.0], name))
+        assert getattr(student_at(model, 0.1), name) == pytest.approx(getattr(students[1.0], name))
+        assert getattr(student_at(model, 60.0), name) == pytest.approx(five)
+        assert min(two, five) <= getattr(student_at(model, 3.0), name) <= max(two, five)
+    assert predict(model, [[0.0, 1.0, 0.0]], horizon=2.0).dof[-1] == pytest.approx(students[2.0].dof)
 
 
 def test_model_without_judged_horizons_is_nearly_normal_as_stated(model: Model) -> None:
     bare = Model(
-        model.content.model_copy(update={"noise": model.content.noise.model_copy(update={"tails": {}})})
+        model.content.model_copy(update={"noise": model.content.noise.model_copy(update={"students": {}})})
     )
-    assert tail_at(bare, 2.0) == Tail(growth=1.0, dof=MOST_DOF)
+    assert student_at(bare, 2.0) == StudentT(inflation=1.0, dof=MOST_DOF)
 
 
 def test_rows_and_inputs_are_the_same_commands(model: Model) -> None:
@@ -169,15 +169,15 @@ def test_initial_speed_must_be_finite(model: Model) -> None:
 
 
 @pytest.mark.parametrize(("v", "omega"), [(1.0, 0.0), (0.8, 0.5), (-0.5, 1.5), (0.0, -0.7)])
-def test_plain_model_and_vendor_multiplier_are_their_formulas(v: float, omega: float) -> None:
-    track = _core.InputTrack(np.zeros(1), np.array([v]), np.zeros(1), np.array([omega]))
+def test_baseline_model_and_vendor_multiplier_are_their_formulas(v: float, omega: float) -> None:
+    history = _core.InputHistory(np.zeros(1), np.array([v]), np.zeros(1), np.array([omega]))
     segment = _core.Segment(0.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
     for predictor, rate in (
         (baseline_predictor(Settings()), omega),
         (vendor_predictor(1.875, Settings()), omega / 1.875),
     ):
         at = _core.linearize_segment(
-            predictor.posterior(0).motion, predictor.posterior(0).mean, track, segment
+            predictor.posterior(0).motion, predictor.posterior(0).mean, history, segment
         )
         expected = _core.exp(np.array([v, 0.0, rate]) * 3.0).vector()
         assert at.predicted.vector() == pytest.approx(expected, abs=1e-12)

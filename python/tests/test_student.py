@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slipwise.student import ellipse_squared, ellipsoid_squared, share_inside
+from slipwise.student import ellipse_squared, ellipsoid_squared, fraction_inside
 
 # 95 % quantiles of Fisher's F, as any table prints them: degrees of freedom, F(3, dof), F(2, dof).
 TABLE = [
@@ -21,7 +21,7 @@ TABLE = [
 @pytest.mark.parametrize(("dof", "three", "two"), TABLE)
 def test_ellipsoids_are_those_of_the_tables_of_f(dof: float, three: float, two: float) -> None:
     to_covariance = (dof - 2.0) / dof
-    assert float(share_inside(3.0 * three * to_covariance, dof)[0]) == pytest.approx(0.95, abs=5e-6)
+    assert float(fraction_inside(3.0 * three * to_covariance, dof)[0]) == pytest.approx(0.95, abs=5e-6)
     assert ellipsoid_squared(0.95, dof) == pytest.approx(3.0 * three * to_covariance, rel=5e-5)
     assert ellipse_squared(0.95, dof) == pytest.approx(2.0 * two * to_covariance, rel=5e-5)
 
@@ -29,12 +29,12 @@ def test_ellipsoids_are_those_of_the_tables_of_f(dof: float, three: float, two: 
 def test_share_goes_from_nothing_to_all_and_has_the_shape_of_its_input() -> None:
     squared = np.array([0.0, 1e-3, 1.0, 10.0, 1e3, 1e12])
     for dof in (2.5, 3.0, 17.0, 100.0):
-        share = share_inside(squared, dof)
-        assert (np.diff(share) >= -1e-12).all()
-        assert share[0] == 0.0
-        assert share[-1] == pytest.approx(1.0, abs=1e-9)
-    assert share_inside(np.ones((2, 3)), 5.0).shape == (2, 3)
-    assert share_inside(np.empty(0), np.empty(0)).shape == (0,)
+        fraction = fraction_inside(squared, dof)
+        assert (np.diff(fraction) >= -1e-12).all()
+        assert fraction[0] == 0.0
+        assert fraction[-1] == pytest.approx(1.0, abs=1e-9)
+    assert fraction_inside(np.ones((2, 3)), 5.0).shape == (2, 3)
+    assert fraction_inside(np.empty(0), np.empty(0)).shape == (0,)
 
 
 def test_ellipses_of_position_hold_their_share_of_draws() -> None:

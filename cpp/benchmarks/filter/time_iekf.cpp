@@ -32,7 +32,7 @@ double median_microseconds(int runs, F work) {
   return times[static_cast<std::size_t>(runs / 2)];
 }
 
-InputTrack long_drive() {
+InputHistory long_drive() {
   std::vector<double> t, v, vy, omega;
   for (double time = 0.0; time < 60.0 * kMinutes + 1.0; time += kPeriod) {
     t.push_back(time);
@@ -51,7 +51,7 @@ Estimate prior_of(const MotionModel& model) {
   return {mean, Eigen::MatrixXd(Eigen::VectorXd::Constant(model.size(), 0.01).asDiagonal())};
 }
 
-Segment measured_segment(const MotionModel& model, const InputTrack& inputs, double start, double length) {
+Segment measured_segment(const MotionModel& model, const InputHistory& inputs, double start, double length) {
   Segment segment{.start = start, .end = start + length};
   Eigen::VectorXd truth = prior_of(model).mean;
   truth.head(model.slip_size()).setConstant(0.05);
@@ -60,7 +60,7 @@ Segment measured_segment(const MotionModel& model, const InputTrack& inputs, dou
 }
 
 /// Learns from all windows of the long log, noise of slip and poses included; returns the last estimate's first entry.
-double calibrate(const MotionModel& model, const InputTrack& inputs, const std::vector<Segment>& segments) {
+double calibrate(const MotionModel& model, const InputHistory& inputs, const std::vector<Segment>& segments) {
   const MotionNoise noise{.psd_time = {1e-3, 1e-3, 1e-3}, .pose_std_xy = 0.02, .pose_std_yaw = 0.01};
   Estimate estimate = prior_of(model);
   for (const Segment& segment : segments) {
@@ -73,7 +73,7 @@ double calibrate(const MotionModel& model, const InputTrack& inputs, const std::
 
 void report(const char* name, const ActuatorParameters& learned) {
   const MotionModel model(named_basis("odd-even-10"), learned);
-  const InputTrack inputs = long_drive();
+  const InputHistory inputs = long_drive();
   const Estimate prior = prior_of(model);
   const Segment window = measured_segment(model, inputs, 10.0, 5.0);
   const Eigen::Matrix3d noise = 1e-3 * Eigen::Matrix3d::Identity();

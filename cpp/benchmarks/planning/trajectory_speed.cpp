@@ -74,7 +74,7 @@ Pose2 foreign_goal(const PlanningModel& model, const ReachProblem& problem, std:
   }
   const ActuatorSpan window{.start = 0.0, .end = kCommands * period + problem.frame.settling, .initial = BodyTwist{}};
   Pose2 pose;
-  for (const ActuatorStep& step : actuator_steps(InputTrack(t, v, vy, omega), model.actuator(), window).steps) {
+  for (const ActuatorStep& step : actuator_steps(InputHistory(t, v, vy, omega), model.actuator(), window).steps) {
     const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
     const SlipState state{.v = step.forward * rate, .omega = step.turn * rate};
     const Eigen::Vector3d slip = slip_rate(model.basis(), model.alpha(), state);
@@ -92,7 +92,7 @@ Pose2 own_goal(const PlanningModel& model, const ReachProblem& problem, std::mt1
   return manoeuvre_pose(model, problem.frame, parameters, problem.start);
 }
 
-/// Plans to `count` goals; returns the share reached.
+/// Plans to `count` goals; returns the fraction reached.
 double report(const Case& chosen, bool foreign, int count) {
   const PlanningModel model(chosen.model, chosen.parameters);
   const DriveLimits limits{.speed = 1.5, .yaw_rate = 1.0, .curvature = 0.8, .acceleration = 0.8};
@@ -115,7 +115,7 @@ double report(const Case& chosen, bool foreign, int count) {
     linearizations += trajectory.linearizations;
   }
   std::ranges::sort(times);
-  const auto at = [&](double share) { return times[static_cast<std::size_t>(share * (count - 1))]; };
+  const auto at = [&](double fraction) { return times[static_cast<std::size_t>(fraction * (count - 1))]; };
   const double success = static_cast<double>(reached) / count;
   std::printf("%-34s %-9s %8.2f %% %9.1f %9.1f %9.1f %9.2f %9.2f\n", chosen.name.c_str(), foreign ? "foreign" : "own",
               100.0 * success, at(0.5), at(0.95), at(0.99), linearizations / count, table);

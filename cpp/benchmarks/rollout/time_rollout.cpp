@@ -90,11 +90,11 @@ std::vector<Case> cases() {
   const double delay = std::log(0.13);
   const double other = std::log(0.07);
   const double slow = std::log(1.5);
-  const AxisLimits ramp{.acceleration = 1.0, .braking = 1.5};
+  const AxisLimits ramp{.slew_rate_up = 1.0, .slew_rate_down = 1.5};
   return {{"thesis-15, no actuator", "thesis-15", {}, {}, 34.0},
           {"thesis-15, lag and one delay", "thesis-15", {.dynamics = true}, {lag, lag, delay, delay}, 40.0},
           {"thesis-15, lag and two delays", "thesis-15", {.dynamics = true}, {lag, lag, delay, other}, 80.0},
-          {"thesis-15, gains and slow parts",
+          {"thesis-15, gains and slow modes",
            "thesis-15",
            {.dynamics = true, .response = true},
            {lag, lag, delay, delay, 0.9, 1.1, 0.3, 0.2, slow, slow},
@@ -104,7 +104,7 @@ std::vector<Case> cases() {
            {},
            {},
            0.0,
-           {.speed = {.top = 1.2}, .yaw_rate = {.top = 0.4}}},
+           {.speed = {.saturation = 1.2}, .yaw_rate = {.saturation = 0.4}}},
           {"thesis-15, no actuator, ramps", "thesis-15", {}, {}, 0.0, {.speed = ramp, .yaw_rate = ramp}},
           {"thesis-15, one delay, ramps",
            "thesis-15",
@@ -171,11 +171,12 @@ void report(const Case& kind, InstructionLevel level, double at_most) {
   static Job<double> in_double;  // NOLINT
   const RolloutProgram program = program_of(kind);
   const double ends = in_float.speed(program, level, false);
-  const std::string share =
+  const std::string fraction =
       kind.operations > 0.0 ? std::to_string(static_cast<int>(std::lround(100.0 * ends * kind.operations / at_most)))
                             : "-";
   std::printf("  %-32s %-9s %12.2f %12.2f %12.2f %10s\n", kind.words, std::string(name_of(level)).c_str(), ends / 1e9,
-              in_float.speed(program, level, true) / 1e9, in_double.speed(program, level, false) / 1e9, share.c_str());
+              in_float.speed(program, level, true) / 1e9, in_double.speed(program, level, false) / 1e9,
+              fraction.c_str());
 }
 
 }  // namespace

@@ -21,8 +21,10 @@ constexpr Eigen::Index kOffset = 4;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 /// Where the parameters of speed and yaw rate stand among the actuator's.
-constexpr AxisPlaces kSpeedPlaces{.lag = 0, .delay = 2, .gain = 5, .slow_share = 7, .slow_lag = 9};
-constexpr AxisPlaces kTurnPlaces{.lag = 1, .delay = 3, .gain = 6, .slow_share = 8, .slow_lag = 10};
+constexpr AxisPlaces kSpeedPlaces{
+    .time_constant = 0, .delay = 2, .gain = 5, .slow_fraction = 7, .slow_time_constant = 9};
+constexpr AxisPlaces kTurnPlaces{
+    .time_constant = 1, .delay = 3, .gain = 6, .slow_fraction = 8, .slow_time_constant = 10};
 
 /// A moment that moves with one of the actuator's parameters: later with a delay, earlier with the clock offset.
 struct Knot {
@@ -47,7 +49,7 @@ Eigen::Matrix<double, 1, N> derivative_between(const Knot& from, const Knot& unt
 /// The samples of one channel as the drive sees them: delayed.
 class DelayedCursor {
  public:
-  DelayedCursor(const InputTrack& inputs, double delay, Eigen::Index delay_index, double start, double known_until)
+  DelayedCursor(const InputHistory& inputs, double delay, Eigen::Index delay_index, double start, double known_until)
       : inputs_(inputs),
         delay_(delay),
         index_(delay_index),
@@ -69,7 +71,7 @@ class DelayedCursor {
   }
 
  private:
-  const InputTrack& inputs_;
+  const InputHistory& inputs_;
   double delay_;
   Eigen::Index index_;
   std::size_t next_;
@@ -80,7 +82,7 @@ class DelayedCursor {
 template <int N>
 class ActuatorWalk {
  public:
-  ActuatorWalk(const InputTrack& inputs, const ActuatorModel& actuator, const ActuatorSpan& window)
+  ActuatorWalk(const InputHistory& inputs, const ActuatorModel& actuator, const ActuatorSpan& window)
       : actuator_(actuator),
         window_(window),
         speed_(speed_response(actuator)),
@@ -144,7 +146,7 @@ class ActuatorWalk {
   }
 
   /// Records the drive as it was measured, from the start until the actuator takes over.
-  void follow_measured(const InputTrack& twist, ActuatorSteps& out) const {
+  void follow_measured(const InputHistory& twist, ActuatorSteps& out) const {
     const Knot until = model_start_.t < end_.t ? model_start_ : end_;
     std::size_t next = twist.count_until(start_.t);
     for (Knot now = start_; now.t < until.t; ++next) {
@@ -279,11 +281,11 @@ class ActuatorWalk {
 
 }  // namespace
 
-ActuatorSteps actuator_steps(const InputTrack& inputs, const ActuatorModel& actuator, const ActuatorSpan& window) {
+ActuatorSteps actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator, const ActuatorSpan& window) {
   return ActuatorWalk<0>(inputs, actuator, window).run();
 }
 
-ActuatorSteps linearize_actuator_steps(const InputTrack& inputs, const ActuatorModel& actuator,
+ActuatorSteps linearize_actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator,
                                        const ActuatorSpan& window) {
   return ActuatorWalk<kActuatorParameters>(inputs, actuator, window).run();
 }

@@ -6,17 +6,23 @@ namespace slipwise {
 
 ActuatorAxis speed_axis(const ActuatorModel& actuator) {
   return {&BodyTwist::v,
-          {.gain = actuator.gain_v, .lag = actuator.lag_v, .slow_share = 0.0, .slow_lag = 0.0},
+          {.gain = actuator.gain_v,
+           .time_constant = actuator.time_constant_v,
+           .slow_fraction = 0.0,
+           .slow_time_constant = 0.0},
           actuator.delay_v};
 }
 
 ActuatorAxis yaw_rate_axis(const ActuatorModel& actuator) {
   return {&BodyTwist::omega,
-          {.gain = actuator.gain_omega, .lag = actuator.lag_omega, .slow_share = 0.0, .slow_lag = 0.0},
+          {.gain = actuator.gain_omega,
+           .time_constant = actuator.time_constant_omega,
+           .slow_fraction = 0.0,
+           .slow_time_constant = 0.0},
           actuator.delay_omega};
 }
 
-ActuatorOutput actuator_output(const InputTrack& inputs, const ActuatorModel& actuator, std::span<const double> times,
+ActuatorOutput actuator_output(const InputHistory& inputs, const ActuatorModel& actuator, std::span<const double> times,
                                const BodyTwist& initial) {
   ActuatorOutput output{.v = std::vector<double>(times.size()), .omega = std::vector<double>(times.size())};
   axis_speeds(inputs, speed_axis(actuator), {.fast = initial.v, .slow = 0.0}, times, output.v);

@@ -7,7 +7,7 @@
 namespace slipwise {
 namespace {
 
-constexpr AxisPlaces kPlaces{.lag = 0, .delay = 1, .gain = 2, .slow_share = 3, .slow_lag = 4};
+constexpr AxisPlaces kPlaces{.time_constant = 0, .delay = 1, .gain = 2, .slow_fraction = 3, .slow_time_constant = 4};
 constexpr Eigen::Index kFast = 5;
 constexpr Eigen::Index kSlow = 6;
 
@@ -18,7 +18,7 @@ class AxisWalk {
   using Value = Sensitive<N>;
   using Row = Eigen::Matrix<double, 1, N>;
 
-  AxisWalk(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start, double time)
+  AxisWalk(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start, double time)
       : inputs_(inputs),
         axis_(axis),
         stepper_(axis.response, kPlaces),
@@ -89,7 +89,7 @@ class AxisWalk {
     }
   }
 
-  const InputTrack& inputs_;
+  const InputHistory& inputs_;
   const ActuatorAxis& axis_;
   AxisStepper<N> stepper_;
   double now_;
@@ -100,7 +100,7 @@ class AxisWalk {
 
 /// Hands `record` each interval's mean, and then both modes at the end.
 template <int N, typename Record>
-void walk_axis(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+void walk_axis(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                std::span<const double> edges, Record record) {
   AxisWalk<N> walk(inputs, axis, start, edges.front());
   const auto intervals = std::ssize(edges) - 1;
@@ -113,12 +113,12 @@ void walk_axis(const InputTrack& inputs, const ActuatorAxis& axis, const AxisSta
 
 }  // namespace
 
-AxisState settled_axis(const InputTrack& inputs, const ActuatorAxis& axis, double time) {
+AxisState settled_axis(const InputHistory& inputs, const ActuatorAxis& axis, double time) {
   const double input = inputs.at(time - axis.delay).*axis.part;
-  return {axis.response.fast_share() * input, axis.response.share() * axis.response.gain * input};
+  return {axis.response.fast_fraction() * input, axis.response.fraction() * axis.response.gain * input};
 }
 
-AxisMotion axis_motion(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+AxisMotion axis_motion(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                        std::span<const double> edges) {
   const auto rows = std::ssize(edges) + 1;
   AxisMotion motion{Eigen::VectorXd(rows),
@@ -130,7 +130,7 @@ AxisMotion axis_motion(const InputTrack& inputs, const ActuatorAxis& axis, const
   return motion;
 }
 
-Eigen::VectorXd axis_values(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+Eigen::VectorXd axis_values(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                             std::span<const double> edges) {
   Eigen::VectorXd values(std::ssize(edges) + 1);
   walk_axis<0>(inputs, axis, start, edges,
@@ -138,7 +138,7 @@ Eigen::VectorXd axis_values(const InputTrack& inputs, const ActuatorAxis& axis, 
   return values;
 }
 
-void axis_speeds(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+void axis_speeds(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                  std::span<const double> times, std::span<double> speed) {
   if (times.empty()) {
     return;

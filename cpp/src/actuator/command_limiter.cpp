@@ -99,7 +99,7 @@ BodyTwist CommandLimiter::joined(double v, double omega, const SideSpeeds& sides
   if (!sides_) {
     return {v, vy_, omega};
   }
-  return {0.5 * (sides.left + sides.right), vy_, (sides.right - sides.left) / limits_.track};
+  return {0.5 * (sides.left + sides.right), vy_, (sides.right - sides.left) / limits_.wheel_separation};
 }
 
 BodyTwist settled(const CommandLimits& limits, const BodyTwist& command) {

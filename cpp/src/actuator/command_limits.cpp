@@ -29,14 +29,14 @@ void check(const AxisLimits& limits, const char* axis) {
   if (std::isnan(limits.dead_band) || limits.dead_band < 0.0 || std::isinf(limits.dead_band)) {
     refuse("dead band", limits.dead_band, "zero or more");
   }
-  if (!(limits.top > 0.0)) {
-    refuse("top speed", limits.top, "more than zero");
+  if (!(limits.saturation > 0.0)) {
+    refuse("top speed", limits.saturation, "more than zero");
   }
-  if (!(limits.acceleration > 0.0)) {
-    refuse("acceleration", limits.acceleration, "more than zero");
+  if (!(limits.slew_rate_up > 0.0)) {
+    refuse("slew_rate_up", limits.slew_rate_up, "more than zero");
   }
-  if (!(limits.braking > 0.0)) {
-    refuse("braking", limits.braking, "more than zero");
+  if (!(limits.slew_rate_down > 0.0)) {
+    refuse("slew_rate_down", limits.slew_rate_down, "more than zero");
   }
 }
 
@@ -52,7 +52,7 @@ void check(const CommandLimits& limits) {
   check(limits.speed, "speed");
   check(limits.yaw_rate, "yaw rate");
   check(limits.side, "side");
-  need_positive("the track between the sides", limits.track);
+  need_positive("the separation of the sides", limits.wheel_separation);
   need_positive("the gain of the speed", limits.gain_v);
   need_positive("the gain of the yaw rate", limits.gain_omega);
 }
@@ -64,7 +64,7 @@ bool unlimited(const CommandLimits& limits) {
 }
 
 bool limits_rates(const AxisLimits& limits) {
-  return std::isfinite(limits.acceleration) || std::isfinite(limits.braking);
+  return std::isfinite(limits.slew_rate_up) || std::isfinite(limits.slew_rate_down);
 }
 bool limits_rates(const CommandLimits& limits) {
   return limits_rates(limits.speed) || limits_rates(limits.yaw_rate) || limits_rates(limits.side);
@@ -80,8 +80,8 @@ namespace {
 
 /// Cuts ramps into held pieces. `reach` is called before each piece, with its end, and may move the ramps.
 template <typename Reach>
-InputTrack limited_pieces(const InputTrack& commands, CommandLimiter limiter, double longest_piece,
-                          const Reach& reach) {
+InputHistory limited_pieces(const InputHistory& commands, CommandLimiter limiter, double longest_piece,
+                            const Reach& reach) {
   std::vector<double> t;
   std::vector<BodyTwist> twist;
   t.reserve(2 * commands.size());
@@ -120,7 +120,7 @@ InputTrack limited_pieces(const InputTrack& commands, CommandLimiter limiter, do
 
 }  // namespace
 
-InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece) {
+InputHistory limited_inputs(const InputHistory& commands, const CommandLimits& limits, double longest_piece) {
   need_positive("a ramp's longest piece", longest_piece);
   const CommandLimiter at_rest(limits);
   return unlimited(limits) ? commands
@@ -135,8 +135,8 @@ MeasuredStart measured_start(const ActuatorModel& actuator, double time, const B
           .omega_until = time - actuator.delay_omega};
 }
 
-InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, const MeasuredStart& start,
-                         double longest_piece) {
+InputHistory limited_inputs(const InputHistory& commands, const CommandLimits& limits, const MeasuredStart& start,
+                            double longest_piece) {
   need_positive("a ramp's longest piece", longest_piece);
   CommandLimiter limiter(limits);
   if (unlimited(limits) || commands.size() == 0) {

@@ -56,10 +56,10 @@ DisturbanceFilter::DisturbanceFilter(const DisturbanceSettings& settings) : weig
   std::vector<double> fractions = settings.fractions;
   fractions.insert(fractions.begin(), 0.0);
   for (const double time_constant : settings.time_constants) {
-    for (const double drift : fractions) {
-      for (const double turn : fractions) {
-        if (drift > 0.0 || turn > 0.0) {
-          law_.candidates.push_back({drift, turn, time_constant});
+    for (const double linear : fractions) {
+      for (const double angular : fractions) {
+        if (linear > 0.0 || angular > 0.0) {
+          law_.candidates.push_back({linear, angular, time_constant});
         }
       }
     }

@@ -64,13 +64,13 @@ Eigen::VectorXd CausalFilter::prior_std() const {
   return prior.covariance.diagonal().cwiseSqrt();
 }
 
-void CausalFilter::forget(double share) {
+void CausalFilter::forget(double fraction) {
   const Eigen::Index slip = model_.slip_size();
-  const double keep = std::sqrt(1.0 - share);
+  const double keep = std::sqrt(1.0 - fraction);
   Eigen::MatrixXd& covariance = state_.estimate.covariance;
   covariance.topRows(slip) *= keep;
   covariance.leftCols(slip) *= keep;
-  covariance.diagonal().head(slip) += share * slip_std_.cwiseAbs2();
+  covariance.diagonal().head(slip) += fraction * slip_std_.cwiseAbs2();
   state_.scores.restart();
   stated_.setOnes();
   state_.noise_scale.reset_gain();
@@ -86,7 +86,7 @@ Estimate CausalFilter::reported() const {
 }
 
 /// A parked robot tells nothing of the parameters, and nothing of the noise of driving.
-void CausalFilter::keep(const InputTrack& inputs, const Segment& segment) {
+void CausalFilter::keep(const InputHistory& inputs, const Segment& segment) {
   kept_.push_back({.inputs = inputs, .segment = segment});
   const std::size_t count = kept_.size();
   if (refit_ && count == refit_->until) {
@@ -127,7 +127,7 @@ void CausalFilter::end_refit() {
   refitted_ = true;
 }
 
-IekfUpdate CausalFilter::learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
+IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
   refitted_ = false;
   IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);

@@ -8,12 +8,12 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kReferenceShare, 0.9);  // reference speeds are the 90th percentile of those driven so far
-SLIPWISE_TUNING(kLeastSpeed, 0.05);     // [m/s] and [rad/s]; slower references would make priors meaningless
+SLIPWISE_TUNING(kReferenceFraction, 0.9);  // reference speeds are the 90th percentile of those driven so far
+SLIPWISE_TUNING(kLeastSpeed, 0.05);        // [m/s] and [rad/s]; slower references would make priors meaningless
 
 }  // namespace
 
-void DrivenSpeeds::see(const InputTrack& inputs, const Segment& segment) {
+void DrivenSpeeds::see(const InputHistory& inputs, const Segment& segment) {
   for (const ActuatorStep& step : actuator_steps(inputs, {}, {.start = segment.start, .end = segment.end}).steps) {
     if (step.duration > 0.0) {
       speeds_.add(step.forward / step.duration, step.duration);
@@ -23,8 +23,8 @@ void DrivenSpeeds::see(const InputTrack& inputs, const Segment& segment) {
 }
 
 ReferenceSpeeds DrivenSpeeds::reference() const {
-  return {.v = speeds_.quantile(kReferenceShare, kLeastSpeed),
-          .omega = yaw_rates_.quantile(kReferenceShare, kLeastSpeed)};
+  return {.v = speeds_.quantile(kReferenceFraction, kLeastSpeed),
+          .omega = yaw_rates_.quantile(kReferenceFraction, kLeastSpeed)};
 }
 
 }  // namespace slipwise

@@ -12,7 +12,7 @@ Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& se
   return slip_covariance(at.path, noise) + pose_noise_covariance(segment.measured, noise, segment.pose_std_ratio);
 }
 
-IekfUpdate FilterState::learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,
+IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                               const NoiseSettings& noise, const IekfSettings& iekf) {
   auto at = linearize_segment(model, estimate.mean, inputs, segment);
   const Eigen::Matrix3d expected = expected_noise(at, segment, noise.shape);

@@ -9,7 +9,7 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kLeastShare, 0.1);  // of a squared error that is noise, however much the parameters leave open
+SLIPWISE_TUNING(kLeastFraction, 0.1);  // of a squared error that is noise, however much the parameters leave open
 
 }  // namespace
 
@@ -26,13 +26,13 @@ void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& co
 void NoiseScale::learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open,
                                   const Eigen::Vector3d& expected) {
   if (settings_.adapt) {
-    follow((squared - open).cwiseMax(kLeastShare * squared), expected);
+    follow((squared - open).cwiseMax(kLeastFraction * squared), expected);
   }
 }
 
 void NoiseScale::follow(const Eigen::Vector3d& squared, const Eigen::Vector3d& expected) {
   segments_ += 1.0;
-  const double gain = std::max(1.0 / (segments_ + settings_.prior_segments), 1.0 / settings_.memory);
+  const double gain = std::max(1.0 / (segments_ + settings_.prior_segments), 1.0 / settings_.forgetting_time);
   value_ += gain * (squared.cwiseQuotient(expected).cwiseMin(settings_.largest * value_) - value_);
 }
 

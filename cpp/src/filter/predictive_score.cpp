@@ -6,7 +6,7 @@
 
 namespace slipwise {
 
-ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+ScoredSegment PredictiveScore::score(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
                                      const Segment& segment) {
   const auto at = linearize_segment(model, estimate.mean, inputs, segment);
   const Eigen::Matrix3d open = at.by_parameter * estimate.covariance * at.by_parameter.transpose();

@@ -32,7 +32,7 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
   std.head(model.slip_size()) = slip_prior_std(model.basis(), speeds, settings.slip_fraction);
   Eigen::Index at = model.slip_size();
   if (model.learned().dynamics) {
-    prior.mean.segment<2>(at).setConstant(std::log(settings.lag));
+    prior.mean.segment<2>(at).setConstant(std::log(settings.time_constant));
     prior.mean.segment<2>(at + 2).setConstant(std::log(settings.delay));
     std.segment<4>(at).setConstant(settings.log_std);
     at += 4;
@@ -44,8 +44,8 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
   if (model.learned().response) {
     prior.mean.segment<2>(at).setOnes();
     std.segment<2>(at).setConstant(settings.gain_std);
-    std.segment<2>(at + 2).setConstant(settings.slow_share_std);
-    prior.mean.segment<2>(at + 4).setConstant(std::log(settings.slow_lag));
+    std.segment<2>(at + 2).setConstant(settings.slow_fraction_std);
+    prior.mean.segment<2>(at + 4).setConstant(std::log(settings.slow_time_constant));
     std.segment<2>(at + 4).setConstant(settings.log_std);
     at += 6;
   }
@@ -53,9 +53,9 @@ Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds,
     std[at] = settings.clock_offset_std;
     at += 1;
   }
-  if (model.learned().mount) {
-    prior.mean.segment<kMountParameters>(at) = settings.sensor.vector();
-    std.segment<kMountParameters>(at) << settings.lever_std, settings.lever_std, settings.sensor_yaw_std;
+  if (model.learned().sensor_extrinsics) {
+    prior.mean.segment<kExtrinsicsParameters>(at) = settings.sensor.vector();
+    std.segment<kExtrinsicsParameters>(at) << settings.extrinsics_std, settings.extrinsics_std, settings.sensor_yaw_std;
   }
   prior.covariance.diagonal() = std.cwiseAbs2();
   return prior;

@@ -23,11 +23,11 @@ void SpeedRange::add(double value, double seconds) {
   total_ += seconds;
 }
 
-double SpeedRange::quantile(double share, double floor) const {
+double SpeedRange::quantile(double fraction, double floor) const {
   double below = 0.0;
   for (std::size_t bin = 0; bin < kBins && total_ > 0.0; ++bin) {
     below += seconds_[bin];
-    if (below >= share * total_) {
+    if (below >= fraction * total_) {
       return std::max(floor, kSmallest * std::exp(kLogWidth * (static_cast<double>(bin) + 0.5)));
     }
   }

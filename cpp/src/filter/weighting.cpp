@@ -21,8 +21,8 @@ Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::Vec
   }
   // Shared before the segment speaks, not after: what is spread to candidates that it refutes never reaches a
   // prediction.
-  const double share = std::min(settings.share, 1.0 / static_cast<double>(observed + 1));
-  const Eigen::ArrayXd shared = (1.0 - share) * weights.array() + share * prior.array();
+  const double fraction = std::min(settings.fraction, 1.0 / static_cast<double>(observed + 1));
+  const Eigen::ArrayXd shared = (1.0 - fraction) * weights.array() + fraction * prior.array();
   const Eigen::ArrayXd tempered = settings.learning_rate * (log_scores.array() - log_scores.maxCoeff());
   const Eigen::VectorXd heavier = shared * tempered.exp();
   return heavier / heavier.sum();

@@ -10,9 +10,11 @@ namespace slipwise {
 namespace {
 
 MotionModel joined_model(const MotionModel& slip) {
-  return {
-      slip.basis(),
-      {.dynamics = true, .clock_offset = slip.learned().clock_offset, .response = true, .mount = slip.learned().mount}};
+  return {slip.basis(),
+          {.dynamics = true,
+           .clock_offset = slip.learned().clock_offset,
+           .response = true,
+           .sensor_extrinsics = slip.learned().sensor_extrinsics}};
 }
 
 std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index last) {
@@ -42,7 +44,8 @@ CascadedModel::CascadedModel(ModelAverage slip, const CausalFilterSettings& sett
       actuator_(settings),
       score_(settings.noise) {
   const Eigen::Index slips = model_.slip_size();
-  const Eigen::Index behind = slips + actuator_.model().size();  // clock offset and mount are learned with the slip
+  const Eigen::Index behind =
+      slips + actuator_.model().size();  // clock offset and sensor extrinsics are learned with the slip
   places_of_slip_ = range(0, slips);
   const std::vector<Eigen::Index> others = range(behind, model_.size());
   places_of_slip_.insert(places_of_slip_.end(), others.begin(), others.end());

@@ -127,7 +127,7 @@ ChangeDetector::Whitened ChangeDetector::whitened(const Eigen::Vector3d& innovat
   const Eigen::Vector3d last = sizes_.back();
   const double commanded = 1.0 - 1.0 / (1.0 + derivative.squaredNorm());
   sized_ += commanded;
-  const double gain = commanded * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.memory);
+  const double gain = commanded * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.forgetting_time);
   sizes_.emplace_back(last + gain * (residual.cwiseAbs2().cwiseMin(kLargestSquare * last) - last));
   const Eigen::Vector3d unit = sizes_.front().cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
   if (std::ssize(sizes_) > settings_.longest) {
@@ -171,7 +171,7 @@ void ChangeDetector::learn_nominal(double& nominal, const ChangeFit& fit) const 
     return;  // nothing could have been observed, as on a parked robot
   }
   const double ratio = std::clamp(fit.gain / fit.expected_gain, 0.0, kLargestRatio) * std::max(nominal, 1.0);
-  nominal += std::max(1.0 / (observed_ + kNominalSegments), 1.0 / settings_.memory) * (ratio - nominal);
+  nominal += std::max(1.0 / (observed_ + kNominalSegments), 1.0 / settings_.forgetting_time) * (ratio - nominal);
 }
 
 }  // namespace slipwise

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Causal model averaging, and the trial of what forgot against what did not after a change of ground.
+// Causal model averaging, and the trial of what forgot against what did not after a change of terrain.
 #include "slipwise/hypotheses/model_average.hpp"
 
 #include <Eigen/Cholesky>
@@ -64,7 +64,7 @@ bool has_term(const Basis& basis, const std::string& name) {
   return false;
 }
 
-/// The terms linear in V or w, which every ground shows; all terms where the basis has none of them.
+/// The terms linear in V or w, which every terrain shows; all terms where the basis has none of them.
 std::vector<Eigen::Index> changing_terms(const Basis& basis) {
   const Basis linear = named_basis("full-linear-6");
   std::vector<Eigen::Index> all(basis.size());
@@ -127,14 +127,14 @@ void ModelAverage::check_sizes() const {
   }
 }
 
-IekfUpdate ModelAverage::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate ModelAverage::learn(const InputHistory& inputs, const Segment& segment) {
   start(inputs, segment);
   while (advance()) {
   }
   return update_;
 }
 
-void ModelAverage::start(const InputTrack& inputs, const Segment& segment) {
+void ModelAverage::start(const InputHistory& inputs, const Segment& segment) {
   while (advance()) {
   }
   learning_ = Learning{.inputs = inputs, .segment = segment};
@@ -204,7 +204,7 @@ void ModelAverage::reweigh() {
 
 /// By what the average predicted as it was before the segments that are tested together: the noise factors and the
 /// weights follow a change at once, and would hide it.
-ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment& segment) {
+ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
   const ChangeSettings& change = settings_.change;
   if (!change.detect) {
     return {};
@@ -223,8 +223,8 @@ ChangeTest ModelAverage::test_for_change(const InputTrack& inputs, const Segment
   return detector_.see(segment.measured.vector() - at.predicted.vector(), covariance, by_change);
 }
 
-/// Every model once as if the ground had changed and once as it was: what follows decides between them, so that a
-/// passing disturbance costs little, and the old ground is known at once where it comes back soon.
+/// Every model once as if the terrain had changed and once as it was: what follows decides between them, so that a
+/// passing disturbance costs little, and the old terrain is known at once where it comes back soon.
 void ModelAverage::branch() {
   before_.clear();
   detector_.restart();
@@ -245,12 +245,12 @@ void ModelAverage::forget(double fraction) {
   }
 }
 
-/// Keeps the models of the ground that predicted better.
+/// Keeps the models of the terrain that predicted better.
 void ModelAverage::resolve() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
   change_.alarm = changed && !announced_;
-  observed_ = changed ? 0 : observed_;  // of a new ground, few data have spoken
+  observed_ = changed ? 0 : observed_;  // of a new terrain, few data have spoken
   weights_ = basis_weights();
   filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
                  changed ? filters_.end() : filters_.begin() + bases);

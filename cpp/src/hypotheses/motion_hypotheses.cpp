@@ -65,7 +65,7 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
       joint_("auto", settings.bases,
              {.dynamics = settings.dynamics,
               .clock_offset = settings.clock_offset && !settings.dynamics,
-              .mount = settings.mount},
+              .sensor_extrinsics = settings.sensor_extrinsics},
              settings.filter, settings.average),
       baseline_(settings.filter.noise) {
   const auto attempt = [&](Structure structure) {
@@ -80,11 +80,13 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
     attempt(Structure::Direct);
     direct_bases_ = few_bases(settings.bases);
     direct_.emplace("auto", chosen(settings.bases, direct_bases_),
-                    ActuatorParameters{.mount = settings.mount, .delays = true}, settings.filter, settings.average);
+                    ActuatorParameters{.sensor_extrinsics = settings.sensor_extrinsics, .delays = true},
+                    settings.filter, settings.average);
   }
   if (settings.cascaded && settings.dynamics) {
     cascaded_.emplace(
-        ModelAverage("auto", settings.bases, {.clock_offset = settings.clock_offset, .mount = settings.mount},
+        ModelAverage("auto", settings.bases,
+                     {.clock_offset = settings.clock_offset, .sensor_extrinsics = settings.sensor_extrinsics},
                      settings.filter, settings.average),
         settings.filter);
   }

@@ -22,8 +22,8 @@ SLIPWISE_TUNING(kMemory, 40.0);
 SLIPWISE_TUNING(kMostGain, 8.0);   // of a window's noise over the expected
 SLIPWISE_TUNING(kStraight, 0.03);  // as in iekf_update
 SLIPWISE_TUNING(kUnknown, 1.0);
-constexpr Eigen::Index kLag = 0, kDelay = 1, kSlowLag = 4;
-constexpr std::array kTimes{kLag, kDelay, kSlowLag};  // parameters that are logarithms of times
+constexpr Eigen::Index kTimeConstant = 0, kDelay = 1, kSlowTimeConstant = 4;
+constexpr std::array kTimes{kTimeConstant, kDelay, kSlowTimeConstant};  // parameters that are logarithms of times
 
 /// Of the state of the axis that is followed as the i-th.
 Eigen::Index place(std::size_t i) { return kChannelParameters + kAxisStates * static_cast<Eigen::Index>(i); }
@@ -45,7 +45,7 @@ ActuatorAxis ActuatorChannel::axis(const Eigen::VectorXd& state, std::size_t i) 
 /// Makes the state that of the window's start; whether any axis moves.
 bool ActuatorChannel::begin(const ChannelWindow& window) {
   if (std::abs(window.observed.edges.front() - until_) > kSameStamp) {
-    lose_track();
+    lose_state();
   }
   until_ = window.observed.edges.back();
   for (std::size_t i = 0; i < model_.parts.size(); ++i) {
@@ -65,7 +65,7 @@ bool ActuatorChannel::begin(const ChannelWindow& window) {
   return !live_.empty();
 }
 
-void ActuatorChannel::lose_track() {
+void ActuatorChannel::lose_state() {
   live_.clear();
   joint_ = estimate();
 }
@@ -219,7 +219,7 @@ ChannelUpdate ActuatorChannel::learn(const ChannelWindow& window, bool carefully
     reparametrise_times(before);
   } else {
     update.status = Status::Rejected;
-    lose_track();
+    lose_state();
   }
   learn_size(innovation, s_llt, nominal);
   return update;

@@ -23,8 +23,8 @@ SLIPWISE_TUNED std::array<ActuatorNoise, 5> kShapes{{{.white = 1.0, .deviation =
                                                      {.white = 1.0, .deviation = kDeviation, .time_constant = 25.0}}};
 SLIPWISE_TUNING(kFirst, std::size_t{3});  // windows from which and up to which all are refitted
 SLIPWISE_TUNING(kLast, std::size_t{256});
-SLIPWISE_TUNING(kGrowth, 1.25);  // of their number, until that is done again
-SLIPWISE_TUNING(kActive, 0.01);  // weight from which a candidate is refitted and has a say
+SLIPWISE_TUNING(kInflation, 1.25);  // of their number, until that is done again
+SLIPWISE_TUNING(kActive, 0.01);     // weight from which a candidate is refitted and has a say
 
 }  // namespace
 
@@ -104,7 +104,7 @@ Estimate ActuatorFilter::Bank::mixture() const {
   return all;
 }
 
-ActuatorUpdate ActuatorFilter::learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end) {
+ActuatorUpdate ActuatorFilter::learn(const InputHistory& inputs, const InputHistory& wheels, double start, double end) {
   ChannelWindow window{inputs, wheel_means(wheels, start, end, kInterval)};
   ActuatorUpdate update{.nis = 0.0};
   for (Bank& bank : banks_) {
@@ -118,7 +118,7 @@ ActuatorUpdate ActuatorFilter::learn(const InputTrack& inputs, const InputTrack&
     end_refit();
   }
   if (learned_ >= next_ && learned_ <= kLast && !refitted_after_) {
-    next_ = static_cast<std::size_t>(std::ceil(kGrowth * static_cast<double>(learned_)));
+    next_ = static_cast<std::size_t>(std::ceil(kInflation * static_cast<double>(learned_)));
     refitted_after_ = learned_ + std::max<std::size_t>(1, learned_ / 32);
     for (Bank& bank : banks_) {
       bank.begin_refit(learned_);

@@ -23,9 +23,9 @@ std::array<double, 2> in_axis(const CommandLimits& limits, LimitedAxis axis, con
 }
 
 /// Wheels have passed all gains.
-CommandLimits of_wheels(const CommandLimits& limits) { return {.track = limits.track}; }
+CommandLimits of_wheels(const CommandLimits& limits) { return {.wheel_separation = limits.wheel_separation}; }
 
-void add_commands(AxisRange& range, const CommandLimits& limits, LimitedAxis axis, const InputTrack& commands) {
+void add_commands(AxisRange& range, const CommandLimits& limits, LimitedAxis axis, const InputHistory& commands) {
   std::array<double, 2> before{};
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const BodyTwist twist = commands.sample(i);
@@ -63,7 +63,7 @@ AxisRange axis_range(std::span<const WheelRecord> records, const CommandLimits& 
   for (const WheelRecord& record : records) {
     const bool behind = axis == LimitedAxis::Side && !unlimited(channel_limits(limits));
     add_commands(range, limits, axis,
-                 behind ? limited_track(record.commands, channel_limits(limits)) : record.commands);
+                 behind ? limited_inputs(record.commands, channel_limits(limits)) : record.commands);
     add_wheels(range, of_wheels(limits), axis, record);
   }
   std::ranges::sort(range.commands, {}, &Asked::speed);

@@ -10,7 +10,7 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kSlowRange, 0.3);  // of the speed range, that the slow part may hold
+SLIPWISE_TUNING(kSlowRange, 0.3);  // of the speed range, that the slow mode may hold
 
 /// The fastest that the axis was commanded to go, or went.
 double fastest(const ChannelWindow& window, const ActuatorAxis& axis) {
@@ -32,9 +32,9 @@ double fastest(const ChannelWindow& window, const ActuatorAxis& axis) {
 ActuatorAxis axis_of(double BodyTwist::* part, const ChannelParameters& parameters) {
   return {part,
           {.gain = parameters[2],
-           .lag = std::exp(parameters[0]),
-           .slow_share = parameters[3],
-           .slow_lag = std::exp(parameters[4])},
+           .time_constant = std::exp(parameters[0]),
+           .slow_fraction = parameters[3],
+           .slow_time_constant = std::exp(parameters[4])},
           std::exp(parameters[1])};
 }
 
@@ -49,9 +49,9 @@ std::optional<FirstAxisState> first_state(const ChannelWindow& window, const Act
 
 AxisMotion axis_through(const ChannelWindow& window, const ActuatorAxis& axis, const AxisState& start) {
   AxisMotion motion = axis_motion(window.inputs, axis, start, window.observed.edges);
-  motion.derivative.col(0) *= axis.response.lag;
+  motion.derivative.col(0) *= axis.response.time_constant;
   motion.derivative.col(1) *= axis.delay;
-  motion.derivative.col(4) *= axis.response.slow_lag;
+  motion.derivative.col(4) *= axis.response.slow_time_constant;
   return motion;
 }
 

@@ -17,16 +17,17 @@ constexpr std::size_t kSlice = 24;    // windows that are walked over at a time
 SLIPWISE_TUNING(kTolerance, 0.1);     // what a step has to gain of -2 log posterior
 SLIPWISE_TUNING(kMostPasses, 12);     // with more windows it goes on from there
 SLIPWISE_TUNING(kMostElsewhere, 10);  // the same from a start elsewhere
-constexpr Eigen::Index kLag = 0, kSlowShare = 3, kSlowLag = 4;
+constexpr Eigen::Index kTimeConstant = 0, kSlowFraction = 3, kSlowTimeConstant = 4;
 SLIPWISE_TUNING(kApart, 1.4);  // in the logarithm: time constants closer than that may pass for each other
 
 /// All in one lag, and a slower one beside it.
 ChannelParameters without_slow_mode(ChannelParameters actuator) {
-  const double share = actuator[kSlowShare];
-  const double lag = (1.0 - share) * std::exp(actuator[kLag]) + share * std::exp(actuator[kSlowLag]);
-  actuator[kLag] = lag > 0.0 ? std::log(lag) : actuator[kLag];
-  actuator[kSlowShare] = 0.0;
-  actuator[kSlowLag] = actuator[kLag] + kApart;
+  const double fraction = actuator[kSlowFraction];
+  const double lag =
+      (1.0 - fraction) * std::exp(actuator[kTimeConstant]) + fraction * std::exp(actuator[kSlowTimeConstant]);
+  actuator[kTimeConstant] = lag > 0.0 ? std::log(lag) : actuator[kTimeConstant];
+  actuator[kSlowFraction] = 0.0;
+  actuator[kSlowTimeConstant] = actuator[kTimeConstant] + kApart;
   return actuator;
 }
 
@@ -81,7 +82,7 @@ void ChannelRefit::end_fit() {
   fit_.reset();
   if (!first_) {
     const ChannelParameters found = best.joint.mean.head<kChannelParameters>();
-    if (found[kSlowLag] < found[kLag] + kApart) {
+    if (found[kSlowTimeConstant] < found[kTimeConstant] + kApart) {
       first_ = std::move(best);
       fit_.emplace(model_, size_, without_slow_mode(found), kMostElsewhere);
       return;

@@ -108,7 +108,7 @@ void ChannelFilter::begin(const ChannelWindow& window) {
   }
 }
 
-/// The Kalman filter and its derivative, one mean after the other. Its state are the fast and the slow part at the
+/// The Kalman filter and its derivative, one mean after the other. Its state are the fast and the slow mode at the
 /// window's start, from where they were thought to be, and the deviation now.
 ChannelFilter::Learned ChannelFilter::filter(const FollowedAxis& axis, const AxisMotion& motion,
                                              const WheelMeans& observed, double size) const {

@@ -116,7 +116,7 @@ double DeadBandSearch::side_std(const CommandLimits& limits, double lower, doubl
   double variance = 0.0;
   for (const Asked& command : axis_range(records_, limits, LimitedAxis::Side).commands) {
     if (command.speed > (1.0 - kNear) * lower && command.speed < (1.0 + kNear) * upper) {
-      const double half = 0.5 * command.of_side.omega * limits.track;
+      const double half = 0.5 * command.of_side.omega * limits.wheel_separation;
       const Eigen::Vector3d derivative(command.of_side.v, half, half * limits.gain_omega);
       variance = std::max(variance, derivative.dot(to_sides * derivative));
     }

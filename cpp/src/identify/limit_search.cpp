@@ -22,18 +22,18 @@ constexpr int kRounds = 3;  // of adding; what was dropped may have stood in the
 constexpr int kShortRefinement = 4;
 constexpr int kLongRefinement = 15;
 constexpr double kWorthMoving = 2.0;  // of -2 log likelihood
-constexpr std::array kTrackFactors{0.98, 1.02};
+constexpr std::array kSeparationFactors{0.98, 1.02};
 constexpr double kPruningBound = 50.0;  // the same; polishing does not gain as much
 constexpr std::array kDeadBandQuantiles{0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6};
-constexpr std::array kTopQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
+constexpr std::array kSaturationQuantiles{0.5, 0.7, 0.8, 0.9, 0.95, 0.98};
 constexpr std::array kRateFactors{0.3, 0.5, 0.8, 1.2, 2.0, 3.5, 6.0};
 constexpr double kLagFactor = 0.4;
 constexpr double kHighest = 0.98;  // quantile of speeds that is about a top
 constexpr double kNominal = 0.9;   // quantile of rates
 constexpr double kAnyLoss = std::numeric_limits<double>::infinity();
 
-double quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+double quantile(const std::vector<double>& sorted, double fraction) {
+  return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
 }
 
 int count_of(const CommandLimits& limits) {
@@ -74,8 +74,9 @@ class Search {
     return best;
   }
 
-  /// Limits that act together may each explain too little to be added alone. So all tops and rates of the commands are
-  /// tried at once, and kept where they, or what is left of them, explain more than what was found one by one.
+  /// Limits that act together may each explain too little to be added alone. So all saturations and rates of the
+  /// commands are tried at once, and kept where they, or what is left of them, explain more than what was found one by
+  /// one.
   ScoredActuator or_all_at_once(const ScoredActuator& one_by_one, const LimitedActuator& plain) {
     const ScoredActuator all = refined(with_all(plain), kLongRefinement, one_by_one.loss.total - least_gain_);
     if (!gains(all, one_by_one)) {
@@ -117,15 +118,15 @@ class Search {
         continue;
       }
       AxisLimits& limits = axis_of(drive.limits, axis);
-      if (const double top = quantile(range.speeds, kHighest); top > 0.0) {
-        limits.top = top;
+      if (const double saturation = quantile(range.speeds, kHighest); saturation > 0.0) {
+        limits.saturation = saturation;
       }
       if (const double nominal = quantile(range.rates, kNominal); nominal > 0.0) {
-        limits.acceleration = limits.braking = nominal;
+        limits.slew_rate_up = limits.slew_rate_down = nominal;
       }
     }
-    drive.actuator.lag_v *= kLagFactor;
-    drive.actuator.lag_omega *= kLagFactor;
+    drive.actuator.time_constant_v *= kLagFactor;
+    drive.actuator.time_constant_omega *= kLagFactor;
     return drive;
   }
 
@@ -166,8 +167,8 @@ class Search {
           add(trials, profile(now, axis, {kind}, range));
         }
       }
-      if (!limits_anything(limits, LimitKind::Acceleration) && !limits_anything(limits, LimitKind::Braking)) {
-        add(trials, profile(now, axis, {LimitKind::Acceleration, LimitKind::Braking}, range));
+      if (!limits_anything(limits, LimitKind::SlewRateUp) && !limits_anything(limits, LimitKind::SlewRateDown)) {
+        add(trials, profile(now, axis, {LimitKind::SlewRateUp, LimitKind::SlewRateDown}, range));
       }
     }
     std::ranges::sort(trials, {}, [](const ScoredActuator& trial) { return trial.loss.total; });
@@ -192,7 +193,7 @@ class Search {
   }
 
   /// The best of the candidates, the actuator held but for what took the limit's place: lag that of a rate, gain that
-  /// of a top.
+  /// of a saturation.
   std::optional<ScoredActuator> profile(const ScoredActuator& now, LimitedAxis axis,
                                         const std::vector<LimitKind>& kinds, const AxisRange& range) const {
     std::optional<ScoredActuator> best;
@@ -213,12 +214,12 @@ class Search {
 
   static std::vector<LimitedActuator> beside(LimitKind kind, const LimitedActuator& drive) {
     LimitedActuator other = drive;
-    if (kind == LimitKind::Acceleration || kind == LimitKind::Braking) {
-      other.actuator.lag_v *= kLagFactor;
-      other.actuator.lag_omega *= kLagFactor;
+    if (kind == LimitKind::SlewRateUp || kind == LimitKind::SlewRateDown) {
+      other.actuator.time_constant_v *= kLagFactor;
+      other.actuator.time_constant_omega *= kLagFactor;
       return {drive, other};
     }
-    if (kind == LimitKind::Top) {
+    if (kind == LimitKind::Saturation) {
       other.limits.gain_v = other.limits.gain_omega = 1.0;
       return {drive, other};
     }
@@ -231,15 +232,15 @@ class Search {
       return values;
     }
     if (kind == LimitKind::DeadBand) {
-      for (const double share : kDeadBandQuantiles) {
-        const auto at = static_cast<std::size_t>(share * static_cast<double>(range.commands.size() - 2));
+      for (const double fraction : kDeadBandQuantiles) {
+        const auto at = static_cast<std::size_t>(fraction * static_cast<double>(range.commands.size() - 2));
         values.push_back(0.5 * (range.commands[at].speed + range.commands[at + 1].speed));
       }
-    } else if (kind == LimitKind::Top) {
-      for (const double share : kTopQuantiles) {
-        const double top = quantile(range.speeds, share);
-        if (top > 0.0 && top < range.commands.back().speed) {
-          values.push_back(top);
+    } else if (kind == LimitKind::Saturation) {
+      for (const double fraction : kSaturationQuantiles) {
+        const double saturation = quantile(range.speeds, fraction);
+        if (saturation > 0.0 && saturation < range.commands.back().speed) {
+          values.push_back(saturation);
         }
       }
     } else if (const double nominal = quantile(range.rates, kNominal); nominal > 0.0) {
@@ -253,11 +254,12 @@ class Search {
   /// Finds every dead-band between the commands next to it, and refines the rest with it.
   ScoredActuator finished(const ScoredActuator& rough) const {
     ScoredActuator best = settled(rough);
-    // Which commands the sides' dead-band blocks turns on the track, and no small step of it gets the order right.
+    // Which commands the sides' dead-band blocks turns on the wheel separation, and no small step of it gets the order
+    // right.
     if (best.drive.limits.side.dead_band > 0.0) {
-      for (const double factor : kTrackFactors) {
+      for (const double factor : kSeparationFactors) {
         ScoredActuator shaken = best;
-        shaken.drive.limits.track *= factor;
+        shaken.drive.limits.wheel_separation *= factor;
         shaken = settled(fit_.scored(shaken.drive));
         best = shaken.loss.total < best.loss.total ? shaken : best;
       }
@@ -337,11 +339,11 @@ class Search {
   double least_gain_;
 };
 
-LimitedActuator plain_drive(const LimitedActuatorFit& fit) {
+LimitedActuator baseline_drive(const LimitedActuatorFit& fit) {
   const LimitedActuator start = fit.start();
   LimitedActuator late = start;
-  std::swap(late.actuator.lag_v, late.actuator.delay_v);
-  std::swap(late.actuator.lag_omega, late.actuator.delay_omega);
+  std::swap(late.actuator.time_constant_v, late.actuator.delay_v);
+  std::swap(late.actuator.time_constant_omega, late.actuator.delay_omega);
   const ScoredActuator one = fit.refine(start, kLongRefinement);
   const ScoredActuator other = fit.refine(late, kLongRefinement);
   return one.loss.total <= other.loss.total ? one.drive : other.drive;
@@ -356,20 +358,20 @@ LimitedActuator with_gain_at_sides(LimitedActuator drive) {
 
 }  // namespace
 
-LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSettings& prior, double track,
+LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSettings& prior, double wheel_separation,
                         const LimitSearchSettings& settings, const std::optional<LimitedActuator>& before) {
-  const LimitedActuatorFit fit(records, prior, track);
+  const LimitedActuatorFit fit(records, prior, wheel_separation);
   if (fit.samples() < kFewestSamples) {
     throw std::invalid_argument("limits need at least " + std::to_string(kFewestSamples) + " wheel twists, got " +
                                 std::to_string(fit.samples()) + "; drive longer");
   }
   Search search(records, fit, settings.least_gain);
-  const LimitedActuator plain = plain_drive(fit);
+  const LimitedActuator plain = baseline_drive(fit);
   const ScoredActuator best = search.or_all_at_once(search.run(before ? with_gain_at_sides(*before) : plain), plain);
-  LimitSearch result{.drive = best.drive, .found = {}, .track_std = 0.0, .reach = {}};
+  LimitSearch result{.drive = best.drive, .found = {}, .wheel_separation_std = 0.0, .reach = {}};
   if (!unlimited(best.drive.limits)) {
     result.found = search.found(best);
-    result.track_std = fit.spread(best.drive).track_std;
+    result.wheel_separation_std = fit.spread(best.drive).wheel_separation_std;
   }
   for (std::size_t k = 0; k < kLimitedAxes.size(); ++k) {
     const AxisRange range = axis_range(records, best.drive.limits, kLimitedAxes.at(k));
@@ -378,8 +380,8 @@ LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSetting
         commands.empty() ? AxisReach{} : AxisReach{commands.front().speed, commands.back().speed, range.step};
   }
   CommandLimits& limits = result.drive.limits;
-  if (!limits_sides(limits)) {  // the actuator says the gain, and nobody needs the track
-    limits.track = track;
+  if (!limits_sides(limits)) {  // the actuator says the gain, and nobody needs the wheel_separation
+    limits.wheel_separation = wheel_separation;
     result.drive.actuator.gain_v = std::exchange(limits.gain_v, 1.0);
     result.drive.actuator.gain_omega = std::exchange(limits.gain_omega, 1.0);
   }

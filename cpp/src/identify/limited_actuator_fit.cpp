@@ -71,12 +71,12 @@ double AxisLimits::* member_of(LimitKind kind) {
   switch (kind) {
     case LimitKind::DeadBand:
       return &AxisLimits::dead_band;
-    case LimitKind::Top:
-      return &AxisLimits::top;
-    case LimitKind::Acceleration:
-      return &AxisLimits::acceleration;
+    case LimitKind::Saturation:
+      return &AxisLimits::saturation;
+    case LimitKind::SlewRateUp:
+      return &AxisLimits::slew_rate_up;
     default:
-      return &AxisLimits::braking;
+      return &AxisLimits::slew_rate_down;
   }
 }
 
@@ -106,11 +106,12 @@ AxisLimits& axis_of(CommandLimits& limits, LimitedAxis axis) { return limits.*me
 const AxisLimits& axis_of(const CommandLimits& limits, LimitedAxis axis) { return limits.*member_of(axis); }
 
 double speed_of_side(const CommandLimits& limits, const SideCommand& command) {
-  return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.track);
+  return std::abs(limits.gain_v * command.v + 0.5 * limits.gain_omega * command.omega * limits.wheel_separation);
 }
 
-LimitedActuatorFit::LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior, double track)
-    : records_(records), prior_(prior), track_(track) {
+LimitedActuatorFit::LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior,
+                                       double wheel_separation)
+    : records_(records), prior_(prior), wheel_separation_(wheel_separation) {
   for (const WheelRecord& record : records) {
     samples_ += record.t.empty() ? 0 : record.t.size() - 1;
   }
@@ -118,33 +119,34 @@ LimitedActuatorFit::LimitedActuatorFit(std::span<const WheelRecord> records, con
 
 LimitedActuator LimitedActuatorFit::start() const {
   LimitedActuator drive;
-  drive.limits.track = track_;
-  drive.actuator.lag_v = drive.actuator.lag_omega = prior_.lag;
+  drive.limits.wheel_separation = wheel_separation_;
+  drive.actuator.time_constant_v = drive.actuator.time_constant_omega = prior_.time_constant;
   drive.actuator.delay_v = drive.actuator.delay_omega = prior_.delay;
   return drive;
 }
 
 LimitedActuatorFit::AxisActuator LimitedActuatorFit::channel_drive(const LimitedActuator& drive, int c) {
   const ActuatorAxis axis = axis_of(drive.actuator, c);
-  return {axis_of(drive.limits, axis_of_channel(c)), gain_at_sides(drive.limits, c), axis.response.lag, axis.delay};
+  return {axis_of(drive.limits, axis_of_channel(c)), gain_at_sides(drive.limits, c), axis.response.time_constant,
+          axis.delay};
 }
 
-const std::vector<InputTrack>& LimitedActuatorFit::tracks_of(const CommandLimits& limits, int c) const {
+const std::vector<InputHistory>& LimitedActuatorFit::inputs_of(const CommandLimits& limits, int c) const {
   CommandLimits acting = limits;
   if (!limits_sides(limits)) {
     acting = {};
     axis_of(acting, axis_of_channel(c)) = axis_of(limits, axis_of_channel(c));
   }
-  if (last_.tracks.empty() || acting != last_.limits) {
+  if (last_.inputs.empty() || acting != last_.limits) {
     last_ = {acting, {}};
     for (const WheelRecord& record : records_) {
-      last_.tracks.push_back(limited_track(record.commands, acting));
+      last_.inputs.push_back(limited_inputs(record.commands, acting));
     }
   }
-  return last_.tracks;
+  return last_.inputs;
 }
 
-void LimitedActuatorFit::put_errors(const LimitedActuator& drive, std::span<const InputTrack> tracks, int c,
+void LimitedActuatorFit::put_errors(const LimitedActuator& drive, std::span<const InputHistory> inputs, int c,
                                     Eigen::Ref<Eigen::VectorXd> errors) const {
   ActuatorAxis axis = axis_of(drive.actuator, c);
   if (!limits_sides(drive.limits)) {
@@ -155,7 +157,7 @@ void LimitedActuatorFit::put_errors(const LimitedActuator& drive, std::span<cons
   for (std::size_t k = 0; k < records_.size(); ++k) {
     const WheelRecord& record = records_[k];
     output.resize(record.t.size());
-    axis_speeds(tracks[k], axis, {.fast = record.wheels.front().*axis.part, .slow = 0.0}, record.t, output);
+    axis_speeds(inputs[k], axis, {.fast = record.wheels.front().*axis.part, .slow = 0.0}, record.t, output);
     for (std::size_t i = 1; i < record.t.size(); ++i, ++row) {
       errors[row] = record.wheels[i].*axis.part - output[i];
     }
@@ -165,8 +167,8 @@ void LimitedActuatorFit::put_errors(const LimitedActuator& drive, std::span<cons
 LimitedActuatorFit::FittedChannel LimitedActuatorFit::fitted_channel(const LimitedActuator& drive, int c) const {
   const auto rows = static_cast<Eigen::Index>(samples_);
   FittedChannel fit{
-      .tracks = tracks_of(drive.limits, c), .error = Eigen::VectorXd(rows), .scale = 0.0, .weight = {}, .loss = {}};
-  put_errors(drive, fit.tracks, c, fit.error);
+      .inputs = inputs_of(drive.limits, c), .error = Eigen::VectorXd(rows), .scale = 0.0, .weight = {}, .loss = {}};
+  put_errors(drive, fit.inputs, c, fit.error);
   fit.scale = likeliest_scale(fit.error);
   const Eigen::ArrayXd scaled = fit.error.array() / fit.scale;
   const Eigen::ArrayXd over_dof = scaled.square() / kDof;
@@ -203,11 +205,11 @@ ActuatorLoss LimitedActuatorFit::known_loss(const LimitedActuator& drive, int c)
 double LimitedActuatorFit::prior_loss(const LimitedActuator& drive) const {
   const ActuatorModel& actuator = drive.actuator;
   return chi(drive.limits.gain_v - 1.0, prior_.gain_std) + chi(drive.limits.gain_omega - 1.0, prior_.gain_std) +
-         chi(std::log(actuator.lag_v / prior_.lag), prior_.log_std) +
-         chi(std::log(actuator.lag_omega / prior_.lag), prior_.log_std) +
+         chi(std::log(actuator.time_constant_v / prior_.time_constant), prior_.log_std) +
+         chi(std::log(actuator.time_constant_omega / prior_.time_constant), prior_.log_std) +
          chi(std::log(actuator.delay_v / prior_.delay), prior_.log_std) +
          chi(std::log(actuator.delay_omega / prior_.delay), prior_.log_std) +
-         chi(std::log(drive.limits.track / track_), kTrackLogStd);
+         chi(std::log(drive.limits.wheel_separation / wheel_separation_), kSeparationLogStd);
 }
 
 LimitedActuatorFit::Slopes LimitedActuatorFit::derivatives(const FittedActuator& at,
@@ -227,7 +229,7 @@ LimitedActuatorFit::Slopes LimitedActuatorFit::derivatives(const FittedActuator&
       if (acts_on(parameter, drive.limits, channel)) {
         const FittedChannel& now = at.channels.at(c);
         auto derivative = derivatives.at(c).col(k);
-        put_errors(other, behind ? now.tracks : tracks_of(other.limits, channel), channel, derivative);
+        put_errors(other, behind ? now.inputs : inputs_of(other.limits, channel), channel, derivative);
         derivative = (now.error - derivative) / kDifference;
       }
     }
@@ -249,7 +251,7 @@ NormalEquations LimitedActuatorFit::equations(const FittedActuator& at, const st
   }
   const LimitParameters p = parameters_of(at.drive);
   for (Eigen::Index k = 0; k < equations.gradient.size(); ++k) {
-    const PriorPull prior = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_);
+    const PriorPull prior = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, wheel_separation_);
     equations.information(k, k) += prior.precision;
     equations.gradient[k] -= prior.precision * prior.gap;
   }
@@ -284,8 +286,8 @@ namespace {
 /// Standard deviations from the covariance of free parameters, and from variances that are larger where need be.
 LimitedActuatorFit::Spread spread_of(const std::vector<int>& free, const LimitParameters& p,
                                      const Eigen::MatrixXd& unlike, const Eigen::VectorXd& variance) {
-  LimitedActuatorFit::Spread result{.std = {}, .track_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
-  constexpr std::array kToSides{0, 1, kTrackPlace};
+  LimitedActuatorFit::Spread result{.std = {}, .wheel_separation_std = 0.0, .to_sides = Eigen::Matrix3d::Zero()};
+  constexpr std::array kToSides{0, 1, kSeparationPlace};
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
       const auto at = [&](Eigen::Index k) { return std::ranges::find(free, kToSides.at(static_cast<std::size_t>(k))); };
@@ -297,8 +299,8 @@ LimitedActuatorFit::Spread spread_of(const std::vector<int>& free, const LimitPa
   for (Eigen::Index k = 0; k < variance.size(); ++k) {
     const int parameter = free[static_cast<std::size_t>(k)];
     const double std = std::sqrt(std::max(variance[k], 0.0)) * std::exp(p[parameter]);
-    if (parameter == kTrackPlace) {
-      result.track_std = std;
+    if (parameter == kSeparationPlace) {
+      result.wheel_separation_std = std;
     } else if (parameter >= kFirstLimit) {
       const auto place = static_cast<std::size_t>(parameter - kFirstLimit);
       result.std.at(place / kLimitsPerAxis).at(place % kLimitsPerAxis + 1) = std;
@@ -316,7 +318,7 @@ LimitedActuatorFit::Spread LimitedActuatorFit::spread(const LimitedActuator& dri
   const LimitParameters p = parameters_of(drive);
   Eigen::MatrixXd bread = Eigen::MatrixXd::Zero(size, size);
   for (Eigen::Index k = 0; k < size; ++k) {
-    bread(k, k) = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, track_).precision + 1e-12;
+    bread(k, k) = prior_pull(free[static_cast<std::size_t>(k)], p, prior_, wheel_separation_).precision + 1e-12;
   }
   Eigen::MatrixXd meat = bread;
   Eigen::MatrixXd alone = bread;  // the meat, if no residual knew of another

@@ -21,8 +21,9 @@ LimitParameters parameters_of(const LimitedActuator& drive) {
   const ActuatorModel& actuator = drive.actuator;
   const CommandLimits& limits = drive.limits;
   LimitParameters p;
-  p.head<kFirstLimit>() << limits.gain_v, limits.gain_omega, std::log(actuator.lag_v), std::log(actuator.lag_omega),
-      std::log(actuator.delay_v), std::log(actuator.delay_omega), std::log(limits.track);
+  p.head<kFirstLimit>() << limits.gain_v, limits.gain_omega, std::log(actuator.time_constant_v),
+      std::log(actuator.time_constant_omega), std::log(actuator.delay_v), std::log(actuator.delay_omega),
+      std::log(limits.wheel_separation);
   for (std::size_t axis = 0; axis < kLimitedAxes.size(); ++axis) {
     for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
       p[place_of(axis, kind)] = std::log(limit_of(axis_of(limits, kLimitedAxes.at(axis)), kLimitKinds.at(kind)));
@@ -35,11 +36,11 @@ LimitedActuator with_parameters(LimitedActuator drive, const LimitParameters& p)
   ActuatorModel& actuator = drive.actuator;
   drive.limits.gain_v = std::max(p[0], kLeastGain);
   drive.limits.gain_omega = std::max(p[1], kLeastGain);
-  actuator.lag_v = std::exp(p[2]);
-  actuator.lag_omega = std::exp(p[3]);
+  actuator.time_constant_v = std::exp(p[2]);
+  actuator.time_constant_omega = std::exp(p[3]);
   actuator.delay_v = std::exp(p[4]);
   actuator.delay_omega = std::exp(p[5]);
-  drive.limits.track = std::exp(p[kTrackPlace]);
+  drive.limits.wheel_separation = std::exp(p[kSeparationPlace]);
   for (std::size_t axis = 0; axis < kLimitedAxes.size(); ++axis) {
     for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
       limit_of(axis_of(drive.limits, kLimitedAxes.at(axis)), kLimitKinds.at(kind)) = std::exp(p[place_of(axis, kind)]);
@@ -56,7 +57,7 @@ std::vector<int> free_parameters(const LimitedActuator& drive) {
   std::vector<int> free(kActuatorPart);
   std::iota(free.begin(), free.end(), 0);
   if (limits_sides(drive.limits)) {
-    free.push_back(kTrackPlace);
+    free.push_back(kSeparationPlace);
   }
   for (std::size_t axis = 0; axis < kLimitedAxes.size(); ++axis) {
     for (std::size_t kind = 1; kind < kLimitKinds.size(); ++kind) {
@@ -80,18 +81,19 @@ bool acts_on(int parameter, const CommandLimits& limits, int channel) {
   return limits_sides(limits) || (parameter - kFirstLimit) / kLimitsPerAxis == channel;
 }
 
-PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSettings& prior, double track) {
+PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSettings& prior, double wheel_separation) {
   const auto pull = [](double std, double gap) { return PriorPull{1.0 / (std * std), gap}; };
   if (parameter < 2) {
     return pull(prior.gain_std, p[parameter] - 1.0);
   }
   if (parameter < 4) {
-    return pull(prior.log_std, p[parameter] - std::log(prior.lag));
+    return pull(prior.log_std, p[parameter] - std::log(prior.time_constant));
   }
   if (parameter < kActuatorPart) {
     return pull(prior.log_std, p[parameter] - std::log(prior.delay));
   }
-  return parameter == kTrackPlace ? pull(kTrackLogStd, p[kTrackPlace] - std::log(track)) : PriorPull{0.0, 0.0};
+  return parameter == kSeparationPlace ? pull(kSeparationLogStd, p[kSeparationPlace] - std::log(wheel_separation))
+                                       : PriorPull{0.0, 0.0};
 }
 
 }  // namespace slipwise

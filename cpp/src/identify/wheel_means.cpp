@@ -52,7 +52,7 @@ class Mean {
 
 }  // namespace
 
-WheelMeans wheel_means(const InputTrack& wheels, double start, double end, double shortest) {
+WheelMeans wheel_means(const InputHistory& wheels, double start, double end, double shortest) {
   if (!(end > start)) {
     throw std::invalid_argument("wheel speeds are averaged from a start to a later end, got " + std::to_string(start) +
                                 " s and " + std::to_string(end) + " s");

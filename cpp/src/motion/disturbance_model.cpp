@@ -23,7 +23,7 @@ Eigen::VectorXd DisturbedTerms::variances(const SlipDisturbance& disturbance) co
   Eigen::VectorXd result(size());
   for (Eigen::Index i = 0; i < size(); ++i) {
     const double fraction =
-        channels[static_cast<std::size_t>(i)] == Channel::Ang ? disturbance.turn : disturbance.drift;
+        channels[static_cast<std::size_t>(i)] == Channel::Ang ? disturbance.angular : disturbance.linear;
     result[i] = std::pow(fraction * prior_std[i], 2);
   }
   return result;
@@ -79,7 +79,7 @@ void check_disturbance(const DisturbanceModel& law) {
                                 " candidates, " + std::to_string(law.weights.size()) + " weights");
   }
   for (const SlipDisturbance& disturbance : law.candidates) {
-    if (!is_amount(disturbance.drift) || !is_amount(disturbance.turn) || !is_amount(disturbance.time_constant) ||
+    if (!is_amount(disturbance.linear) || !is_amount(disturbance.angular) || !is_amount(disturbance.time_constant) ||
         disturbance.time_constant == 0.0) {
       throw std::invalid_argument(
           "a slip disturbance has fractions that are not negative, with a positive time constant");

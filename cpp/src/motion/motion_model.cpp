@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, kChannels> kSlipRateWords{"forward", "sid
 ParameterInfo slip_info(const Basis& basis, std::size_t i) {
   const auto c = static_cast<std::size_t>(basis.channel(i));
   return {basis.parameter_name(i), std::string(kSlipRateUnits[c]) + " per " + basis.terms()[i].text(),
-          "share of " + basis.terms()[i].text() + " in the " + std::string(kSlipRateWords[c]) + " slip rate"};
+          "fraction of " + basis.terms()[i].text() + " in the " + std::string(kSlipRateWords[c]) + " slip rate"};
 }
 
 /// One of the actuator's parameters: where it stands, and whether its logarithm is what is learned.
@@ -36,17 +36,19 @@ constexpr Eigen::Index kDelayV = kActuatorParameters;  // row of the first delay
 
 /// In ActuatorModel's order, then the delays once more: in seconds, not as logarithms.
 constexpr std::array<ActuatorParameter, kActuatorParameters + 2> kActuator{{
-    {&ActuatorModel::lag_v, true, "log_lag_v", "ln s", "time constant of the speed"},
-    {&ActuatorModel::lag_omega, true, "log_lag_omega", "ln s", "time constant of the yaw rate"},
+    {&ActuatorModel::time_constant_v, true, "log_time_constant_v", "ln s", "time constant of the speed"},
+    {&ActuatorModel::time_constant_omega, true, "log_time_constant_omega", "ln s", "time constant of the yaw rate"},
     {&ActuatorModel::delay_v, true, "log_delay_v", "ln s", "transport delay of the speed"},
     {&ActuatorModel::delay_omega, true, "log_delay_omega", "ln s", "transport delay of the yaw rate"},
     {&ActuatorModel::clock_offset, false, "clock_offset", "s", "lateness of the pose stamps against the input stamps"},
     {&ActuatorModel::gain_v, false, "gain_v", "-", "drive over input, of the speed"},
     {&ActuatorModel::gain_omega, false, "gain_omega", "-", "drive over input, of the yaw rate"},
-    {&ActuatorModel::slow_share_v, false, "slow_share_v", "-", "share of the speed that follows slowly"},
-    {&ActuatorModel::slow_share_omega, false, "slow_share_omega", "-", "share of the yaw rate that follows slowly"},
-    {&ActuatorModel::slow_lag_v, true, "log_slow_lag_v", "ln s", "slow time constant of the speed"},
-    {&ActuatorModel::slow_lag_omega, true, "log_slow_lag_omega", "ln s", "slow time constant of the yaw rate"},
+    {&ActuatorModel::slow_fraction_v, false, "slow_fraction_v", "-", "fraction of the speed that follows slowly"},
+    {&ActuatorModel::slow_fraction_omega, false, "slow_fraction_omega", "-",
+     "fraction of the yaw rate that follows slowly"},
+    {&ActuatorModel::slow_time_constant_v, true, "log_slow_time_constant_v", "ln s", "slow time constant of the speed"},
+    {&ActuatorModel::slow_time_constant_omega, true, "log_slow_time_constant_omega", "ln s",
+     "slow time constant of the yaw rate"},
     {&ActuatorModel::delay_v, false, "delay_v", "s", "how much later than its command the speed is there"},
     {&ActuatorModel::delay_omega, false, "delay_omega", "s", "how much later than its command the yaw rate is there"},
 }};
@@ -92,7 +94,7 @@ std::vector<ParameterInfo> MotionModel::parameters() const {
     const ActuatorParameter& parameter = actuator_parameter(row);
     infos.push_back({parameter.name, parameter.unit, parameter.description});
   }
-  if (learned_.mount) {
+  if (learned_.sensor_extrinsics) {
     infos.insert(infos.end(), {{"sensor_x", "m", "how far the pose sensor sits ahead of base_link"},
                                {"sensor_y", "m", "how far the pose sensor sits to the left of base_link"},
                                {"sensor_yaw", "rad", "how far the pose sensor is turned to the left of base_link"}});
@@ -111,8 +113,8 @@ ActuatorModel MotionModel::actuator(const Eigen::Ref<const Eigen::VectorXd>& par
   return actuator;
 }
 
-Pose2 MotionModel::mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
-  return learned_.mount ? Pose2::from_vector(parameters.tail<kMountParameters>()) : Pose2{};
+Pose2 MotionModel::sensor_extrinsics(const Eigen::Ref<const Eigen::VectorXd>& parameters) const {
+  return learned_.sensor_extrinsics ? Pose2::from_vector(parameters.tail<kExtrinsicsParameters>()) : Pose2{};
 }
 
 Eigen::VectorXd MotionModel::actuator_scales(const ActuatorModel& actuator) const {

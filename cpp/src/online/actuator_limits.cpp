@@ -45,7 +45,7 @@ class Stretch {
     if (t_.size() < 2 || command_t_.empty()) {
       return std::nullopt;
     }
-    return WheelRecord{.commands = InputTrack(std::move(command_t_), std::move(commands_)),
+    return WheelRecord{.commands = InputHistory(std::move(command_t_), std::move(commands_)),
                        .t = std::move(t_),
                        .wheels = std::move(wheels_)};
   }
@@ -63,7 +63,7 @@ Estimate learned_actuator(std::span<const WheelSegment> wheels, const CausalFilt
                           const CommandLimits* limits) {
   ActuatorFilter learner(filter, wheels.size());
   for (const WheelSegment& segment : wheels) {
-    const InputTrack commands = limits == nullptr ? segment.commands : limited_track(segment.commands, *limits);
+    const InputHistory commands = limits == nullptr ? segment.commands : limited_inputs(segment.commands, *limits);
     learner.learn(commands, segment.wheels, segment.start, segment.end);
   }
   learner.end_refit();

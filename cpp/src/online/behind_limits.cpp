@@ -21,7 +21,7 @@ constexpr double kBetter = std::numbers::ln10;  // log score from which limits a
 
 DrivenSegment behind(const DrivenSegment& segment, const CommandLimits& limits) {
   DrivenSegment limited = segment;
-  limited.inputs = limited_track(segment.inputs, limits);
+  limited.inputs = limited_inputs(segment.inputs, limits);
   return limited;
 }
 

@@ -34,13 +34,13 @@ double angle(const MeasuredPose& from, const MeasuredPose& to) { return std::abs
 }  // namespace
 
 /// Whether `to` is out of reach. Poses may be late, and early by what the robot goes on as it does.
-bool PoseGate::jumps(const MeasuredPose& from, const MeasuredPose& to, const InputHistory& inputs) const {
+bool PoseGate::jumps(const MeasuredPose& from, const MeasuredPose& to, const InputBuffer& inputs) const {
   if (inputs.empty()) {
     return false;
   }
   const double late = std::max(kLate, kBusy + to.t - from.t);
-  const InputHistory::Driven between = inputs.driven(from.t, to.t);
-  const InputHistory::Driven widely = inputs.driven(from.t - late, to.t);
+  const InputBuffer::Driven between = inputs.driven(from.t, to.t);
+  const InputBuffer::Driven widely = inputs.driven(from.t - late, to.t);
   const BodyTwist now = inputs.known_at(to.t).value_or(BodyTwist{});
   const BodyTwist top = inputs.fastest_until(to.t);
   const double unknown = kUnknown * std::max(to.t - from.t - between.known, 0.0);
@@ -81,7 +81,7 @@ void PoseGate::accept(const MeasuredPose& pose, GatedPoses& out) {
 }
 
 /// What waits does not come back: a frame of its own begins with it.
-void PoseGate::give_up(const InputHistory& inputs, GatedPoses& out) {
+void PoseGate::give_up(const InputBuffer& inputs, GatedPoses& out) {
   if (waiting_.empty()) {
     return;
   }
@@ -100,7 +100,7 @@ void PoseGate::begin_frame(const MeasuredPose& pose, GatedPoses& out) {
 }
 
 /// A pose of the same frame as it was given.
-void PoseGate::take(const MeasuredPose& pose, const InputHistory& inputs, GatedPoses& out) {
+void PoseGate::take(const MeasuredPose& pose, const InputBuffer& inputs, GatedPoses& out) {
   const bool near = !jumps(accepted_.back(), pose, inputs);
   if (near && waiting_.empty()) {
     accept(pose, out);
@@ -116,7 +116,7 @@ void PoseGate::take(const MeasuredPose& pose, const InputHistory& inputs, GatedP
   }
 }
 
-GatedPoses PoseGate::push(const MeasuredPose& pose, const InputHistory& inputs) {
+GatedPoses PoseGate::push(const MeasuredPose& pose, const InputBuffer& inputs) {
   GatedPoses out;
   if (given_ == pose.frame) {
     take(pose, inputs, out);
@@ -128,7 +128,7 @@ GatedPoses PoseGate::push(const MeasuredPose& pose, const InputHistory& inputs) 
   return out;
 }
 
-GatedPoses PoseGate::finish(const InputHistory& inputs) {
+GatedPoses PoseGate::finish(const InputBuffer& inputs) {
   GatedPoses out;
   while (!waiting_.empty()) {
     give_up(inputs, out);

@@ -29,9 +29,9 @@ HypothesisSettings joint_alone(HypothesisSettings settings) {
   return settings;
 }
 
-/// Twists between poses slip: a gain below 1 is the ground's, and stands behind the sides. The search has all gain in
-/// front of them, which is the same to another track and other limits: g_v s = g_v v + g_omega omega w' / 2 asks
-/// s = v + omega w / 2 of a side, where w = w' g_omega / g_v.
+/// Twists between poses slip: a gain below 1 is the terrain's, and stands behind the sides. The search has all gain in
+/// front of them, which is the same to another wheel_separation and other limits: g_v s = g_v v + g_omega omega w' / 2
+/// asks s = v + omega w / 2 of a side, where w = w' g_omega / g_v.
 LimitSearch with_gain_behind_sides(LimitSearch search) {
   auto& [limits, actuator, edge] = search.drive;
   if (!limits_sides(limits)) {
@@ -41,8 +41,8 @@ LimitSearch with_gain_behind_sides(LimitSearch search) {
   actuator.gain_omega = std::min(limits.gain_omega, 1.0);
   limits.gain_v /= actuator.gain_v;
   limits.gain_omega /= actuator.gain_omega;
-  limits.track *= actuator.gain_omega / actuator.gain_v;
-  search.track_std *= actuator.gain_omega / actuator.gain_v;
+  limits.wheel_separation *= actuator.gain_omega / actuator.gain_v;
+  search.wheel_separation_std *= actuator.gain_omega / actuator.gain_v;
   for (const LimitKind kind : kLimitKinds) {
     limit_of(limits.side, kind) /= actuator.gain_v;
   }

@@ -25,11 +25,11 @@ SegmentRules with_still(SegmentRules rules) {
 PoseTwists::PoseTwists(const SegmentRules& rules, const Pose2& sensor)
     : sensor_(sensor), cutter_(kInterval, with_still(rules), false) {}
 
-std::vector<TwistStretch> PoseTwists::push(const TimedPose& pose, const InputHistory& commands) {
+std::vector<TwistStretch> PoseTwists::push(const TimedPose& pose, const InputBuffer& commands) {
   return joined(cutter_.push(pose, commands));
 }
 
-std::vector<TwistStretch> PoseTwists::finish(const InputHistory& commands) {
+std::vector<TwistStretch> PoseTwists::finish(const InputBuffer& commands) {
   std::vector<TwistStretch> out = joined(cutter_.finish(commands));
   close(out);
   return out;

@@ -55,13 +55,13 @@ struct ToStream {
 };
 
 struct ToGate {
-  InputHistory commands;
-  InputHistory wheels_known;
+  InputBuffer commands;
+  InputBuffer wheels_known;
   PoseGate gate;
   GatedPoses found;
 
   explicit ToGate(double unknown_after) : commands(unknown_after), wheels_known(unknown_after) {}
-  const InputHistory& inputs() const { return wheels_known.empty() ? commands : wheels_known; }
+  const InputBuffer& inputs() const { return wheels_known.empty() ? commands : wheels_known; }
   void add(const GatedPoses& more) {
     const auto append = [](auto& all, const auto& some) { all.insert(all.end(), some.begin(), some.end()); };
     append(found.accepted, more.accepted);

@@ -76,7 +76,7 @@ Pose2 SegmentCut::measured() const {
 SegmentCutter::SegmentCutter(double length, SegmentRules rules, bool whole_frames, std::optional<double> stride)
     : length_(length), rules_(rules), whole_frames_(whole_frames), stride_(stride) {}
 
-std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputHistory& inputs) {
+std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputBuffer& inputs) {
   std::vector<SegmentCut> out;
   if (!poses_.empty() && poses_.back().pose.frame != pose.pose.frame) {
     end_frame(inputs, out);
@@ -95,13 +95,13 @@ std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputHi
   return out;
 }
 
-std::vector<SegmentCut> SegmentCutter::finish(const InputHistory& inputs) {
+std::vector<SegmentCut> SegmentCutter::finish(const InputBuffer& inputs) {
   std::vector<SegmentCut> out;
   end_frame(inputs, out);
   return out;
 }
 
-void SegmentCutter::end_frame(const InputHistory& inputs, std::vector<SegmentCut>& out) {
+void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>& out) {
   double length = length_;
   if (!poses_.empty() && !any_ && whole_frames_) {
     const double whole = poses_.back().pose.t - poses_.front().pose.t;
@@ -116,7 +116,7 @@ void SegmentCutter::end_frame(const InputHistory& inputs, std::vector<SegmentCut
 }
 
 /// Where `last`, no pose follows; otherwise a segment is cut once there is a pose that is late enough to end it.
-void SegmentCutter::cut(double length, bool last, const InputHistory& inputs, std::vector<SegmentCut>& out) {
+void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out) {
   while (poses_.size() > 1 && !unknown_since_ && (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
     const TimedPose& start = poses_.front();
     const double interval = start.interval > 0.0 ? start.interval : poses_[1].interval;
@@ -151,7 +151,7 @@ std::optional<std::size_t> SegmentCutter::nearest(double wanted, double toleranc
 }
 
 /// Why the first pose and this one make no segment, if they do not.
-std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputHistory& inputs) const {
+std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer& inputs) const {
   const double from = poses_.front().pose.t;
   const double to = poses_[end].pose.t;
   if (inputs.empty() || inputs.unknown_since(from, to)) {
@@ -169,7 +169,7 @@ std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputHistory
 }
 
 /// How many poses come before the next segment's start.
-std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> problem, const InputHistory& inputs) {
+std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs) {
   const auto first_from = [&](double t) {
     const auto stamp = [](const TimedPose& timed) { return timed.pose.t; };
     return static_cast<std::size_t>(std::ranges::lower_bound(poses_, t, {}, stamp) - poses_.begin());

@@ -95,7 +95,7 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
     reject(stream, Reason::AbsurdSpeed, sample.t);
     return;
   }
-  InputHistory& history = stream == Stream::Command ? commands_ : wheels_;
+  InputBuffer& history = stream == Stream::Command ? commands_ : wheels_;
   history.push(sample);
   if (&history == &inputs()) {
     range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
@@ -173,7 +173,7 @@ MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracy& accu
 }
 
 /// Wheel speeds tell where the robot can have come, where there are some by then.
-const InputHistory& SegmentStream::gate_inputs(double t) const {
+const InputBuffer& SegmentStream::gate_inputs(double t) const {
   return !wheels_.empty() && wheels_.first() <= t ? wheels_ : commands_;
 }
 
@@ -241,7 +241,7 @@ void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
   for (const TwistStretch& stretch : stretches) {
     items_.emplace_back(
         TwistSegment{{.commands = commands_.slice(stretch.start - kActuatorBack, stretch.end, SliceKind::Commands),
-                      .wheels = InputTrack(stretch.t, stretch.twist),
+                      .wheels = InputHistory(stretch.t, stretch.twist),
                       .start = stretch.start,
                       .end = stretch.end}});
   }
@@ -287,9 +287,9 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
 void SegmentStream::set_actuator_state(Segment& segment) const {
   segment.initial = wheels_.known_at(segment.start);
   if (segment.initial) {
-    InputTrack until_start = wheels_.slice(segment.start - kWheelsBack, segment.start, SliceKind::Wheels);
+    InputHistory until_start = wheels_.slice(segment.start - kWheelsBack, segment.start, SliceKind::Wheels);
     segment.known =
-        MeasuredActuator{.twist = std::make_shared<const InputTrack>(std::move(until_start)), .until = segment.start};
+        MeasuredActuator{.twist = std::make_shared<const InputHistory>(std::move(until_start)), .until = segment.start};
   }
 }
 

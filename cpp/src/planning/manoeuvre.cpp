@@ -22,7 +22,7 @@ HeldCommand command(double v, double v_by_length, double fraction, const Manoeuv
 constexpr double kLongestRamp = 100.0;  // [s]; nobody waits longer at a goal
 
 bool holds(const AxisLimits& limits, double command) {
-  return std::abs(command) < limits.dead_band || std::abs(command) > limits.top;
+  return std::abs(command) < limits.dead_band || std::abs(command) > limits.saturation;
 }
 
 /// Without the derivatives of what dead-band or top hold.

@@ -30,7 +30,7 @@ using YawRateAxis = AxisStepper<kManoeuvreParameters>;
 template <int N>
 AxisStepper<N> started(const AxisResponse& response, double drive, double commanded, std::optional<double> known_fast) {
   AxisStepper<N> axis(response);
-  const double fast = response.has_slow_part() ? known_fast.value_or(response.fast_share() * commanded) : drive;
+  const double fast = response.has_slow_mode() ? known_fast.value_or(response.fast_fraction() * commanded) : drive;
   axis.start({.value = fast}, {.value = drive - fast});
   axis.hold(Sensitive<N>{.value = commanded});
   return axis;

@@ -244,11 +244,11 @@ MppiResult Mppi::step(const MppiState& state, const MppiReference& reference, co
   std::ranges::fill(mean_, 0.0F);
   std::ranges::fill(worst_, 0.0F);
   std::ranges::fill(free_, 1);
-  const auto share = static_cast<float>(1.0 / static_cast<double>(models_.size()));
+  const auto fraction = static_cast<float>(1.0 / static_cast<double>(models_.size()));
   for (const RolloutProgram& model : models_) {
     drive(model, state, reference, map);
     for (std::size_t i = 0; i < settings_.rollouts; ++i) {
-      mean_[i] += share * cost_[i];
+      mean_[i] += fraction * cost_[i];
       worst_[i] = std::max(worst_[i], cost_[i]);
     }
   }

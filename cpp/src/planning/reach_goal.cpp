@@ -12,10 +12,10 @@ namespace slipwise {
 namespace {
 
 using Metric = Eigen::Matrix<double, kManoeuvreParameters, kManoeuvreParameters>;
-constexpr double kSmoothing = 2.0;    // control points so far apart move together by e^-1
-constexpr double kDamping = 1e-10;    // of the trace; only keeps a singular system solvable
-constexpr double kLengthShare = 0.5;  // the length moves as readily as this part of its range
-constexpr double kSufficient = 0.1;   // part of the promised decrease that a step has to bring
+constexpr double kSmoothing = 2.0;       // control points so far apart move together by e^-1
+constexpr double kDamping = 1e-10;       // of the trace; only keeps a singular system solvable
+constexpr double kLengthFraction = 0.5;  // the length moves as readily as this part of its range
+constexpr double kSufficient = 0.1;      // part of the promised decrease that a step has to bring
 constexpr int kHalvings = 6;
 
 /// How readily the parameters move: neighbouring control points together, all in proportion to their range.
@@ -27,7 +27,7 @@ Metric metric_of(const ManoeuvreBounds& bounds) {
       metric(i, j) = 0.25 * range[i] * range[j] * std::exp(-std::abs(i - j) / kSmoothing);
     }
   }
-  metric(kLength, kLength) = std::pow(kLengthShare * range[kLength], 2);
+  metric(kLength, kLength) = std::pow(kLengthFraction * range[kLength], 2);
   return metric;
 }
 
@@ -69,11 +69,11 @@ bool descend(const ReachProblem& problem, const Pose2& goal, const ManoeuvreVect
              Reach& reach) {
   const Eigen::Vector3d weight(1.0, 1.0, settings.turn_length);
   const double size = residual_of(goal, reach.pose).cwiseProduct(weight).norm();
-  double share = 1.0;
-  for (int halving = 0; halving <= kHalvings; ++halving, share *= 0.5) {
-    const ManoeuvreVector trial = reach.parameters + share * step;
+  double fraction = 1.0;
+  for (int halving = 0; halving <= kHalvings; ++halving, fraction *= 0.5) {
+    const ManoeuvreVector trial = reach.parameters + fraction * step;
     const Pose2 pose = manoeuvre_pose(problem.model, problem.frame, trial, problem.start);
-    if (residual_of(goal, pose).cwiseProduct(weight).norm() < (1.0 - kSufficient * share) * size) {
+    if (residual_of(goal, pose).cwiseProduct(weight).norm() < (1.0 - kSufficient * fraction) * size) {
       reach.parameters = trial;
       reach.pose = pose;
       return true;

@@ -38,8 +38,8 @@ double latest_delay(const ActuatorModel& actuator) { return std::max(actuator.de
 /// How long a channel whose lags hold `fast` and `slow` takes until it is slower than `slowest` for good [s].
 double seconds_to_rest(const AxisResponse& response, double fast, double slow, double slowest) {
   const auto left = [&](double seconds) {
-    return std::abs(lag_output(fast, 0.0, response.lag, seconds)) +
-           std::abs(lag_output(slow, 0.0, response.slow_lag, seconds));
+    return std::abs(lag_output(fast, 0.0, response.time_constant, seconds)) +
+           std::abs(lag_output(slow, 0.0, response.slow_time_constant, seconds));
   };
   const double stride = response.longest_lag();
   double late = 0.0;

@@ -30,17 +30,17 @@ ChannelTiming time_channel(const AxisResponse& response, double delay, double pe
   return {static_cast<std::ptrdiff_t>(whole), rest < kSamePart * period ? 0.0 : rest, response};
 }
 
-LagShare share_of(double time_constant, double duration) {
+LagFraction fraction_of(double time_constant, double duration) {
   const LagDecay decay(time_constant, duration);
   return {time_constant > 0.0 ? time_constant * decay.gone / duration : 0.0, decay.left};
 }
 
-ChannelShare share_of(const AxisResponse& response, double duration) {
-  return {share_of(response.lag, duration), share_of(response.slow_lag, duration)};
+ChannelFraction fraction_of(const AxisResponse& response, double duration) {
+  return {fraction_of(response.time_constant, duration), fraction_of(response.slow_time_constant, duration)};
 }
 
 bool lags(const ChannelTiming& channel) { return channel.response.longest_lag() > 0.0; }
-bool responds(const ChannelTiming& channel) { return channel.response.has_slow_part() || channel.response.gain != 1.0; }
+bool responds(const ChannelTiming& channel) { return channel.response.has_slow_mode() || channel.response.gain != 1.0; }
 
 /// A stretch of constant delayed commands, cut so that no part with lag is longer than the actuator's own steps are.
 std::vector<PeriodPart> cut(const ActuatorSchedule& actuator, double duration, bool next_v, bool next_omega) {
@@ -51,7 +51,7 @@ std::vector<PeriodPart> cut(const ActuatorSchedule& actuator, double duration, b
   const double part = duration / count;
   std::vector<PeriodPart> parts(
       static_cast<std::size_t>(count),
-      {part, false, false, share_of(actuator.v.response, part), share_of(actuator.omega.response, part)});
+      {part, false, false, fraction_of(actuator.v.response, part), fraction_of(actuator.omega.response, part)});
   parts.front().next_v = next_v;
   parts.front().next_omega = next_omega;
   return parts;

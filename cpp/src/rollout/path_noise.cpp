@@ -20,8 +20,8 @@ void check_uncertainty(const UncertainModel& model) {
                                 " parameters");
   }
   if (!covariance.allFinite() || !uncertainty.scale.allFinite() || (uncertainty.scale.array() < 0.0).any() ||
-      !(uncertainty.growth >= 0.0) || !std::isfinite(uncertainty.growth)) {
-    throw std::invalid_argument("the covariance, its scale and its growth must be finite, and no scale negative");
+      !(uncertainty.inflation >= 0.0) || !std::isfinite(uncertainty.inflation)) {
+    throw std::invalid_argument("the covariance, its scale and its inflation must be finite, and no scale negative");
   }
   check_disturbance(uncertainty.disturbance);
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "slipwise/rollout/actuator_start.hpp"
-#include "slipwise/rollout/gpu.hpp"
+#include "slipwise/rollout/gpu/gpu.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/limited_commands.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
@@ -105,7 +105,7 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
   const LaneConstants<Scalar>& constants = program.constants<Scalar>();
   const ActuatorSchedule& actuator = program.actuator();
   return {.parts = constants.parts.data(),
-          .shares = constants.shares.data(),
+          .coefficients = constants.coefficients.data(),
           .cycle = actuator.lead_in.size(),
           .branch = actuator.lead_in.size() + actuator.branch,
           .tail = actuator.lead_in.size() + actuator.cycle.size(),
@@ -166,7 +166,7 @@ std::size_t first_unused(const LaneJob<Scalar>& job) {
   return static_cast<std::size_t>(std::max(static_cast<std::ptrdiff_t>(job.periods) - unused, std::ptrdiff_t{0}));
 }
 
-/// Moves the block to its place in the batch. What all lanes share is set once.
+/// Moves the block to its place in the batch. What all lanes fraction is set once.
 template <typename Scalar>
 class BlockOfBatch {
  public:
@@ -357,7 +357,7 @@ void rollout_batch(const RolloutProgram& program, const RolloutBatch<Scalar>& ba
   const bool out_of_sight = options.gpu != nullptr && lies_on_gpu(batch.commands.v);
   if (out_of_sight && program.actuator().responds && std::min(job.shift_v, job.shift_omega) < 0) {
     throw std::invalid_argument(
-        "where a drive with a slow part acts before it is commanded, its commands must lie in the processor's memory");
+        "where a drive with a slow mode acts before it is commanded, its commands must lie in the processor's memory");
   }
   const unsigned faults = options.gpu != nullptr ? roll_on(*options.gpu, program, batch, outputs.map, job)
                                                  : roll_blocks(program, batch, outputs.map, job, options);

@@ -22,10 +22,10 @@ constexpr std::array<std::array<std::size_t, 2>, kEntries> kPlaces{
     {{{0, 0}}, {{0, 1}}, {{1, 1}}, {{0, 2}}, {{1, 2}}, {{2, 2}}}};
 
 /// What the parameters' errors and the slip disturbance do to every pose.
-class ParameterShare {
+class ParameterPart {
  public:
-  ParameterShare(const UncertainModel& model, const RolloutBatch<double>& batch, const RolloutOptions& options,
-                 std::span<double> out)
+  ParameterPart(const UncertainModel& model, const RolloutBatch<double>& batch, const RolloutOptions& options,
+                std::span<double> out)
       : model_(model), batch_(batch), options_(options), out_(out) {}
 
   void add_learned() {
@@ -130,9 +130,9 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>&
   const RolloutPaths paths = roll_paths({model.model, model.parameters, model.setting}, batch, options);
   const RolloutPaths drive = roll_paths(drive_alone(model), batch, options);
   std::ranges::fill(out, 0.0);
-  ParameterShare share(model, batch, options, out);
-  share.add_learned();
-  share.add_disturbance();
+  ParameterPart fraction(model, batch, options, out);
+  fraction.add_learned();
+  fraction.add_disturbance();
   const Eigen::Vector3d root = model.uncertainty.scale.cwiseSqrt();
   share_out(batch.rollouts, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t n = first; n < last; ++n) {
@@ -148,7 +148,7 @@ void rollout_covariance(const UncertainModel& model, const RolloutBatch<double>&
         const Eigen::Matrix3d noise = scaled(sums.at(before), start, root);
         for (std::size_t e = 0; e < kEntries; ++e) {
           double& entry = out[e * poses + k * batch.rollouts + n];
-          entry = model.uncertainty.growth *
+          entry = model.uncertainty.inflation *
                   (entry + noise(static_cast<Eigen::Index>(kPlaces[e][0]), static_cast<Eigen::Index>(kPlaces[e][1])));
         }
       }

@@ -25,8 +25,8 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program) {
   std::vector<LaneProduct> products;
   for (const SlipProduct& product : program.products) {
     unsigned channels = 0;
-    for (unsigned c = 0; c < product.share.size(); ++c) {
-      channels |= product.share[c] != 0.0 ? 1U << c : 0U;
+    for (unsigned c = 0; c < product.fraction.size(); ++c) {
+      channels |= product.fraction[c] != 0.0 ? 1U << c : 0U;
     }
     products.push_back({static_cast<std::uint8_t>(product.parent), static_cast<std::uint8_t>(product.factor),
                         static_cast<std::uint8_t>(channels)});
@@ -34,12 +34,13 @@ std::vector<LaneProduct> lane_products(const SlipProgram& program) {
   return products;
 }
 
-/// With the shares and gains of the two lags. What is left of a lag is rounded first, so that it settles on its input.
+/// With the coefficients and gains of the two lags. What is left of a lag is rounded first, so that it settles on its
+/// input.
 template <typename Scalar>
-LaneLag<Scalar> lane_lag(const ChannelShare& part, const AxisResponse& response) {
+LaneLag<Scalar> lane_lag(const ChannelFraction& part, const AxisResponse& response) {
   const auto number = [](double value) { return static_cast<Scalar>(value); };
   const auto rounded = [](double value) { return static_cast<double>(static_cast<Scalar>(value)); };
-  const double fast = response.fast_share();
+  const double fast = response.fast_fraction();
   const double slow = response.gain - fast;
   return {
       .mean_by_input = number(fast * (1.0 - rounded(part.fast.mean_gap)) + slow * (1.0 - rounded(part.slow.mean_gap))),
@@ -63,14 +64,14 @@ RampLimits<Scalar> ramp_limits(const AxisLimits& limits, double piece) {
   const auto number = [](double value) {
     return static_cast<Scalar>(std::min(value, static_cast<double>(std::numeric_limits<Scalar>::max())));
   };
-  const double acceleration = limits.acceleration * piece;
-  const double braking = limits.braking * piece;
+  const double slew_rate_up = limits.slew_rate_up * piece;
+  const double slew_rate_down = limits.slew_rate_down * piece;
   return {.dead_band = number(limits.dead_band),
-          .top = number(limits.top),
-          .acceleration = number(acceleration),
-          .braking = number(braking),
-          .per_acceleration = number(1.0 / acceleration),
-          .per_braking = number(1.0 / braking),
+          .saturation = number(limits.saturation),
+          .slew_rate_up = number(slew_rate_up),
+          .slew_rate_down = number(slew_rate_down),
+          .per_slew_up = number(1.0 / slew_rate_up),
+          .per_slew_down = number(1.0 / slew_rate_down),
           .ramps = limits_rates(limits)};
 }
 
@@ -80,28 +81,29 @@ DriveRamps<Scalar> drive_ramps(const CommandLimits& limits, double piece) {
           .yaw_rate = ramp_limits<Scalar>(limits.yaw_rate, piece),
           .side = ramp_limits<Scalar>(limits.side, piece),
           .gain_v = static_cast<Scalar>(limits.gain_v),
-          .half_track = static_cast<Scalar>(0.5 * limits.gain_omega * limits.track),
-          .per_track = static_cast<Scalar>(1.0 / limits.track),
+          .half_separation = static_cast<Scalar>(0.5 * limits.gain_omega * limits.wheel_separation),
+          .per_separation = static_cast<Scalar>(1.0 / limits.wheel_separation),
           .sides = limits_sides(limits)};
 }
 
 template <typename Scalar>
 LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ActuatorSchedule& actuator,
                                      const CommandLimits& limits) {
-  LaneConstants<Scalar> constants{.parts = {}, .shares = {}, .limits = drive_ramps<Scalar>(limits, actuator.period)};
+  LaneConstants<Scalar> constants{
+      .parts = {}, .coefficients = {}, .limits = drive_ramps<Scalar>(limits, actuator.period)};
   std::vector<PeriodPart> parts = actuator.lead_in;
   parts.insert(parts.end(), actuator.cycle.begin(), actuator.cycle.end());
   parts.insert(parts.end(), actuator.tail.begin(), actuator.tail.end());
   for (const PeriodPart& part : parts) {
-    constants.parts.push_back({.first_share = constants.shares.size(),
+    constants.parts.push_back({.first_coefficient = constants.coefficients.size(),
                                .duration = static_cast<Scalar>(part.duration),
                                .v = lane_lag<Scalar>(part.v, actuator.v.response),
                                .omega = lane_lag<Scalar>(part.omega, actuator.omega.response),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
     for (const SlipProduct& product : slip.products) {
-      for (const double share : product.share) {
-        constants.shares.push_back(static_cast<Scalar>(share * part.duration));
+      for (const double fraction : product.fraction) {
+        constants.coefficients.push_back(static_cast<Scalar>(fraction * part.duration));
       }
     }
   }

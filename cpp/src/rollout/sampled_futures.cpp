@@ -49,7 +49,7 @@ class NoisyPath {
     const PeriodNoise noise = period_noise(drive, model_.setting.period, model_.uncertainty.noise);
     for (std::size_t c = 0; c < constant_.size(); ++c) {
       const double widened =
-          std::sqrt(model_.uncertainty.growth * model_.uncertainty.scale[static_cast<Eigen::Index>(c)]);
+          std::sqrt(model_.uncertainty.inflation * model_.uncertainty.scale[static_cast<Eigen::Index>(c)]);
       tangent[static_cast<Eigen::Index>(c)] +=
           widened * (std::sqrt(noise.variance[c]) * normal_(random_) + noise.constant[c] * constant_[c]);
     }
@@ -64,7 +64,7 @@ class NoisyPath {
       const auto k = static_cast<std::size_t>(i);
       const double motion = terms_.of_turn[k] ? drive.z() : drive.x();
       tangent[static_cast<Eigen::Index>(terms_.channels[k])] +=
-          std::sqrt(model_.uncertainty.growth) * deviation_[i] * motion;
+          std::sqrt(model_.uncertainty.inflation) * deviation_[i] * motion;
       deviation_[i] = kept_ * deviation_[i] + std::sqrt(1.0 - kept_ * kept_) * nominal_[i] * normal_(random_);
     }
   }
@@ -83,7 +83,7 @@ class NoisyPath {
 
 Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples, std::uint64_t seed) {
   check_uncertainty(model);
-  const Eigen::MatrixXd root = covariance_root(model.uncertainty.covariance) * std::sqrt(model.uncertainty.growth);
+  const Eigen::MatrixXd root = covariance_root(model.uncertainty.covariance) * std::sqrt(model.uncertainty.inflation);
   Eigen::MatrixXd drawn(model.parameters.size(), static_cast<Eigen::Index>(samples));
   for (std::size_t s = 0; s < samples; ++s) {
     std::mt19937_64 random = generator(seed, s, kParameters);

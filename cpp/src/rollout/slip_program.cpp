@@ -20,11 +20,11 @@ class Compiler {
   }
 
   void add(const Term& term, std::size_t channel, double alpha, const std::array<double, 2>& gravity) {
-    double share = alpha * term.coefficient();
+    double fraction = alpha * term.coefficient();
     std::vector<SlipFactor> factors;
     for (const Quantity quantity : term.factors()) {
       if (quantity == Quantity::GravityX || quantity == Quantity::GravityY) {
-        share *= gravity[quantity == Quantity::GravityX ? 0 : 1];
+        fraction *= gravity[quantity == Quantity::GravityX ? 0 : 1];
         if (std::ranges::find(factors, SlipFactor::Moving) == factors.end()) {
           factors.push_back(SlipFactor::Moving);
         }
@@ -37,7 +37,7 @@ class Compiler {
     for (const SlipFactor factor : factors) {
       place = product(place, factor);
     }
-    program_.products[place].share[channel] += share;
+    program_.products[place].fraction[channel] += fraction;
   }
 
   SlipProgram finish() && {
@@ -76,12 +76,12 @@ class Compiler {
 
 std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program) {
   const auto& products = program.products;
-  if (products[kProductOmega].share[0] != 0.0 || products[kProductOmega].share[1] != 0.0) {
+  if (products[kProductOmega].fraction[0] != 0.0 || products[kProductOmega].fraction[1] != 0.0) {
     return std::nullopt;
   }
   LaneQuadratic found{kProductOne, kProductOne, kProductOne, kProductOne};
   for (std::size_t i = kFirstProduct; i < products.size(); ++i) {
-    const auto& [parent, factor, share] = products[i];
+    const auto& [parent, factor, fraction] = products[i];
     if (factor == SlipFactor::Curvature && parent == kProductOne) {
       found.curvature = i;
     } else if (factor == SlipFactor::Curvature && parent == kProductV) {

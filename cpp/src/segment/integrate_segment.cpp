@@ -22,7 +22,7 @@ ActuatorSpan window_of(const Segment& segment) {
 }
 
 Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters, const Segment& segment) {
-  return model.learned().mount ? model.mount(parameters) : segment.sensor;
+  return model.learned().sensor_extrinsics ? model.sensor_extrinsics(parameters) : segment.sensor;
 }
 
 BodyGravity gravity_of(const Segment& segment) { return {.gx = segment.gx, .gy = segment.gy}; }
@@ -124,8 +124,8 @@ struct SensitivitySums {
       jacobian.middleCols(model.slip_size(), model.actuator_size()) =
           phi * actuator * model.actuator_scales(at).asDiagonal();
     }
-    if (model.learned().mount) {
-      jacobian.rightCols<kMountParameters>() = sensor_by_mount(end, path.sensor);
+    if (model.learned().sensor_extrinsics) {
+      jacobian.rightCols<kExtrinsicsParameters>() = sensor_by_extrinsics(end, path.sensor);
     }
     return jacobian;
   }
@@ -135,7 +135,7 @@ struct SensitivitySums {
 /// the steps and the sums so far.
 template <bool kAll, class See>
 SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                const InputTrack& inputs, const Segment& segment, const See& see) {
+                                const InputHistory& inputs, const Segment& segment, const See& see) {
   model.check(parameters);
   const ActuatorModel actuator = model.actuator(parameters);
   const bool by_actuator = kAll && model.actuator_size() > 0;
@@ -181,7 +181,7 @@ Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
 }
 
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                              const InputTrack& inputs, const Segment& segment, Integrator integrator) {
+                              const InputHistory& inputs, const Segment& segment, Integrator integrator) {
   model.check(parameters);
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
@@ -200,18 +200,18 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
 }
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                       const InputTrack& inputs, const Segment& segment) {
+                                       const InputHistory& inputs, const Segment& segment) {
   return linearized<true>(model, parameters, inputs, segment, see_nothing);
 }
 
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                    const InputTrack& inputs, const Segment& segment) {
+                                    const InputHistory& inputs, const Segment& segment) {
   return linearized<false>(model, parameters, inputs, segment, see_nothing);
 }
 
 std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                                       const InputTrack& inputs, const Segment& segment,
+                                                       const InputHistory& inputs, const Segment& segment,
                                                        std::size_t parts) {
   const ActuatorModel actuator = model.actuator(parameters);
   const Pose2 sensor = sensor_of(model, parameters, segment);

@@ -16,7 +16,7 @@ BatchEstimator::BatchEstimator(MotionModel model, Estimate prior, const Estimato
       noise_(settings.noise),
       huber_(settings.iekf.huber) {}
 
-IekfUpdate BatchEstimator::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate BatchEstimator::learn(const InputHistory& inputs, const Segment& segment) {
   IekfUpdate update = filter_.learn(inputs, segment);
   kept_.push_back({inputs, segment});
   return update;

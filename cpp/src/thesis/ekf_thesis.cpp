@@ -17,7 +17,7 @@ EkfThesis::EkfThesis(MotionModel model, Estimate prior, const EstimatorSettings&
       estimate_(std::move(prior)),
       prior_variance_(estimate_.covariance.diagonal()) {}
 
-IekfUpdate EkfThesis::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate EkfThesis::learn(const InputHistory& inputs, const Segment& segment) {
   // Input. Erratum: p_t stands there for p_{t-1}.
   // 1. p_t = p_{t-1}: (6.13) with G_t = I of size m; erratum of (6.14): it says 5.
   const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);

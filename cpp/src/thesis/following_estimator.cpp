@@ -42,7 +42,7 @@ Eigen::VectorXd FollowingEstimator::prior_std() const {
   return prior_estimate(model(), reference_, settings_.prior).covariance.diagonal().cwiseSqrt();
 }
 
-IekfUpdate FollowingEstimator::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate FollowingEstimator::learn(const InputHistory& inputs, const Segment& segment) {
   driven_.see(inputs, segment);
   follow();
   const SegmentPath path = integrate_segment(model(), running().mean, inputs, segment);

@@ -11,7 +11,7 @@ namespace slipwise {
 GradientDescent::GradientDescent(MotionModel model, Estimate prior, const EstimatorSettings& settings)
     : model_(std::move(model)), settings_(settings.gradient_descent), estimate_(std::move(prior)) {}
 
-IekfUpdate GradientDescent::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate GradientDescent::learn(const InputHistory& inputs, const Segment& segment) {
   const auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
   const auto jacobian = segment_jacobian(settings_.jacobian, model_, at, segment);
   const Eigen::VectorXd metric = estimate_.covariance.diagonal();

@@ -12,7 +12,7 @@ namespace slipwise {
 IekfEstimator::IekfEstimator(MotionModel model, Estimate prior, const EstimatorSettings& settings)
     : model_(std::move(model)), settings_(settings.iekf), noise_(settings.noise), estimate_(std::move(prior)) {}
 
-IekfUpdate IekfEstimator::learn(const InputTrack& inputs, const Segment& segment) {
+IekfUpdate IekfEstimator::learn(const InputHistory& inputs, const Segment& segment) {
   auto at = linearize_segment(model_, estimate_.mean, inputs, segment);
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, noise_, scale_);
   IekfUpdate update = iekf_update(model_, estimate_, inputs, segment, std::move(at), noise, settings_);

@@ -16,8 +16,8 @@ namespace slipwise {
 namespace {
 
 constexpr double kRankTolerance = 1e-9;  // of the largest singular value of the scaled columns
-constexpr double kShown = 1e-6;          // a smaller share of a direction is rounding
-constexpr double kLeastShare = 1e-6;     // of the mean r^2; log r^2 of an exact hit is taken as this
+constexpr double kShown = 1e-6;          // a smaller fraction of a direction is rounding
+constexpr double kLeastFraction = 1e-6;  // of the mean r^2; log r^2 of an exact hit is taken as this
 constexpr double kFloor = 1e-12;         // of a standard deviation and of a reference speed
 constexpr double kSlopeStd = 1.0;        // prior of a slope of log variance per reference speed
 constexpr double kLevelStd = 10.0;       // prior of its level about the mean r^2
@@ -80,7 +80,7 @@ void check(const Eigen::Ref<const Eigen::MatrixXd>& design, const Eigen::Ref<con
 
 double LeastSquaresFit::mean_variance(const Eigen::Ref<const Eigen::VectorXd>& features) const {
   const Eigen::VectorXd scaled = features.cwiseQuotient(scale);
-  if (undetermined.cols() > 0 && (undetermined.transpose() * scaled).norm() > kShown * (1.0 + scaled.norm())) {
+  if (not_identifiable.cols() > 0 && (not_identifiable.transpose() * scaled).norm() > kShown * (1.0 + scaled.norm())) {
     return std::numeric_limits<double>::infinity();
   }
   return std::max(features.dot(covariance * features), 0.0);
@@ -93,7 +93,7 @@ LeastSquaresFit fit_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& desig
   if (design.cols() == 0) {  // a channel without terms: nothing to fit, all is residual
     return {.coefficients = Eigen::VectorXd(0),
             .covariance = Eigen::MatrixXd(0, 0),
-            .undetermined = Eigen::MatrixXd(0, 0),
+            .not_identifiable = Eigen::MatrixXd(0, 0),
             .scale = Eigen::VectorXd(0),
             .residual = output,
             .leverage = Eigen::VectorXd::Zero(output.size())};
@@ -111,7 +111,7 @@ LeastSquaresFit fit_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& desig
   LeastSquaresFit fit;
   fit.scale = scale;
   fit.coefficients = v * (inverse.asDiagonal() * (u.transpose() * weight.cwiseProduct(output)));
-  fit.undetermined = sparse_directions(svd.v.rightCols(design.cols() - rank));
+  fit.not_identifiable = sparse_directions(svd.v.rightCols(design.cols() - rank));
   fit.residual = output - design * fit.coefficients;
   fit.leverage = u.rowwise().squaredNorm();
   const double left = static_cast<double>(std::max<Eigen::Index>(design.rows() - rank, 1));
@@ -125,7 +125,7 @@ std::vector<std::string> undetermined_directions(const LeastSquaresFit& fit, std
     throw std::invalid_argument("one name per coefficient is needed");
   }
   std::vector<std::string> result;
-  for (const auto& direction : fit.undetermined.colwise()) {
+  for (const auto& direction : fit.not_identifiable.colwise()) {
     std::vector<std::string> named;
     for (Eigen::Index i = 0; i < direction.size(); ++i) {
       if (std::abs(direction[i]) > kShown) {
@@ -155,10 +155,10 @@ LogVarianceFit fit_log_variance(const Eigen::Ref<const Eigen::MatrixX2d>& drive,
   if (drive.rows() != fit.residual.size()) {
     throw std::invalid_argument("log variance needs one residual per (V, omega)");
   }
-  const auto share_left = (1.0 - fit.leverage.array()).max(1.0 / static_cast<double>(drive.rows() + 1));
-  const Eigen::ArrayXd square = fit.residual.array().square() / share_left;
+  const auto fraction_left = (1.0 - fit.leverage.array()).max(1.0 / static_cast<double>(drive.rows() + 1));
+  const Eigen::ArrayXd square = fit.residual.array().square() / fraction_left;
   const double mean_square = std::max(square.mean(), kFloor * kFloor);
-  const Eigen::ArrayXd log_square = (square / mean_square).max(kLeastShare).log() - kMeanLogChiSquare;
+  const Eigen::ArrayXd log_square = (square / mean_square).max(kLeastFraction).log() - kMeanLogChiSquare;
   LogVarianceFit result{.coefficients = {},
                         .v_ref = std::max(drive.col(0).cwiseAbs().maxCoeff(), kFloor),
                         .omega_ref = std::max(drive.col(1).cwiseAbs().maxCoeff(), kFloor)};

@@ -20,8 +20,8 @@ double switched(double surface, double lever, double layer, double most) {
 }
 
 /// Left side, right side and sideways speed of a mean body twist.
-Eigen::Vector3d surface_speeds(const Eigen::Vector3d& twist, double track) {
-  const double turn = twist.z() * track / 2.0;
+Eigen::Vector3d surface_speeds(const Eigen::Vector3d& twist, double wheel_separation) {
+  const double turn = twist.z() * wheel_separation / 2.0;
   return {twist.x() - turn, twist.x() + turn, twist.y()};
 }
 
@@ -36,15 +36,16 @@ Eigen::Vector3d mean_twist_at_wheels(const SegmentPath& path, double duration) {
 }  // namespace
 
 SlidingModeObserver::SlidingModeObserver(const SlidingModeSettings& settings) : settings_(settings) {
-  for (const double value : {settings.track, settings.ratio_gain, settings.angle_gain, settings.side_layer,
+  for (const double value : {settings.wheel_separation, settings.ratio_gain, settings.angle_gain, settings.side_layer,
                              settings.drift_layer, settings.slowest}) {
     if (!(value > 0.0) || !std::isfinite(value)) {
-      throw std::invalid_argument("track, gains, layers and the slowest speed of the observer must be positive");
+      throw std::invalid_argument(
+          "wheel_separation, gains, layers and the slowest speed of the observer must be positive");
     }
   }
 }
 
-SlidingModeUpdate SlidingModeObserver::learn(const InputTrack& wheels, const Segment& segment) {
+SlidingModeUpdate SlidingModeObserver::learn(const InputHistory& wheels, const Segment& segment) {
   const double duration = segment.end - segment.start;
   if (!(duration > 0.0) || !segment.measured.vector().allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
@@ -56,8 +57,8 @@ SlidingModeUpdate SlidingModeObserver::learn(const InputTrack& wheels, const Seg
   }
   const Eigen::Vector3d measured_twist = log(path.robot_motion(segment.measured)) / duration;
   const Eigen::Vector3d predicted_twist = log(predicted) / duration;
-  const Eigen::Vector3d surface = surface_speeds(measured_twist - predicted_twist, settings_.track);
-  const Eigen::Vector3d rims = surface_speeds(mean_twist_at_wheels(path, duration), settings_.track);
+  const Eigen::Vector3d surface = surface_speeds(measured_twist - predicted_twist, settings_.wheel_separation);
+  const Eigen::Vector3d rims = surface_speeds(mean_twist_at_wheels(path, duration), settings_.wheel_separation);
   const double ratio_step = settings_.ratio_gain * duration;
   SlipRatios next = slip_;
   if (std::abs(rims[0]) > settings_.slowest) {

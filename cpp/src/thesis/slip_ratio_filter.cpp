@@ -14,11 +14,12 @@ namespace {
 Eigen::Vector3d squares(double ratio, double angle) { return {ratio * ratio, ratio * ratio, angle * angle}; }
 
 void check(const SlipRatioFilterSettings& settings) {
-  for (const double value : {settings.track, settings.prior_ratio_std, settings.prior_angle_std, settings.huber,
-                             settings.noise.pose_std_xy, settings.noise.pose_std_yaw}) {
+  for (const double value : {settings.wheel_separation, settings.prior_ratio_std, settings.prior_angle_std,
+                             settings.huber, settings.noise.pose_std_xy, settings.noise.pose_std_yaw}) {
     if (!(value > 0.0) || !std::isfinite(value)) {
       throw std::invalid_argument(
-          "the slip-ratio filter needs a positive track [m], prior standard deviations, Huber threshold and pose "
+          "the slip-ratio filter needs a positive wheel_separation [m], prior standard deviations, Huber threshold and "
+          "pose "
           "noise");
     }
   }
@@ -31,9 +32,9 @@ void check(const SlipRatioFilterSettings& settings) {
 
 MotionModel slip_ratio_model() { return {named_basis("full-linear-6"), {}}; }
 
-SlipRatioLinearization linearize_slip_ratios(const InputTrack& wheels, const Segment& segment, const SlipRatios& slip,
-                                             double track) {
-  const LinearSlip linear = linear_slip(slip, track);
+SlipRatioLinearization linearize_slip_ratios(const InputHistory& wheels, const Segment& segment, const SlipRatios& slip,
+                                             double wheel_separation) {
+  const LinearSlip linear = linear_slip(slip, wheel_separation);
   SlipRatioLinearization at{.segment = linearize_segment(slip_ratio_model(), linear.alpha, wheels, segment),
                             .by_slip_ratios = Eigen::Matrix3d::Zero()};
   at.by_slip_ratios = at.segment.by_parameter * linear.by_slip_ratios;
@@ -46,13 +47,13 @@ SlipRatioFilter::SlipRatioFilter(const SlipRatioFilterSettings& settings) : sett
   estimate_.covariance = squares(settings.prior_ratio_std, settings.prior_angle_std).asDiagonal();
 }
 
-SlipRatioUpdate SlipRatioFilter::learn(const InputTrack& wheels, const Segment& segment) {
+SlipRatioUpdate SlipRatioFilter::learn(const InputHistory& wheels, const Segment& segment) {
   if (!(segment.end > segment.start) || !segment.measured.vector().allFinite()) {
     throw std::invalid_argument("a segment must end after it starts and have finite measurements");
   }
   Eigen::Matrix3d prior = estimate_.covariance;
   prior.diagonal() += squares(settings_.walk_ratio, settings_.walk_angle) * (segment.end - segment.start);
-  const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.track);
+  const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.wheel_separation);
   const Eigen::Matrix3d& h = at.by_slip_ratios;
   const Eigen::Matrix3d noise = slip_covariance(at.segment.path, settings_.noise) +
                                 pose_noise_covariance(segment.measured, settings_.noise, segment.pose_std_ratio);
@@ -76,7 +77,7 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputTrack& wheels, const Segment& 
 }
 
 Estimate SlipRatioFilter::linear_estimate() const {
-  const LinearSlip linear = linear_slip(slip(), settings_.track);
+  const LinearSlip linear = linear_slip(slip(), settings_.wheel_separation);
   return {linear.alpha, linear.by_slip_ratios * estimate_.covariance * linear.by_slip_ratios.transpose()};
 }
 

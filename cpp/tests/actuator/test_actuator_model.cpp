@@ -19,17 +19,17 @@ namespace {
 using Actuator = Eigen::Matrix<double, kActuatorParameters, 1>;
 
 ActuatorModel actuator_of(const Eigen::VectorXd& p) {
-  return {.lag_v = p[0],
-          .lag_omega = p[1],
+  return {.time_constant_v = p[0],
+          .time_constant_omega = p[1],
           .delay_v = p[2],
           .delay_omega = p[3],
           .clock_offset = p[4],
           .gain_v = p[5],
           .gain_omega = p[6],
-          .slow_share_v = p[7],
-          .slow_share_omega = p[8],
-          .slow_lag_v = p[9],
-          .slow_lag_omega = p[10]};
+          .slow_fraction_v = p[7],
+          .slow_fraction_omega = p[8],
+          .slow_time_constant_v = p[9],
+          .slow_time_constant_omega = p[10]};
 }
 
 /// Totals of duration, forward, left, turn; and a moment that tells early steps from late ones.
@@ -85,7 +85,7 @@ std::vector<Case> sample_cases() {
   const Actuator early = parameters({0.2, 0.3, 0.003, 0.004, -0.33, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
   const BodyTwist moving{0.6, 0.1, -0.3}, still{-0.2, -0.1, 0.4}, fast{1.9, 0.7, -1.3};
   const auto wheels =
-      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.003, 0.05, 200));
+      std::make_shared<const InputHistory>(tests::sampled(tests::sample_drives().front().twist, 0.003, 0.05, 200));
   const MeasuredActuator until_now{wheels, 2.013};
   return {
       {"20 Hz, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, lagging},
@@ -94,11 +94,11 @@ std::vector<Case> sample_cases() {
       {"20 Hz, clipped by a negative offset", 0.05, {.start = 4.013, .end = 6.487}, early},
       {"1 Hz held commands", 1.0137, {.start = 6.31, .end = 11.27, .initial = moving, .longest_step = 0.11}, lagging},
       {"1 Hz held commands, warmed up", 1.0137, {.start = 6.31, .end = 11.27, .longest_step = 0.11}, shorter},
-      {"20 Hz, slow part, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, slow},
-      {"20 Hz, slow part, far slower than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = still}, slow},
-      {"20 Hz, slow part, far faster than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = fast}, slow},
-      {"20 Hz, slow part, measured before any input acts", 0.05, {.start = 0.083, .end = 1.487, .initial = fast}, slow},
-      {"20 Hz, slow part, warmed up", 0.05, {.start = 4.013, .end = 6.487}, slow},
+      {"20 Hz, slow mode, measured start", 0.05, {.start = 2.013, .end = 4.487, .initial = moving}, slow},
+      {"20 Hz, slow mode, far slower than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = still}, slow},
+      {"20 Hz, slow mode, far faster than its inputs", 0.05, {.start = 2.013, .end = 4.487, .initial = fast}, slow},
+      {"20 Hz, slow mode, measured before any input acts", 0.05, {.start = 0.083, .end = 1.487, .initial = fast}, slow},
+      {"20 Hz, slow mode, warmed up", 0.05, {.start = 4.013, .end = 6.487}, slow},
       {"20 Hz, known until after the start",
        0.05,
        {.start = 2.013, .end = 4.487, .initial = moving, .known = until_now},
@@ -117,14 +117,14 @@ std::vector<Case> sample_cases() {
 TEST_CASE("drive steps are linearised exactly by every parameter of the actuator") {
   for (const Case& c : sample_cases()) {
     CAPTURE(c.name);
-    const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
+    const InputHistory inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, c.period, 200);
     const auto value = [&](const Eigen::VectorXd& p) {
       return totals(actuator_steps(inputs, actuator_of(p), c.window));
     };
     const ActuatorSteps linearized = linearize_actuator_steps(inputs, actuator_of(c.parameters), c.window);
     CHECK((totals(linearized) - value(c.parameters)).norm() == 0.0);
     const auto numeric = tests::finite_difference(value, c.parameters, 5e-4);
-    // Where there is no slow part, its time constants cannot move: it would appear.
+    // Where there is no slow mode, its time constants cannot move: it would appear.
     const Eigen::Index moving = c.parameters.tail<2>().isZero() ? kActuatorParameters - 2 : kActuatorParameters;
     CHECK(tests::jacobian_error(totals_jacobian(linearized).leftCols(moving), numeric.leftCols(moving), 0.1) <
           tests::kDerivativeTolerance);
@@ -133,7 +133,7 @@ TEST_CASE("drive steps are linearised exactly by every parameter of the actuator
 
 TEST_CASE(
     "without lag, gains scale distances, and delays and the clock offset move distances by the speeds at the ends") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
   const ActuatorSpan window{.start = 2.013, .end = 4.487};
   const auto value = [&](const Eigen::VectorXd& p) { return totals(actuator_steps(inputs, actuator_of(p), window)); };
   const Actuator point = parameters({0.0, 0.0, 0.113, 0.0717, 0.0231, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
@@ -150,7 +150,7 @@ TEST_CASE(
 }
 
 TEST_CASE("without lag, a speed that was measured before any input acts is exact in gains, delays and clock offset") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
+  const InputHistory inputs = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
   const ActuatorSpan window{.start = 0.083, .end = 1.487, .initial = BodyTwist{1.9, 0.7, -1.3}};
   const Actuator point = parameters({0.0, 0.0, 0.2163, 0.1331, 0.0171, 0.9, 1.1, 0.0, 0.0, 0.0, 0.0});
   const auto value = [&](const Eigen::VectorXd& p) {
@@ -165,7 +165,7 @@ TEST_CASE("without lag, a speed that was measured before any input acts is exact
 }
 
 TEST_CASE("the identity actuator hands each held input on as it is") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.1, 50);
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.1, 50);
   const ActuatorSteps drive = actuator_steps(inputs, {}, {.start = 1.03, .end = 1.28});
   REQUIRE(drive.steps.size() == 3);
   CHECK(drive.jacobians.empty());
@@ -180,15 +180,15 @@ TEST_CASE("the identity actuator hands each held input on as it is") {
 TEST_CASE("drive steps cover the window without gap or overlap") {
   for (const Case& c : sample_cases()) {
     CAPTURE(c.name);
-    const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, c.period, 200);
+    const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, c.period, 200);
     const double covered = totals(actuator_steps(inputs, actuator_of(c.parameters), c.window))[0];
     CHECK(covered == doctest::Approx(c.window.end - c.window.start).epsilon(1e-12));
   }
 }
 
 TEST_CASE("a lag's distance does not depend on how the window is divided") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 1.0, 20);
-  const ActuatorModel actuator{.lag_v = 0.8, .lag_omega = 0.6, .delay_v = 0.16, .delay_omega = 0.2};
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 1.0, 20);
+  const ActuatorModel actuator{.time_constant_v = 0.8, .time_constant_omega = 0.6, .delay_v = 0.16, .delay_omega = 0.2};
   const BodyTwist rest{};
   const auto fine = actuator_steps(inputs, actuator, {.start = 3.1, .end = 8.3, .initial = rest, .longest_step = 0.01});
   const auto coarse =
@@ -210,15 +210,15 @@ TEST_CASE("inputs later than the window's end are not used") {
 }
 
 TEST_CASE("a robot that was measured at rest starts from rest") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
-  const ActuatorModel actuator{.lag_v = 1e6, .lag_omega = 1e6};
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const ActuatorModel actuator{.time_constant_v = 1e6, .time_constant_omega = 1e6};
   const auto drive = actuator_steps(inputs, actuator, {.start = 2.0, .end = 3.0, .initial = BodyTwist{}});
   CHECK(totals(drive).segment<3>(1).norm() < 1e-5);
 }
 
 TEST_CASE("a warmed-up lag forgets where it began") {
-  const InputTrack whole = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 400);
-  const ActuatorModel actuator{.lag_v = 0.4, .lag_omega = 0.5, .delay_v = 0.1, .delay_omega = 0.05};
+  const InputHistory whole = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 400);
+  const ActuatorModel actuator{.time_constant_v = 0.4, .time_constant_omega = 0.5, .delay_v = 0.1, .delay_omega = 0.05};
   const auto from_rest = actuator_steps(whole, actuator, {.start = 0.0, .end = 15.0, .initial = BodyTwist{}});
   const auto until_ten = actuator_steps(whole, actuator, {.start = 0.0, .end = 10.0, .initial = BodyTwist{}});
   const auto warmed = actuator_steps(whole, actuator, {.start = 10.0, .end = 15.0});
@@ -226,13 +226,13 @@ TEST_CASE("a warmed-up lag forgets where it began") {
   CHECK((totals(warmed).segment<3>(1) - last).norm() < 1e-3);
 }
 
-TEST_CASE("a slow part with the lag's own time constant is that lag") {
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
-  const ActuatorModel one{.lag_v = 0.8, .lag_omega = 0.6, .delay_v = 0.16};
+TEST_CASE("a slow mode with the lag's own time constant is that lag") {
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200);
+  const ActuatorModel one{.time_constant_v = 0.8, .time_constant_omega = 0.6, .delay_v = 0.16};
   ActuatorModel two = one;
-  two.slow_share_v = two.slow_share_omega = 0.4;
-  two.slow_lag_v = 0.8;
-  two.slow_lag_omega = 0.6;
+  two.slow_fraction_v = two.slow_fraction_omega = 0.4;
+  two.slow_time_constant_v = 0.8;
+  two.slow_time_constant_omega = 0.6;
   for (const std::optional<BodyTwist> initial : {std::optional<BodyTwist>{}, std::optional(BodyTwist{0.5, 0.0, 0.2})}) {
     const ActuatorSpan window{.start = 8.02, .end = 9.51, .initial = initial};
     CHECK((totals(actuator_steps(inputs, one, window)) - totals(actuator_steps(inputs, two, window))).norm() < 1e-9);
@@ -240,10 +240,10 @@ TEST_CASE("a slow part with the lag's own time constant is that lag") {
 }
 
 TEST_CASE("a drive that is known throughout is what was measured") {
-  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
+  const InputHistory commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 200);
   const auto wheels =
-      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
-  const ActuatorModel actuator{.lag_v = 0.3, .lag_omega = 0.2, .clock_offset = 0.11};
+      std::make_shared<const InputHistory>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
+  const ActuatorModel actuator{.time_constant_v = 0.3, .time_constant_omega = 0.2, .clock_offset = 0.11};
   const BodyTwist now = wheels->at(5.0);
   const auto known = actuator_steps(commands, actuator,
                                     {.start = 2.0, .end = 4.0, .initial = now, .known = MeasuredActuator{wheels, 5.0}});
@@ -252,13 +252,14 @@ TEST_CASE("a drive that is known throughout is what was measured") {
 }
 
 TEST_CASE("a drive goes on from where it was known, whatever the clock offset") {
-  const InputTrack commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 101);  // until 5.0 s
+  const InputHistory commands = tests::sampled(tests::sample_drives().back().twist, 0.0, 0.05, 101);  // until 5.0 s
   const auto wheels =
-      std::make_shared<const InputTrack>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
+      std::make_shared<const InputHistory>(tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 200));
   const double now = 3.02;
   for (const double offset : {0.13, -0.13}) {
     CAPTURE(offset);
-    const ActuatorModel actuator{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.04, .clock_offset = offset};
+    const ActuatorModel actuator{
+        .time_constant_v = 0.3, .time_constant_omega = 0.2, .delay_v = 0.04, .clock_offset = offset};
     const auto whole = actuator_steps(
         commands, actuator,
         {.start = now, .end = now + 2.0, .initial = wheels->at(now), .known = MeasuredActuator{wheels, now}});

@@ -10,14 +10,14 @@
 namespace slipwise {
 namespace {
 
-InputTrack track(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
+InputHistory history(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
   const std::vector<double> vy(t.size(), 0.0);
   return {t, v, vy, omega};
 }
 
 TEST_CASE("a step of the input shows after the delay, and then closes by the lag") {
-  const ActuatorModel actuator{.lag_v = 0.4, .delay_v = 0.3, .gain_v = 0.8};
-  const InputTrack inputs = track({0.0, 1.0}, {0.0, 2.0}, {0.0, 0.0});
+  const ActuatorModel actuator{.time_constant_v = 0.4, .delay_v = 0.3, .gain_v = 0.8};
+  const InputHistory inputs = history({0.0, 1.0}, {0.0, 2.0}, {0.0, 0.0});
   const std::vector<double> times{0.5, 1.2, 1.3, 1.7, 2.5};
   const ActuatorOutput output = actuator_output(inputs, actuator, times, {});
   CHECK(output.v[1] == 0.0);
@@ -27,8 +27,8 @@ TEST_CASE("a step of the input shows after the delay, and then closes by the lag
 }
 
 TEST_CASE("the drive does what was measured at the first moment, and forgets it by the lag") {
-  const ActuatorModel actuator{.lag_v = 0.5, .lag_omega = 0.25};
-  const ActuatorOutput output = actuator_output(track({0.0}, {1.0}, {-1.0}), actuator, std::vector{2.0, 2.5},
+  const ActuatorModel actuator{.time_constant_v = 0.5, .time_constant_omega = 0.25};
+  const ActuatorOutput output = actuator_output(history({0.0}, {1.0}, {-1.0}), actuator, std::vector{2.0, 2.5},
                                                 {.v = 3.0, .vy = 0.0, .omega = 1.0});
   CHECK(output.v[0] == 3.0);
   CHECK(output.omega[0] == 1.0);
@@ -37,19 +37,19 @@ TEST_CASE("the drive does what was measured at the first moment, and forgets it 
 }
 
 TEST_CASE("an input that repeats itself, and moments in between, change nothing") {
-  const ActuatorModel actuator{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.07};
+  const ActuatorModel actuator{.time_constant_v = 0.3, .time_constant_omega = 0.2, .delay_v = 0.07};
   const ActuatorOutput sparse =
-      actuator_output(track({0.0, 1.0}, {1.0, 0.2}, {0.5, -0.5}), actuator, std::vector{0.0, 1.9}, {});
+      actuator_output(history({0.0, 1.0}, {1.0, 0.2}, {0.5, -0.5}), actuator, std::vector{0.0, 1.9}, {});
   const ActuatorOutput dense =
-      actuator_output(track({0.0, 0.4, 1.0, 1.3}, {1.0, 1.0, 0.2, 0.2}, {0.5, 0.5, -0.5, -0.5}), actuator,
+      actuator_output(history({0.0, 0.4, 1.0, 1.3}, {1.0, 1.0, 0.2, 0.2}, {0.5, 0.5, -0.5, -0.5}), actuator,
                       std::vector{0.0, 0.3, 0.41, 1.1, 1.9}, {});
   CHECK(dense.v.back() == doctest::Approx(sparse.v.back()).epsilon(1e-14));
   CHECK(dense.omega.back() == doctest::Approx(sparse.omega.back()).epsilon(1e-14));
 }
 
 TEST_CASE("the integral of the output is the distance of the drive's steps") {
-  const ActuatorModel actuator{.lag_v = 0.3, .delay_v = 0.12, .gain_v = 1.1};
-  const InputTrack inputs = track({0.0, 0.5, 1.1}, {1.0, -0.4, 0.8}, {0.0, 0.0, 0.0});
+  const ActuatorModel actuator{.time_constant_v = 0.3, .delay_v = 0.12, .gain_v = 1.1};
+  const InputHistory inputs = history({0.0, 0.5, 1.1}, {1.0, -0.4, 0.8}, {0.0, 0.0, 0.0});
   constexpr int kParts = 4000;
   std::vector<double> times{0.2};
   for (int i = 0; i < kParts; ++i) {
@@ -68,7 +68,7 @@ TEST_CASE("the integral of the output is the distance of the drive's steps") {
   CHECK(sum == doctest::Approx(distance).epsilon(1e-6));
 }
 
-TEST_CASE("no moments give no output") { CHECK(actuator_output(track({0.0}, {1.0}, {0.0}), {}, {}, {}).v.empty()); }
+TEST_CASE("no moments give no output") { CHECK(actuator_output(history({0.0}, {1.0}, {0.0}), {}, {}, {}).v.empty()); }
 
 }  // namespace
 }  // namespace slipwise

@@ -18,22 +18,24 @@ const std::vector<double> kTurns{0.1, -0.6, 0.8, 0.8, 0.0, 0.3};
 const std::vector<double> kStill(6, 0.0);
 const std::vector<double> kEdges{0.45, 0.6, 0.77, 1.25, 1.4};
 
-InputTrack commands() { return {kTimes, kSpeeds, kStill, kTurns}; }
+InputHistory commands() { return {kTimes, kSpeeds, kStill, kTurns}; }
 
 ActuatorAxis axis_of(const Eigen::VectorXd& p) {
-  return {&BodyTwist::omega, {.gain = p[2], .lag = p[0], .slow_share = p[3], .slow_lag = p[4]}, p[1]};
+  return {&BodyTwist::omega,
+          {.gain = p[2], .time_constant = p[0], .slow_fraction = p[3], .slow_time_constant = p[4]},
+          p[1]};
 }
 
 TEST_CASE("an axis's means sum to what the whole actuator drives") {
-  const ActuatorModel actuator{.lag_v = 0.2,
-                               .lag_omega = 0.3,
+  const ActuatorModel actuator{.time_constant_v = 0.2,
+                               .time_constant_omega = 0.3,
                                .delay_v = 0.1,
                                .delay_omega = 0.13,
                                .gain_omega = 0.9,
-                               .slow_share_omega = 0.3,
-                               .slow_lag_omega = 0.8};
+                               .slow_fraction_omega = 0.3,
+                               .slow_time_constant_omega = 0.8};
   const ActuatorAxis axis{&BodyTwist::omega, yaw_rate_response(actuator), actuator.delay_omega};
-  const InputTrack inputs = commands();
+  const InputHistory inputs = commands();
   const double long_before = -20.0;
   const std::vector<double> all{long_before, 0.45, 0.6, 0.77, 1.25, 1.4};
   const AxisMotion motion = axis_motion(inputs, axis, settled_axis(inputs, axis, long_before), all);
@@ -47,8 +49,9 @@ TEST_CASE("an axis's means sum to what the whole actuator drives") {
 }
 
 TEST_CASE("an axis that is followed in two stretches ends as in one") {
-  const ActuatorAxis axis{&BodyTwist::v, {.gain = 1.1, .lag = 0.25, .slow_share = -0.2, .slow_lag = 1.5}, 0.08};
-  const InputTrack inputs = commands();
+  const ActuatorAxis axis{
+      &BodyTwist::v, {.gain = 1.1, .time_constant = 0.25, .slow_fraction = -0.2, .slow_time_constant = 1.5}, 0.08};
+  const InputHistory inputs = commands();
   const AxisMotion whole = axis_motion(inputs, axis, {.fast = 0.2, .slow = -0.1}, kEdges);
   const AxisMotion first = axis_motion(inputs, axis, {.fast = 0.2, .slow = -0.1}, std::span(kEdges).first(3));
   const AxisMotion rest =
@@ -60,7 +63,7 @@ TEST_CASE("an axis that is followed in two stretches ends as in one") {
 TEST_CASE("an axis's derivatives are its derivatives") {
   Eigen::VectorXd at(kAxisParameters);
   at << 0.3, 0.13, 0.9, 0.3, 0.8, 0.2, -0.1;
-  const InputTrack inputs = commands();
+  const InputHistory inputs = commands();
   const auto motion = [&](const Eigen::VectorXd& p) {
     return axis_motion(inputs, axis_of(p), {.fast = p[5], .slow = p[6]}, kEdges);
   };

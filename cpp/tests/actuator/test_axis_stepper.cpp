@@ -12,13 +12,13 @@ namespace slipwise {
 namespace {
 
 constexpr int kN = 6;
-constexpr AxisPlaces kPlaces{.lag = 0, .delay = 1, .gain = 2, .slow_share = 3, .slow_lag = 4};
+constexpr AxisPlaces kPlaces{.time_constant = 0, .delay = 1, .gain = 2, .slow_fraction = 3, .slow_time_constant = 4};
 constexpr Eigen::Index kFactor = 5;  // of the inputs, which no axis knows of
 constexpr std::array kInputs{1.0, -0.5, 0.8};
 constexpr std::array kDurations{0.3, 0.2, 0.4};
 
 AxisResponse response_of(const Eigen::VectorXd& at) {
-  return {.gain = at[2], .lag = at[0], .slow_share = at[3], .slow_lag = at[4]};
+  return {.gain = at[2], .time_constant = at[0], .slow_fraction = at[3], .slow_time_constant = at[4]};
 }
 
 /// By how much the i-th step lasts longer with place 1.
@@ -89,10 +89,10 @@ TEST_CASE("following ends where advancing does") {
 }
 
 TEST_CASE("fast and slow mode of a settled axis make up the gain") {
-  AxisStepper<kN> axis({.gain = 0.7, .lag = 0.1, .slow_share = 0.4, .slow_lag = 2.0}, kPlaces);
+  AxisStepper<kN> axis({.gain = 0.7, .time_constant = 0.1, .slow_fraction = 0.4, .slow_time_constant = 2.0}, kPlaces);
   axis.settle(2.0);
   CHECK(axis.whole().value == doctest::Approx(1.4));
-  CHECK(axis.whole().derivative[kPlaces.slow_share] == doctest::Approx(0.0));
+  CHECK(axis.whole().derivative[kPlaces.slow_fraction] == doctest::Approx(0.0));
   CHECK(axis.whole().derivative[kPlaces.gain] == doctest::Approx(2.0));
 }
 

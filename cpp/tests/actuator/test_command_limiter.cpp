@@ -13,7 +13,7 @@ namespace slipwise {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr AxisLimits kAxis{.dead_band = 0.1, .top = 2.0, .acceleration = 1.0, .braking = 4.0};
+constexpr AxisLimits kAxis{.dead_band = 0.1, .saturation = 2.0, .slew_rate_up = 1.0, .slew_rate_down = 4.0};
 
 AxisRamp ramp_at(const AxisLimits& limits, double state, double command) {
   AxisRamp ramp(limits);
@@ -53,10 +53,10 @@ TEST_CASE("a piece that is cut short keeps the mean of the whole, and the axis s
 }
 
 TEST_CASE("an axis without rates is there at once, and one that only brakes slowly speeds up at once") {
-  AxisRamp free({.top = 2.0});
+  AxisRamp free({.saturation = 2.0});
   free.aim(5.0);
   CHECK(free.state() == 2.0);
-  AxisRamp coasting({.braking = 0.5});
+  AxisRamp coasting({.slew_rate_down = 0.5});
   coasting.aim(1.0);
   CHECK(coasting.state() == 1.0);
   CHECK_FALSE(coasting.ramps_to(2.0));
@@ -67,10 +67,10 @@ TEST_CASE("an axis without rates is there at once, and one that only brakes slow
 }
 
 TEST_CASE("after the seconds that it says are left, a drive gives its target") {
-  const CommandLimits limits{.speed = {.acceleration = 1.0, .braking = 2.0},
-                             .yaw_rate = {.acceleration = 1.5, .braking = 1.5},
-                             .side = {.top = 1.2, .acceleration = 0.8, .braking = 0.8},
-                             .track = 0.6};
+  const CommandLimits limits{.speed = {.slew_rate_up = 1.0, .slew_rate_down = 2.0},
+                             .yaw_rate = {.slew_rate_up = 1.5, .slew_rate_down = 1.5},
+                             .side = {.saturation = 1.2, .slew_rate_up = 0.8, .slew_rate_down = 0.8},
+                             .wheel_separation = 0.6};
   CommandLimiter limiter(limits);
   limiter.settle({.v = -0.5, .vy = 0.0, .omega = 0.2});
   limiter.tell({.v = 1.0, .vy = 0.3, .omega = -1.0});
@@ -90,7 +90,7 @@ TEST_CASE("after the seconds that it says are left, a drive gives its target") {
 
 TEST_CASE("a drive that is placed at what it gives goes on giving it, also behind gains of its sides") {
   const CommandLimits limits{
-      .side = {.acceleration = 1.0, .braking = 1.0}, .track = 0.5, .gain_v = 0.8, .gain_omega = 0.5};
+      .side = {.slew_rate_up = 1.0, .slew_rate_down = 1.0}, .wheel_separation = 0.5, .gain_v = 0.8, .gain_omega = 0.5};
   CommandLimiter limiter(limits);
   limiter.place({.v = 0.7, .vy = 0.0, .omega = 0.3});
   CHECK(limiter.seconds_left() == doctest::Approx(0.0));
@@ -100,17 +100,17 @@ TEST_CASE("a drive that is placed at what it gives goes on giving it, also behin
 }
 
 TEST_CASE("sides at their top keep what is left of speed and turn") {
-  const CommandLimits limits{.side = {.top = 1.0}, .track = 1.0};
+  const CommandLimits limits{.side = {.saturation = 1.0}, .wheel_separation = 1.0};
   const BodyTwist given = settled(limits, {.v = 0.8, .vy = 0.0, .omega = 1.0});  // sides 0.3 and 1.3
   CHECK(given.v == doctest::Approx(0.65));
   CHECK(given.omega == doctest::Approx(0.7));
 }
 
 TEST_CASE("a limiter of limits that are none is refused") {
-  CHECK_THROWS_AS(CommandLimiter({.speed = {.top = -1.0}}), std::invalid_argument);
-  CHECK_THROWS_AS(settled({.side = {.top = 1.0}, .track = 0.0}, {}), std::invalid_argument);
-  CHECK_THROWS_AS(settled({.yaw_rate = {.acceleration = 0.0}}, {}), std::invalid_argument);
-  CHECK(settled({.speed = {.top = kNone}}, {.v = 9.0}).v == 9.0);
+  CHECK_THROWS_AS(CommandLimiter({.speed = {.saturation = -1.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(settled({.side = {.saturation = 1.0}, .wheel_separation = 0.0}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(settled({.yaw_rate = {.slew_rate_up = 0.0}}, {}), std::invalid_argument);
+  CHECK(settled({.speed = {.saturation = kNone}}, {.v = 9.0}).v == 9.0);
 }
 
 }  // namespace

@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-InputTrack track(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
+InputHistory history(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
   const std::vector<double> vy(t.size(), 0.25);
   return {t, v, vy, omega};
 }
 
 /// Integral of the speed from the first sample to `until`.
-double distance(const InputTrack& inputs, double until) {
+double distance(const InputHistory& inputs, double until) {
   double sum = 0.0;
   for (std::size_t i = 0; i < inputs.size() && inputs.time(i) < until; ++i) {
     const double next = i + 1 < inputs.size() ? std::min(inputs.time(i + 1), until) : until;
@@ -32,16 +32,16 @@ double distance(const InputTrack& inputs, double until) {
 }
 
 TEST_CASE("without limits the commands pass as they are") {
-  const InputTrack commands = track({0.0, 1.0}, {1.0, -2.0}, {0.5, 0.0});
-  const InputTrack limited = limited_track(commands, {});
+  const InputHistory commands = history({0.0, 1.0}, {1.0, -2.0}, {0.5, 0.0});
+  const InputHistory limited = limited_inputs(commands, {});
   REQUIRE(limited.size() == commands.size());
   CHECK(limited.sample(1) == commands.sample(1));
 }
 
-TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a top cuts; both signs alike") {
-  const CommandLimits limits{.speed = {.dead_band = 0.2, .top = 1.0}};
-  const InputTrack limited =
-      limited_track(track({0, 1, 2, 3, 4}, {0.1, 0.3, 5.0, -0.19, -7.0}, {1, 1, 1, 1, 1}), limits);
+TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a saturation cuts; both signs alike") {
+  const CommandLimits limits{.speed = {.dead_band = 0.2, .saturation = 1.0}};
+  const InputHistory limited =
+      limited_inputs(history({0, 1, 2, 3, 4}, {0.1, 0.3, 5.0, -0.19, -7.0}, {1, 1, 1, 1, 1}), limits);
   CHECK(limited.at(0.5).v == 0.0);
   CHECK(limited.at(1.5).v == 0.3);
   CHECK(limited.at(2.5).v == 1.0);
@@ -52,8 +52,8 @@ TEST_CASE("a dead-band blocks what is slower and passes the rest whole; a top cu
 }
 
 TEST_CASE("ramps keep the distance exactly, through zero with braking first") {
-  const CommandLimits limits{.speed = {.acceleration = 2.0, .braking = 4.0}};
-  const InputTrack limited = limited_track(track({0.0, 3.0}, {1.0, -1.0}, {0.0, 0.0}), limits);
+  const CommandLimits limits{.speed = {.slew_rate_up = 2.0, .slew_rate_down = 4.0}};
+  const InputHistory limited = limited_inputs(history({0.0, 3.0}, {1.0, -1.0}, {0.0, 0.0}), limits);
   CHECK(distance(limited, 3.0) == doctest::Approx(3.0 - 0.25));  // 0.5 s up to 1 m/s
   // 0.25 s down to zero, 0.5 s up to -1 m/s.
   CHECK(distance(limited, 5.0) == doctest::Approx(2.75 + 0.125 - 0.25 - 1.25));
@@ -64,25 +64,26 @@ TEST_CASE("ramps keep the distance exactly, through zero with braking first") {
 TEST_CASE("a ramp cut short by a command errs in distance by no more than stated") {
   const double rate = 2.0;
   const double piece = 0.02;
-  const CommandLimits limits{.speed = {.acceleration = rate, .braking = rate}};
-  const InputTrack limited = limited_track(track({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
+  const CommandLimits limits{.speed = {.slew_rate_up = rate, .slew_rate_down = rate}};
+  const InputHistory limited = limited_inputs(history({0.0, 0.33}, {1.0, 0.0}, {0.0, 0.0}), limits, piece);
   CHECK(std::abs(distance(limited, 0.33) - 0.5 * rate * 0.33 * 0.33) <= rate * piece * piece / 8.0 + 1e-12);
 }
 
 TEST_CASE("commands at equal intervals are cut exactly, from the second on") {
-  const CommandLimits limits{.speed = {.acceleration = 2.0, .braking = 2.0}};
+  const CommandLimits limits{.speed = {.slew_rate_up = 2.0, .slew_rate_down = 2.0}};
   std::vector<double> t, v, omega(12, 0.0);
   for (int k = 0; k < 12; ++k) {
     t.push_back(0.05 * k);
     v.push_back(k < 6 ? 5.0 : -5.0);
   }
-  const InputTrack limited = limited_track(track(t, v, omega), limits);
+  const InputHistory limited = limited_inputs(history(t, v, omega), limits);
   const double reached = distance(limited, 0.55) - distance(limited, 0.05);
   CHECK(reached == doctest::Approx(0.3 * 0.3 - 0.05 * 0.05 + 0.3 * 0.3 - 0.05 * 0.05).epsilon(1e-12));
 }
 
 TEST_CASE("a drive that was commanded something for long gives what its limits leave of it") {
-  const CommandLimits limits{.speed = {.top = 0.5, .acceleration = 1.0}, .side = {.top = 0.6}, .track = 0.5};
+  const CommandLimits limits{
+      .speed = {.saturation = 0.5, .slew_rate_up = 1.0}, .side = {.saturation = 0.6}, .wheel_separation = 0.5};
   CommandLimiter limiter(limits);
   limiter.settle({.v = 3.0, .vy = 0.0, .omega = 1.0});
   CHECK(limiter.seconds_left() == 0.0);
@@ -93,38 +94,41 @@ TEST_CASE("a drive that was commanded something for long gives what its limits l
 }
 
 TEST_CASE("sides are limited each for itself, behind gains") {
-  const CommandLimits limits{.side = {.top = 1.0}, .track = 0.5, .gain_v = 2.0, .gain_omega = 0.5};
-  const InputTrack limited = limited_track(track({0.0}, {0.4}, {4.0}), limits);
+  const CommandLimits limits{.side = {.saturation = 1.0}, .wheel_separation = 0.5, .gain_v = 2.0, .gain_omega = 0.5};
+  const InputHistory limited = limited_inputs(history({0.0}, {0.4}, {4.0}), limits);
   // Asked: 0.8 -+ 0.5: left 0.3, right 1.3, cut to 1.
   CHECK(limited.at(0.0).v == doctest::Approx(0.65));
   CHECK(limited.at(0.0).omega == doctest::Approx(1.4));
 }
 
 TEST_CASE("what comes out until some moment does not depend on later commands") {
-  const CommandLimits limits{.speed = {.dead_band = 0.1, .top = 1.0, .acceleration = 0.7, .braking = 1.3},
-                             .side = {.top = 0.8, .acceleration = 0.9, .braking = 1.1},
-                             .track = 0.6};
-  const InputTrack whole = limited_track(track({0, 0.3, 0.71, 1.4}, {0.5, -0.8, 1.5, 0.0}, {1, -1, 0.3, 0}), limits);
-  const InputTrack early = limited_track(track({0, 0.3}, {0.5, -0.8}, {1, -1}), limits);
+  const CommandLimits limits{.speed = {.dead_band = 0.1, .saturation = 1.0, .slew_rate_up = 0.7, .slew_rate_down = 1.3},
+                             .side = {.saturation = 0.8, .slew_rate_up = 0.9, .slew_rate_down = 1.1},
+                             .wheel_separation = 0.6};
+  const InputHistory whole =
+      limited_inputs(history({0, 0.3, 0.71, 1.4}, {0.5, -0.8, 1.5, 0.0}, {1, -1, 0.3, 0}), limits);
+  const InputHistory early = limited_inputs(history({0, 0.3}, {0.5, -0.8}, {1, -1}), limits);
   for (double t = 0.0; t < 0.71; t += 0.003) {
     CHECK(whole.at(t) == early.at(t));
   }
 }
 
 TEST_CASE("limits that make no sense are refused with the axis and what to give") {
-  const InputTrack commands = track({0.0}, {1.0}, {0.0});
-  CHECK_THROWS_WITH_AS(limited_track(commands, {.yaw_rate = {.top = -1.0}}),
+  const InputHistory commands = history({0.0}, {1.0}, {0.0});
+  CHECK_THROWS_WITH_AS(limited_inputs(commands, {.yaw_rate = {.saturation = -1.0}}),
                        doctest::Contains("yaw rate axis's top speed"), std::invalid_argument);
-  CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
-  CHECK_THROWS_AS(limited_track(commands, {.speed = {.acceleration = 0.0}}), std::invalid_argument);
-  CHECK_THROWS_AS(limited_track(commands, {.side = {.braking = std::nan("")}}), std::invalid_argument);
-  CHECK_THROWS_AS(limited_track(commands, {.side = {.top = 1.0}, .track = 0.0}), std::invalid_argument);
-  CHECK_THROWS_AS(limited_track(commands, {.speed = {.dead_band = kNone}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = -0.1}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.slew_rate_up = 0.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.side = {.slew_rate_down = std::nan("")}}), std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.side = {.saturation = 1.0}, .wheel_separation = 0.0}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(limited_inputs(commands, {.speed = {.dead_band = kNone}}), std::invalid_argument);
 }
 
 TEST_CASE("the actuator's output is that of its drive steps") {
-  const InputTrack inputs = track({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
-  const ActuatorModel actuator{.lag_v = 0.3, .lag_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
+  const InputHistory inputs = history({0.0, 0.5, 1.1}, {1.0, -0.5, 0.7}, {0.2, 0.9, -0.4});
+  const ActuatorModel actuator{
+      .time_constant_v = 0.3, .time_constant_omega = 0.2, .delay_v = 0.13, .delay_omega = 0.07, .gain_v = 0.9};
   const std::vector<double> times{0.0, 2.0, 2.0005};
   const ActuatorOutput output = actuator_output(inputs, actuator, times, {});
   const ActuatorSteps steps = actuator_steps(inputs, actuator, {.start = 2.0, .end = 2.0005});

@@ -14,30 +14,30 @@ namespace slipwise {
 namespace {
 
 constexpr double kPeriod = 0.05;  // [s]
-constexpr CommandLimits kRamps{.speed = {.acceleration = 0.8, .braking = 1.7},
-                               .yaw_rate = {.acceleration = 1.3, .braking = 0.9}};
+constexpr CommandLimits kRamps{.speed = {.slew_rate_up = 0.8, .slew_rate_down = 1.7},
+                               .yaw_rate = {.slew_rate_up = 1.3, .slew_rate_down = 0.9}};
 
 struct Point {
-  double lag, slow_lag, share, gain, delay;
+  double time_constant, slow_time_constant, fraction, gain, delay;
   double sent;  ///< before the start [s]
   double part;  ///< of the command's speed, measured
   double command;
 };
 
 ActuatorModel actuator_of(const Point& at) {
-  return {.lag_v = at.lag,
-          .lag_omega = at.lag,
+  return {.time_constant_v = at.time_constant,
+          .time_constant_omega = at.time_constant,
           .delay_v = at.delay,
           .delay_omega = at.delay,
           .gain_v = at.gain,
           .gain_omega = at.gain,
-          .slow_share_v = at.share,
-          .slow_share_omega = at.share,
-          .slow_lag_v = at.slow_lag,
-          .slow_lag_omega = at.slow_lag};
+          .slow_fraction_v = at.fraction,
+          .slow_fraction_omega = at.fraction,
+          .slow_time_constant_v = at.slow_time_constant,
+          .slow_time_constant_omega = at.slow_time_constant};
 }
 
-InputTrack held(const Point& at) {
+InputHistory held(const Point& at) {
   std::vector<double> t;
   std::vector<BodyTwist> twist;
   for (double now = 0.0; now < at.sent + 4.0; now += kPeriod) {
@@ -49,7 +49,7 @@ InputTrack held(const Point& at) {
 
 std::string text_of(const Point& at) {
   std::string text;
-  for (const double value : {at.slow_lag, at.share, at.delay, at.sent, at.part, at.command}) {
+  for (const double value : {at.slow_time_constant, at.fraction, at.delay, at.sent, at.part, at.command}) {
     text += std::to_string(value) + " ";
   }
   return text;
@@ -57,13 +57,13 @@ std::string text_of(const Point& at) {
 
 template <typename Check>
 void for_all_points(const Check& check) {
-  for (const double slow_lag : {0.5, 1.5, 6.0}) {
-    for (const double share : {0.0, 0.14, 0.5, 1.0}) {
+  for (const double slow_time_constant : {0.5, 1.5, 6.0}) {
+    for (const double fraction : {0.0, 0.14, 0.5, 1.0}) {
       for (const double delay : {0.0, 0.13, 0.4}) {
         for (const double sent : {0.0, 0.05, 0.31, 0.9}) {
           for (const double part : {0.0, 0.2, 0.7, 1.0}) {
             for (const double command : {1.0, -0.6}) {
-              check(Point{0.3 * slow_lag, slow_lag, share, 0.8, delay, sent, part, command});
+              check(Point{0.3 * slow_time_constant, slow_time_constant, fraction, 0.8, delay, sent, part, command});
             }
           }
         }
@@ -73,7 +73,7 @@ void for_all_points(const Check& check) {
 }
 
 /// Speeds of the drive over the steps after the start.
-void check_law(const Point& at, const InputTrack& inputs, double tolerance) {
+void check_law(const Point& at, const InputHistory& inputs, double tolerance) {
   const double goal = at.gain * at.command;
   const BodyTwist measured{at.part * goal, 0.0, 0.5 * at.part * goal};
   const auto drive =
@@ -105,15 +105,15 @@ TEST_CASE("so it does behind limits that ramp") {
     CAPTURE(text_of(at));
     const double goal = at.part * at.gain * at.command;
     const MeasuredStart start = measured_start(actuator_of(at), at.sent, {goal, 0.0, 0.5 * goal});
-    check_law(at, limited_track(held(at), kRamps, start), 1e-9);
+    check_law(at, limited_inputs(held(at), kRamps, start), 1e-9);
   });
 }
 
 TEST_CASE("a measured speed that the commands explain changes nothing") {
   const Point at{0.3, 1.5, 0.4, 0.8, 0.13, 0.0, 0.0, 1.0};
-  const InputTrack inputs(std::vector{0.0, 2.0, 3.1, 3.4},
-                          std::vector{BodyTwist{1.0, 0.0, 0.4}, BodyTwist{0.0, 0.0, -0.4}, BodyTwist{0.6, 0.0, 0.1},
-                                      BodyTwist{0.5, 0.0, 0.2}});
+  const InputHistory inputs(std::vector{0.0, 2.0, 3.1, 3.4},
+                            std::vector{BodyTwist{1.0, 0.0, 0.4}, BodyTwist{0.0, 0.0, -0.4}, BodyTwist{0.6, 0.0, 0.1},
+                                        BodyTwist{0.5, 0.0, 0.2}});
   const ActuatorModel actuator = actuator_of(at);
   constexpr double kMoment = 1e-6;
   for (const double start : {0.05, 0.9, 2.4, 3.2, 3.8}) {

@@ -20,7 +20,7 @@ namespace {
 
 /// From a row of inputs and poses to segments.
 struct Cutting {
-  InputHistory inputs{0.5};
+  InputBuffer inputs{0.5};
   StampGate stamps;
   SpeedGate speeds;
   PoseGate gate;
@@ -116,7 +116,7 @@ TEST_CASE("cut segments are the same, saved and loaded at any row") {
 TEST_CASE("inputs without their greatest speeds are refused") {
   archive::Writer writer;
   writer(0.5, std::vector<InputSample>(1), std::vector<BodyTwist>(), 0.0);
-  InputHistory inputs(0.5);
+  InputBuffer inputs(0.5);
   archive::Reader reader(writer.bytes());
   CHECK_THROWS_AS(reader(inputs), std::invalid_argument);
 }

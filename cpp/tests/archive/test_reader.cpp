@@ -118,7 +118,7 @@ TEST_CASE("every kind of value comes back") {
   CHECK(bytes_of(back) == bytes_of(all));
 }
 
-TEST_CASE("an object that pointers share is shared again, and no pointer stays none") {
+TEST_CASE("an object that pointers fraction is shared again, and no pointer stays none") {
   const All back = read<All>(bytes_of(sample()));
   CHECK(back.first == back.second);
   CHECK(read<All>(bytes_of(All{})).first == nullptr);

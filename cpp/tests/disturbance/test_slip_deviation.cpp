@@ -14,7 +14,7 @@ const MotionModel& sample_motion() {
   return model;
 }
 
-const SlipDisturbance kLaw{.drift = 0.5, .turn = 0.5, .time_constant = 10.0};
+const SlipDisturbance kLaw{.linear = 0.5, .angular = 0.5, .time_constant = 10.0};
 
 DisturbedTerms terms() {
   return disturbed_terms(sample_motion(), Eigen::VectorXd::Constant(sample_motion().size(), 0.2));

@@ -30,9 +30,9 @@ MotionPosterior known_posterior(const MotionModel& model) {
           .noise_scale = Eigen::Vector3d::Ones()};
 }
 
-/// Segments of 1 s of a robot whose slip has these shares of V and w.
+/// Segments of 1 s of a robot whose slip has these fractions of V and w.
 template <typename SlipAt>
-std::vector<Segment> drive(const MotionModel& model, const InputTrack& inputs, int count, SlipAt slip_at) {
+std::vector<Segment> drive(const MotionModel& model, const InputHistory& inputs, int count, SlipAt slip_at) {
   std::mt19937_64 random(7);
   std::vector<Segment> segments;
   for (int i = 0; i < count; ++i) {
@@ -50,7 +50,7 @@ std::span<const Segment> before(const std::vector<Segment>& segments, std::ptrdi
   return std::span(segments).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(i - first));
 }
 
-std::vector<DrivenSegment> driven(const InputTrack& inputs, std::span<const Segment> segments) {
+std::vector<DrivenSegment> driven(const InputHistory& inputs, std::span<const Segment> segments) {
   std::vector<DrivenSegment> all;
   for (const Segment& segment : segments) {
     all.push_back({.inputs = inputs, .segment = segment});
@@ -58,12 +58,12 @@ std::vector<DrivenSegment> driven(const InputTrack& inputs, std::span<const Segm
   return all;
 }
 
-ExpectedPose expected(const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputTrack& inputs,
+ExpectedPose expected(const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
                       std::span<const Segment> recent, const Segment& segment) {
   return slip.predict(posterior, slip.now(posterior, driven(inputs, recent)), {.inputs = inputs, .segment = segment});
 }
 
-void learn(DisturbanceFilter& slip, const MotionPosterior& posterior, const InputTrack& inputs,
+void learn(DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
            const std::vector<Segment>& segments, std::ptrdiff_t i) {
   const SlipNow now = slip.now(posterior, driven(inputs, before(segments, i)));
   slip.learn(posterior, now, {.inputs = inputs, .segment = segments[static_cast<std::size_t>(i)]});
@@ -76,7 +76,7 @@ struct Followed {
   double nis = 0.0;          ///< mean over the second half
 };
 
-Followed follow(const MotionPosterior& posterior, const InputTrack& inputs, const std::vector<Segment>& segments) {
+Followed follow(const MotionPosterior& posterior, const InputHistory& inputs, const std::vector<Segment>& segments) {
   Followed found{.slip = DisturbanceFilter(DisturbanceSettings{})};
   for (std::ptrdiff_t i = 0; i < std::ssize(segments); ++i) {
     const Segment& next = segments[static_cast<std::size_t>(i)];
@@ -96,7 +96,7 @@ Followed follow(const MotionPosterior& posterior, const InputTrack& inputs, cons
 struct Setting {
   MotionModel model{named_basis("edd-2"), {}};
   std::mt19937_64 random{3};
-  InputTrack inputs = tests::random_inputs(random, 420.0, 0.05);
+  InputHistory inputs = tests::random_inputs(random, 420.0, 0.05);
 };
 
 TEST_CASE("slip that holds still is not said to disturbance, and predictions stay as they were") {
@@ -125,7 +125,8 @@ TEST_CASE("yaw the slip disturbance is found in its channel, followed and predic
   const Followed found = follow(posterior, s.inputs, segments);
   double turning = 0.0;
   for (std::size_t i = 0; i < found.slip.law().candidates.size(); ++i) {
-    turning += found.slip.law().candidates[i].turn > 0.0 ? found.slip.law().weights[static_cast<Eigen::Index>(i)] : 0.0;
+    turning +=
+        found.slip.law().candidates[i].angular > 0.0 ? found.slip.law().weights[static_cast<Eigen::Index>(i)] : 0.0;
   }
   CHECK(turning > 0.9);
   CHECK(found.error < 0.6 * found.plain_error);
@@ -139,7 +140,7 @@ TEST_CASE("what was observed is let go with time, and the covariance comes back 
   const auto segments = drive(s.model, s.inputs, 12, [](int) { return Eigen::Vector2d(-0.1, -0.15); });
   const DisturbanceFilter slip(DisturbanceSettings{.fractions = {0.3}, .time_constants = {20.0}, .white = 1e-6});
   const std::vector<double> start{0.0}, v{1.0}, vy{0.0}, omega{0.5};
-  const InputTrack steady(start, v, vy, omega);
+  const InputHistory steady(start, v, vy, omega);
   const auto shift = [&](double after) {
     const Segment segment{.start = 13.0 + after, .end = 14.0 + after};
     const ExpectedPose with = expected(slip, posterior, steady, segments, segment);

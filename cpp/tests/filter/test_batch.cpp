@@ -34,7 +34,7 @@ std::vector<BatchDatum> data_of(const MotionModel& model, const tests::Simulated
 /// Straight windows that meet, for a model whose chart is linear in its parameters.
 struct LinearDrive {
   MotionModel model = straight_model();
-  InputTrack inputs = ramp();
+  InputHistory inputs = ramp();
   std::vector<BatchDatum> data;
 
   explicit LinearDrive(const Eigen::Matrix3d& shared) {
@@ -51,7 +51,7 @@ struct LinearDrive {
     return {Basis("linear", lon, lat, none), {}};
   }
 
-  static InputTrack ramp() {
+  static InputHistory ramp() {
     std::vector<double> t, v, zero;
     for (int i = 0; i < 20; ++i) {
       t.push_back(i);
@@ -88,7 +88,7 @@ TEST_CASE("on a linear problem the filter and the batch fit agree") {
   CHECK((fit.estimate.covariance - filtered.covariance).norm() < 1e-10);
 }
 
-TEST_CASE("errors that neighbours share are weighted as generalised least squares weighs them") {
+TEST_CASE("errors that neighbours fraction are weighted as generalised least squares weighs them") {
   Eigen::Matrix3d shared;
   shared << -0.004, 0.001, 0.0, 0.0, -0.003, 0.002, 0.001, 0.0, -0.004;
   const LinearDrive drive(shared);

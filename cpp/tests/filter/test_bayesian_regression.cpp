@@ -169,7 +169,7 @@ TEST_CASE("the Student-t interval holds as often as it says, and is wider than t
     const RegressionPrediction at = regression.predict(test.features);
     inside += std::abs(test.output - at.mean) < 2.2622 * at.scale ? 1 : 0;
   }
-  CHECK(inside / static_cast<double>(runs) == doctest::Approx(0.95).epsilon(0.011));  // three sigma of a share
+  CHECK(inside / static_cast<double>(runs) == doctest::Approx(0.95).epsilon(0.011));  // three sigma of a fraction
 }
 
 TEST_CASE("wrong input is refused with what is wrong") {

@@ -123,8 +123,8 @@ TEST_CASE("slices of a refit change nothing but when the work is done") {
   CHECK(slices > 100);
 }
 
-/// Mean square of errors over stated standard deviations, of V's and w's share, over drives whose noise is white and of
-/// one size, given as a fraction of the motion and ten times too large.
+/// Mean square of errors over reported standard deviations, of V's and w's fraction, over drives whose noise is white
+/// and of one size, given as a fraction of the motion and ten times too large.
 Eigen::Vector2d squared_sigmas(bool adapt, bool stated) {
   const MotionModel model(named_basis("edd-2"), {});
   constexpr int kDrives = 150;
@@ -149,7 +149,7 @@ Eigen::Vector2d squared_sigmas(bool adapt, bool stated) {
   return mean;
 }
 
-TEST_CASE("standard deviations stated are true though noise is not of the shape commanded") {
+TEST_CASE("standard deviations reported are true though noise is not of the shape commanded") {
   const Eigen::Vector2d plain = squared_sigmas(true, false);
   const Eigen::Vector2d stated = squared_sigmas(true, true);
   CHECK(plain.maxCoeff() < 0.75);  // too cautious
@@ -162,7 +162,7 @@ TEST_CASE("noise that is known is not judged by residuals") {
   CHECK(squared_sigmas(false, false) == squared_sigmas(false, true));
 }
 
-TEST_CASE("what is learned again after a change of ground is the new ground") {
+TEST_CASE("what is learned again after a change of terrain is the new terrain") {
   const MotionModel model(named_basis("edd-2"), {});
   CausalFilterSettings settings;
   settings.noise.shape = kTrueNoise;
@@ -198,7 +198,7 @@ TEST_CASE("forgetting gives slip its prior variance back in part, and nothing to
 TEST_CASE("a prediction's covariance has parameters, slip noise and pose noise") {
   const MotionModel model(named_basis("edd-2"), {});
   const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
-  const InputTrack inputs(t, v, zero, zero);
+  const InputHistory inputs(t, v, zero, zero);
   const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 0.0, .end = 4.0});
   const Eigen::Matrix2d parameters = Eigen::Vector2d(0.01, 0.04).asDiagonal();
   const MotionNoise shape{.psd_time = {0.25, 0.0, 0.0}, .pose_std_xy = 0.1};

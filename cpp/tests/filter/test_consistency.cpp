@@ -16,7 +16,7 @@ namespace {
 constexpr int kRuns = 20;
 
 struct Consistency {
-  double nees_per_parameter;  ///< mean over runs; 1 where the stated covariance is right
+  double nees_per_parameter;  ///< mean over runs; 1 where the reported covariance is right
   double nis_per_dimension;   ///< mean over all windows but each run's first ten
 };
 

@@ -9,7 +9,7 @@
 namespace slipwise {
 namespace {
 
-InputTrack drive(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
+InputHistory drive(const std::vector<double>& t, const std::vector<double>& v, const std::vector<double>& omega) {
   const std::vector<double> vy(t.size(), 0.0);
   return {t, v, vy, omega};
 }
@@ -23,7 +23,7 @@ TEST_CASE("before anything was driven, and at a crawl, the references are the le
 }
 
 TEST_CASE("the reference is the speed below which nine tenths of the moving time lie, backwards as forwards") {
-  const InputTrack inputs = drive({0.0, 80.0, 95.0, 100.0}, {-0.5, 1.0, 4.0, 0.0}, {0.2, -0.8, 0.0, 0.0});
+  const InputHistory inputs = drive({0.0, 80.0, 95.0, 100.0}, {-0.5, 1.0, 4.0, 0.0}, {0.2, -0.8, 0.0, 0.0});
   DrivenSpeeds speeds;
   speeds.see(inputs, {.start = 0.0, .end = 1000.0});  // standstill does not count
   CHECK(speeds.reference().v == doctest::Approx(1.0).epsilon(0.05));
@@ -31,7 +31,7 @@ TEST_CASE("the reference is the speed below which nine tenths of the moving time
 }
 
 TEST_CASE("only the time of the segments counts") {
-  const InputTrack inputs = drive({0.0, 10.0}, {0.4, 3.0}, {0.0, 0.0});
+  const InputHistory inputs = drive({0.0, 10.0}, {0.4, 3.0}, {0.0, 0.0});
   DrivenSpeeds speeds;
   speeds.see(inputs, {.start = 0.0, .end = 10.0});
   CHECK(speeds.reference().v == doctest::Approx(0.4).epsilon(0.05));

@@ -22,7 +22,7 @@ Estimate wide_prior(const MotionModel& model, double sigma = 0.2) {
 }
 
 /// Straight driving makes the last pose linear in the forward slip.
-InputTrack straight_inputs() {
+InputHistory straight_inputs() {
   const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
   return {t, v, zero, zero};
 }
@@ -89,7 +89,7 @@ TEST_CASE("the filter stays honest on its way to a short lag behind a long delay
 TEST_CASE("on a linear problem the filter is the Kalman filter") {
   const std::vector<std::string> lon{"V"}, lat{"V"}, none;
   const MotionModel model(Basis("linear", lon, lat, none), {});
-  const InputTrack inputs = straight_inputs();
+  const InputHistory inputs = straight_inputs();
   Estimate prior = wide_prior(model);
   prior.covariance(0, 1) = prior.covariance(1, 0) = 0.01;
   const Segment segment{.start = 1.0, .end = 3.0, .measured = {1.9, 0.1, 0.02}};
@@ -165,7 +165,7 @@ TEST_CASE("a residual between Huber's threshold and the gate counts for less") {
 TEST_CASE("step halving keeps a far start from diverging") {
   const MotionModel model(named_basis("edd-2"), {});
   const std::vector<double> t{0.0}, v{2.0}, vy{0.0}, omega{1.0};
-  const InputTrack inputs(t, v, vy, omega);
+  const InputHistory inputs(t, v, vy, omega);
   const Eigen::Vector2d truth(0.0, 0.9);
   Segment segment{.start = 0.0, .end = 3.0};
   segment.measured = integrate_segment(model, truth, inputs, segment).poses.back();

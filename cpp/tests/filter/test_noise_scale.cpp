@@ -14,7 +14,7 @@ const Eigen::Vector3d kExpected(0.04, 0.01, 0.0025);
 TEST_CASE("residuals of any size bring the factor to what they are, over what was expected") {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
-  NoiseScale scale({.memory = 400.0});
+  NoiseScale scale({.forgetting_time = 400.0});
   const Eigen::Vector3d truth(2.0, 0.5, 1.0);
   for (int i = 0; i < 4000; ++i) {
     const Eigen::Vector3d unit(normal(random), normal(random), normal(random));

@@ -23,7 +23,7 @@ struct Scores {
 /// (-0.1, -0.3), with this noise.
 Scores mean_scores(const Eigen::Vector2d& slip, double noise_std) {
   const MotionModel model(named_basis("edd-2"), {});
-  const InputTrack inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 11000);
+  const InputHistory inputs = tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 11000);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0.0, noise_std);
   PredictiveScore score(NoiseSettings{});

@@ -37,7 +37,7 @@ TEST_CASE("lag and delay start at their medians and slip at zero") {
   const PriorSettings settings;
   const Estimate prior = prior_estimate(model, {.v = 1.0, .omega = 1.0}, settings);
   CHECK(prior.mean.head<2>().isZero());
-  CHECK(std::exp(prior.mean[2]) == doctest::Approx(settings.lag));
+  CHECK(std::exp(prior.mean[2]) == doctest::Approx(settings.time_constant));
   CHECK(std::exp(prior.mean[5]) == doctest::Approx(settings.delay));
   CHECK(std::sqrt(prior.covariance(6, 6)) == doctest::Approx(settings.clock_offset_std));
 }

@@ -20,7 +20,7 @@ MotionModel forward_model() {
   return {Basis("forward", lon, none, none), {}};
 }
 
-InputTrack straight() {
+InputHistory straight() {
   const std::vector<double> t{0.0}, v{1.0}, zero{0.0};
   return {t, v, zero, zero};
 }
@@ -28,8 +28,8 @@ InputTrack straight() {
 Estimate prior() { return {Eigen::VectorXd::Constant(1, 0.1), Eigen::MatrixXd::Constant(1, 1, 0.04)}; }
 const IekfSettings kTrusting{.huber = 1e9, .gate = 1e18};
 
-/// Two seconds each at 1 m/s; the slip share drifts slowly.
-std::vector<BatchDatum> drifting_data(const InputTrack& inputs, std::size_t count, std::vector<double>& truth,
+/// Two seconds each at 1 m/s; the slip fraction drifts slowly.
+std::vector<BatchDatum> drifting_data(const InputHistory& inputs, std::size_t count, std::vector<double>& truth,
                                       std::uint64_t seed = 95) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -66,7 +66,7 @@ Estimate batch(const std::vector<BatchDatum>& data, double a, double added) {
 }
 
 TEST_CASE("on a linear problem the smoother is the batch solution, for both kinds of drift") {
-  const InputTrack inputs = straight();
+  const InputHistory inputs = straight();
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 30, truth);
   for (const Drift drift : {Drift::RandomWalk, Drift::MeanReverting}) {
@@ -83,7 +83,7 @@ TEST_CASE("on a linear problem the smoother is the batch solution, for both kind
 }
 
 TEST_CASE("smoothed drifting slip is nearer to the truth than one constant, and within its sigmas") {
-  const InputTrack inputs = straight();
+  const InputHistory inputs = straight();
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 100, truth);
   const auto smoothed = rts_smooth(forward_model(), prior(), data, {.length = 30.0}, kTrusting);
@@ -112,7 +112,7 @@ TEST_CASE("a parked robot forgets nothing, one that drove far is back at its pri
 }
 
 TEST_CASE("nothing to smooth and a drift without length are refused") {
-  const InputTrack inputs = straight();
+  const InputHistory inputs = straight();
   std::vector<double> truth;
   const auto data = drifting_data(inputs, 2, truth);
   CHECK_THROWS_AS(rts_smooth(forward_model(), prior(), {}), std::invalid_argument);

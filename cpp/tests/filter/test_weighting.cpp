@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of candidates: they follow the scores, come back by the share, and bad input is refused.
+// Weights of candidates: they follow the scores, come back by the fraction, and bad input is refused.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -11,9 +11,9 @@
 namespace slipwise {
 namespace {
 
-TEST_CASE("weights are tempered Bayes after a share is spread by the prior weights") {
+TEST_CASE("weights are tempered Bayes after a fraction is spread by the prior weights") {
   const Eigen::Vector2d prior(0.75, 0.25);
-  const WeightingSettings settings{.learning_rate = 0.5, .share = 0.1};
+  const WeightingSettings settings{.learning_rate = 0.5, .fraction = 0.1};
   const Eigen::VectorXd weights =
       updated_weights(Eigen::Vector2d(0.2, 0.8), Eigen::Vector2d(1.0, -1.0), prior, settings, 0);
   const double first = 0.9 * 0.2 + 0.1 * 0.75, second = (0.9 * 0.8 + 0.1 * 0.25) * std::exp(-1.0);
@@ -30,9 +30,10 @@ TEST_CASE("equal scores bring the weights back to the prior ones") {
   CHECK(weights.isApprox(prior, 1e-4));
 }
 
-TEST_CASE("the share falls with the segments observed, so that one that leads for long keeps nearly all the weight") {
+TEST_CASE(
+    "the fraction falls with the segments observed, so that one that leads for long keeps nearly all the weight") {
   const Eigen::Vector2d prior(0.5, 0.5), leading(1.0, 0.0), equal = Eigen::Vector2d::Zero();
-  const WeightingSettings settings{.learning_rate = 1.0, .share = 0.1};
+  const WeightingSettings settings{.learning_rate = 1.0, .fraction = 0.1};
   CHECK(updated_weights(leading, equal, prior, settings, 3)[1] == doctest::Approx(0.05));
   CHECK(updated_weights(leading, equal, prior, settings, 199)[1] == doctest::Approx(0.0025));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A change of ground is found when residuals agree on it, and not otherwise.
+// A change of terrain is found when residuals agree on it, and not otherwise.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ TEST_CASE("a change of one kind is found sooner than where all must be fitted") 
   CHECK(found_soon(kLinearKinds, 4.0, 1.0) > found_soon(kAll, 4.0, 1.0) + 20);
 }
 
-TEST_CASE("one outlier is no change of ground, however large") {
+TEST_CASE("one outlier is no change of terrain, however large") {
   std::mt19937_64 random(152);
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 60; ++i) {
@@ -102,7 +102,7 @@ TEST_CASE("one outlier is no change of ground, however large") {
   }
 }
 
-TEST_CASE("residuals that are always alike are nominal on this ground") {
+TEST_CASE("residuals that are always alike are nominal on this terrain") {
   std::mt19937_64 random(153);
   ChangeDetector detector{ChangeSettings{}, kKinds};
   double first = 0.0, last = 0.0;

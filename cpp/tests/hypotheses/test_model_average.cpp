@@ -36,7 +36,7 @@ TEST_CASE("the weights sum to one and favour the model that is true") {
   CHECK(state.weights[2] > 0.8);
 }
 
-TEST_CASE("a model that was wrong comes back when the ground changes and nobody notices") {
+TEST_CASE("a model that was wrong comes back when the terrain changes and nobody notices") {
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverageSettings blind;
   blind.change.detect = false;
@@ -125,13 +125,13 @@ TEST_CASE("before any data nothing is determined, and the largest_basis basis ha
 TEST_CASE("reference speeds are the ninetieth percentile of those driven") {
   ModelAverage average("auto", {named_basis("edd-2")}, {}, {}, {});
   const std::vector<double> t{0.0, 8.0}, v{1.0, 4.0}, zero{0.0, 0.0}, omega{0.2, 0.2};
-  const InputTrack inputs(t, v, zero, omega);
+  const InputHistory inputs(t, v, zero, omega);
   average.learn(inputs, {.start = 0.0, .end = 10.0, .measured = {5.0, 3.0, 2.0}});
   CHECK(average.reference_speeds().v == doctest::Approx(4.0).epsilon(0.05));
   CHECK(average.reference_speeds().omega == doctest::Approx(0.2).epsilon(0.05));
 }
 
-TEST_CASE("a change of ground is found while driving, and learned faster than without") {
+TEST_CASE("a change of terrain is found while driving, and learned faster than without") {
   const MotionModel real(named_basis("edd-2"), {});
   ModelAverageSettings blind;
   blind.change.detect = false;
@@ -159,10 +159,10 @@ TEST_CASE("a change of ground is found while driving, and learned faster than wi
   CHECK(seeing.state().weights.size() == 1);
 }
 
-TEST_CASE("on a new ground candidates get as much weight as at first, on the old one ever less") {
+TEST_CASE("on a new terrain candidates get as much weight as at first, on the old one ever less") {
   const MotionModel real(named_basis("edd-2"), {});
   const std::vector<double> start{0.0}, zero{0.0};
-  const InputTrack parked(start, zero, zero, zero);
+  const InputHistory parked(start, zero, zero, zero);
   const auto dealt_to_plain = [&](double later_slip) {
     ModelAverage average("auto", {plain(), named_basis("edd-2")}, {}, {}, {});
     int alarms = 0;
@@ -189,7 +189,7 @@ TEST_CASE("a parked robot forgets nothing") {
   ModelAverage average = learned({named_basis("edd-2")}, real, Eigen::Vector2d(-0.1, -0.4));
   const Eigen::MatrixXd before = average.state().estimate.covariance;
   const std::vector<double> t{0.0}, zero{0.0};
-  const InputTrack parked(t, zero, zero, zero);
+  const InputHistory parked(t, zero, zero, zero);
   for (int i = 0; i < 50; ++i) {
     average.learn(parked, {.start = 2.0 * i, .end = 2.0 * i + 2.0, .measured = {0.1, -0.1, 0.05}});
     CHECK_FALSE(average.change().alarm);

@@ -11,8 +11,9 @@
 
 namespace slipwise::tests {
 
-inline constexpr double kLimitedTrack = 1.3;  ///< [m]
-inline const ActuatorModel kLimitedChain{.lag_v = 0.4, .lag_omega = 0.25, .delay_v = 0.16, .delay_omega = 0.1};
+inline constexpr double kLimitedSeparation = 1.3;  ///< [m]
+inline const ActuatorModel kLimitedChain{
+    .time_constant_v = 0.4, .time_constant_omega = 0.25, .delay_v = 0.16, .delay_omega = 0.1};
 
 /// A record at 20 Hz of commands that are held for 1 to 3 s each.
 inline WheelRecord limited_record(const CommandLimits& limits, unsigned seed, double seconds = 60.0,
@@ -31,8 +32,8 @@ inline WheelRecord limited_record(const CommandLimits& limits, unsigned seed, do
     v.push_back(next ? fastest * uniform(random) : v.back());
     omega.push_back(next ? fastest * uniform(random) : omega.back());
   }
-  const InputTrack commands(t, v, std::vector<double>(t.size(), 0.0), omega);
-  const ActuatorOutput drive = actuator_output(limited_track(commands, limits), kLimitedChain, t, {});
+  const InputHistory commands(t, v, std::vector<double>(t.size(), 0.0), omega);
+  const ActuatorOutput drive = actuator_output(limited_inputs(commands, limits), kLimitedChain, t, {});
   std::vector<BodyTwist> wheels;
   for (std::size_t i = 0; i < t.size(); ++i) {
     wheels.push_back(

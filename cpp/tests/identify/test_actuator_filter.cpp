@@ -13,19 +13,19 @@ namespace slipwise {
 namespace {
 
 constexpr double kPeriod = 0.05, kWheelStd = 0.01;  // [s]; [m/s], [rad/s]
-const ActuatorModel kTrue{.lag_v = 0.3,
-                          .lag_omega = 0.15,
+const ActuatorModel kTrue{.time_constant_v = 0.3,
+                          .time_constant_omega = 0.15,
                           .delay_v = 0.12,
                           .delay_omega = 0.2,
                           .gain_v = 0.9,
                           .gain_omega = 1.1,
-                          .slow_share_v = 0.3,
-                          .slow_share_omega = 0.2,
-                          .slow_lag_v = 2.5,
-                          .slow_lag_omega = 1.2};
+                          .slow_fraction_v = 0.3,
+                          .slow_fraction_omega = 0.2,
+                          .slow_time_constant_v = 2.5,
+                          .slow_time_constant_omega = 1.2};
 
 struct Drive {
-  InputTrack commands, wheels;
+  InputHistory commands, wheels;
 };
 
 /// Random commands, and wheel speeds that are the mean until the next one.
@@ -39,7 +39,7 @@ Drive drive(int seed, double seconds, const ActuatorModel& actuator = kTrue) {
     v.push_back(uniform(random));
     omega.push_back(uniform(random));
   }
-  const InputTrack commands(t, v, std::vector<double>(t.size(), 0.0), omega);
+  const InputHistory commands(t, v, std::vector<double>(t.size(), 0.0), omega);
   for (int i = 0; i * kPeriod <= seconds; ++i) {
     edges.push_back(i * kPeriod);
   }
@@ -53,14 +53,14 @@ Drive drive(int seed, double seconds, const ActuatorModel& actuator = kTrue) {
     observed_v.push_back(driven[static_cast<Eigen::Index>(i)] + normal(random));
     observed_omega.push_back(turned[static_cast<Eigen::Index>(i)] + normal(random));
   }
-  return {commands, InputTrack(edges, observed_v, std::vector<double>(edges.size(), 0.0), observed_omega)};
+  return {commands, InputHistory(edges, observed_v, std::vector<double>(edges.size(), 0.0), observed_omega)};
 }
 
 Eigen::VectorXd truth() {
   Eigen::VectorXd p(10);
-  p << std::log(kTrue.lag_v), std::log(kTrue.lag_omega), std::log(kTrue.delay_v), std::log(kTrue.delay_omega),
-      kTrue.gain_v, kTrue.gain_omega, kTrue.slow_share_v, kTrue.slow_share_omega, std::log(kTrue.slow_lag_v),
-      std::log(kTrue.slow_lag_omega);
+  p << std::log(kTrue.time_constant_v), std::log(kTrue.time_constant_omega), std::log(kTrue.delay_v),
+      std::log(kTrue.delay_omega), kTrue.gain_v, kTrue.gain_omega, kTrue.slow_fraction_v, kTrue.slow_fraction_omega,
+      std::log(kTrue.slow_time_constant_v), std::log(kTrue.slow_time_constant_omega);
   return p;
 }
 
@@ -85,11 +85,11 @@ TEST_CASE("the actuator is found, and as well as is stated") {
   CHECK(squares < 2.0);
 }
 
-TEST_CASE("a robot slower than nominal is not taken for one whose slow part is the faster one") {
+TEST_CASE("a robot slower than nominal is not taken for one whose slow mode is the faster one") {
   ActuatorModel sluggish = kTrue;
-  sluggish.lag_v = 1.35;
-  sluggish.slow_lag_v = 3.4;
-  sluggish.slow_share_v = 0.7;
+  sluggish.time_constant_v = 1.35;
+  sluggish.slow_time_constant_v = 3.4;
+  sluggish.slow_fraction_v = 0.7;
   for (int seed = 20; seed < 28; ++seed) {
     CAPTURE(seed);
     ActuatorFilter learner({});
@@ -156,7 +156,7 @@ TEST_CASE("a window far from what is predicted is commanded so, and changes litt
     v.push_back(5.0);
     still.push_back(0.0);
   }
-  const ActuatorUpdate update = learner.learn(driven.commands, InputTrack(t, v, still, v), 40.0, 41.0);
+  const ActuatorUpdate update = learner.learn(driven.commands, InputHistory(t, v, still, v), 40.0, 41.0);
   CHECK(update.nis > 100.0);
   const Eigen::VectorXd moved = learner.estimate().mean - before.mean;
   CHECK(moved.cwiseQuotient(before.covariance.diagonal().cwiseSqrt()).cwiseAbs().maxCoeff() < 1.0);
@@ -177,7 +177,7 @@ TEST_CASE("a robot that stands still teaches nothing") {
   ActuatorFilter learner({});
   const std::vector<double> t{0.0, 0.5, 1.0};
   const std::vector<double> still(3, 0.0);
-  const InputTrack nothing(t, still, still, still);
+  const InputHistory nothing(t, still, still, still);
   const ActuatorUpdate update = learner.learn(nothing, nothing, 0.0, 1.0);
   CHECK(update.nis == 0.0);
   CHECK((learner.estimate().covariance.diagonal().cwiseSqrt() - learner.prior_std()).norm() < 1e-12);

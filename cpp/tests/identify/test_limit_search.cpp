@@ -15,13 +15,13 @@
 namespace slipwise {
 namespace {
 
-using tests::kLimitedTrack;
+using tests::kLimitedSeparation;
 using tests::limited_record;
 
-const CommandLimits kFree{.track = kLimitedTrack};
-const CommandLimits kSides{.side = {.dead_band = 0.12, .top = 1.5, .acceleration = 1.2, .braking = 2.0},
-                           .track = kLimitedTrack};
-const CommandLimits kSpeed{.speed = {.top = 1.2}, .track = kLimitedTrack};
+const CommandLimits kFree{.wheel_separation = kLimitedSeparation};
+const CommandLimits kSides{.side = {.dead_band = 0.12, .saturation = 1.5, .slew_rate_up = 1.2, .slew_rate_down = 2.0},
+                           .wheel_separation = kLimitedSeparation};
+const CommandLimits kSpeed{.speed = {.saturation = 1.2}, .wheel_separation = kLimitedSeparation};
 
 LimitSearch search(const CommandLimits& limits, unsigned seed, const std::optional<LimitedActuator>& before = {}) {
   const std::vector<WheelRecord> records{limited_record(limits, seed)};
@@ -36,7 +36,7 @@ const FoundLimit* found(const LimitSearch& search, LimitedAxis axis, LimitKind k
 
 TEST_CASE("limits of the sides are found within three standard deviations, and no others") {
   const LimitSearch result = search(kSides, 11);
-  for (const LimitKind kind : {LimitKind::Top, LimitKind::Acceleration, LimitKind::Braking}) {
+  for (const LimitKind kind : {LimitKind::Saturation, LimitKind::SlewRateUp, LimitKind::SlewRateDown}) {
     const FoundLimit* limit = found(result, LimitedAxis::Side, kind);
     REQUIRE(limit != nullptr);
     CHECK(std::abs(limit->value - limit_of(kSides.side, kind)) <= 3.0 * limit->std);
@@ -44,17 +44,17 @@ TEST_CASE("limits of the sides are found within three standard deviations, and n
     CHECK(limit->gain > LimitSearchSettings{}.least_gain);
   }
   CHECK(std::ranges::all_of(result.found, [](const FoundLimit& limit) { return limit.axis == LimitedAxis::Side; }));
-  CHECK(result.drive.limits.track == doctest::Approx(kLimitedTrack).epsilon(0.1));
-  CHECK(result.track_std > 0.0);
+  CHECK(result.drive.limits.wheel_separation == doctest::Approx(kLimitedSeparation).epsilon(0.1));
+  CHECK(result.wheel_separation_std > 0.0);
 }
 
-TEST_CASE("a limit of the commanded speed alone is found as one of the speed, and the track is not asked for") {
+TEST_CASE("a limit of the commanded speed alone is found as one of the speed, and the history is not asked for") {
   const LimitSearch result = search(kSpeed, 12);
   REQUIRE(result.found.size() == 1);
-  CHECK(found(result, LimitedAxis::Speed, LimitKind::Top) != nullptr);
+  CHECK(found(result, LimitedAxis::Speed, LimitKind::Saturation) != nullptr);
   CHECK(result.found.front().value == doctest::Approx(1.2).epsilon(0.03));
-  CHECK(result.track_std == 0.0);
-  CHECK(result.drive.limits.track == 1.0);
+  CHECK(result.wheel_separation_std == 0.0);
+  CHECK(result.drive.limits.wheel_separation == 1.0);
   CHECK(result.drive.limits.gain_v == 1.0);
   CHECK(result.drive.actuator.gain_v == doctest::Approx(1.0).epsilon(0.05));
 }
@@ -63,7 +63,7 @@ TEST_CASE("a drive without limits shows none, and its delay and lag are found") 
   const LimitSearch result = search(kFree, 13);
   CHECK(result.found.empty());
   CHECK(unlimited(result.drive.limits));
-  CHECK(result.drive.actuator.lag_v + result.drive.actuator.delay_v == doctest::Approx(0.56).epsilon(0.15));
+  CHECK(result.drive.actuator.time_constant_v + result.drive.actuator.delay_v == doctest::Approx(0.56).epsilon(0.15));
 }
 
 TEST_CASE("what a search found is found again from there") {
@@ -85,7 +85,7 @@ TEST_CASE("the reach says what was commanded, and rounding is no command") {
     v.push_back(i == 40 ? 0.1 + 0.2 - 0.3 : std::copysign(std::max(std::abs(twist.v), 0.2), twist.v));
     omega.push_back(twist.omega);
   }
-  record.commands = InputTrack(record.t, v, std::vector<double>(v.size(), 0.0), omega);
+  record.commands = InputHistory(record.t, v, std::vector<double>(v.size(), 0.0), omega);
   const std::vector<WheelRecord> records{record};
   const AxisReach reach = find_limits(records, {}, 1.0, {}).reach.front();
   CHECK(reach.slowest >= 0.2);

@@ -10,7 +10,7 @@
 namespace slipwise {
 namespace {
 
-InputTrack wheels(double period, std::size_t count) {
+InputHistory wheels(double period, std::size_t count) {
   std::vector<double> t, v, vy, omega;
   for (std::size_t i = 0; i < count; ++i) {
     t.push_back(static_cast<double>(i) * period);

@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-TEST_CASE("the shares of V and of w are disturbed, each by a fraction of its own prior") {
+TEST_CASE("the fractions of V and of w are disturbed, each by a fraction of its own prior") {
   const MotionModel model(named_basis("full-linear-6"), {.dynamics = true});
   const Eigen::VectorXd prior_std = Eigen::VectorXd::LinSpaced(model.size(), 0.1, 1.0);
   const DisturbedTerms terms = disturbed_terms(model, prior_std);

@@ -25,21 +25,21 @@ std::vector<std::string> names(const MotionModel& model) {
 TEST_CASE("what is not learned is not a parameter") {
   const Basis basis = named_basis("edd-2");
   using Names = std::vector<std::string>;
-  const Names actuator{"log_lag_v", "log_lag_omega", "log_delay_v", "log_delay_omega"};
+  const Names actuator{"log_time_constant_v", "log_time_constant_omega", "log_delay_v", "log_delay_omega"};
   CHECK(names(MotionModel(basis, {})) == Names{"lon.V", "ang.w"});
   CHECK(names(MotionModel(basis, {.clock_offset = true})) == Names{"lon.V", "ang.w", "clock_offset"});
   CHECK(names(MotionModel(basis, {.dynamics = true})) ==
         Names{"lon.V", "ang.w", actuator[0], actuator[1], actuator[2], actuator[3]});
   CHECK(names(MotionModel(basis, {.delays = true})) == Names{"lon.V", "ang.w", "delay_v", "delay_omega"});
-  CHECK(names(MotionModel(basis, {.clock_offset = true, .mount = true})) ==
+  CHECK(names(MotionModel(basis, {.clock_offset = true, .sensor_extrinsics = true})) ==
         Names{"lon.V", "ang.w", "clock_offset", "sensor_x", "sensor_y", "sensor_yaw"});
   CHECK(MotionModel(basis, {.dynamics = true, .clock_offset = true}).size() == 7);
-  CHECK(MotionModel(basis, {.dynamics = true, .mount = true}).actuator_size() == 4);
+  CHECK(MotionModel(basis, {.dynamics = true, .sensor_extrinsics = true}).actuator_size() == 4);
 }
 
 TEST_CASE("every parameter says its unit and meaning") {
   const MotionModel model(named_basis("thesis-15"),
-                          {.dynamics = true, .clock_offset = true, .response = true, .mount = true});
+                          {.dynamics = true, .clock_offset = true, .response = true, .sensor_extrinsics = true});
   REQUIRE(model.parameters().size() == static_cast<std::size_t>(model.size()));
   for (const ParameterInfo& info : model.parameters()) {
     CHECK_FALSE(info.name.empty());
@@ -51,11 +51,11 @@ TEST_CASE("every parameter says its unit and meaning") {
 TEST_CASE("an actuator that is not learned is the identity") {
   const MotionModel model(named_basis("edd-2"), {});
   const ActuatorModel actuator = model.actuator(Eigen::Vector2d(0.1, 0.2));
-  CHECK(actuator.lag_v == 0.0);
+  CHECK(actuator.time_constant_v == 0.0);
   CHECK(actuator.delay_omega == 0.0);
   CHECK(actuator.clock_offset == 0.0);
   CHECK(actuator.gain_v == 1.0);
-  CHECK(actuator.slow_share_omega == 0.0);
+  CHECK(actuator.slow_fraction_omega == 0.0);
 }
 
 TEST_CASE("delays alone are seconds, none and negative ones too, and nothing lags") {
@@ -63,8 +63,8 @@ TEST_CASE("delays alone are seconds, none and negative ones too, and nothing lag
   const ActuatorModel actuator = model.actuator(Eigen::Vector4d(0.1, 0.2, 0.0, -0.02));
   CHECK(actuator.delay_v == 0.0);
   CHECK(actuator.delay_omega == -0.02);
-  CHECK(actuator.lag_v == 0.0);
-  CHECK(actuator.lag_omega == 0.0);
+  CHECK(actuator.time_constant_v == 0.0);
+  CHECK(actuator.time_constant_omega == 0.0);
 }
 
 TEST_CASE("delays alone and lags exclude each other") {
@@ -74,10 +74,11 @@ TEST_CASE("delays alone and lags exclude each other") {
 
 TEST_CASE("a sensor whose place is not learned sits at base_link") {
   const Eigen::Vector2d slip(0.1, 0.2);
-  CHECK(MotionModel(named_basis("edd-2"), {}).mount(slip).vector().isZero(0.0));
+  CHECK(MotionModel(named_basis("edd-2"), {}).sensor_extrinsics(slip).vector().isZero(0.0));
   Eigen::VectorXd all(5);
   all << slip, 1.5, -0.2, 0.1;
-  CHECK(MotionModel(named_basis("edd-2"), {.mount = true}).mount(all).vector() == Eigen::Vector3d(1.5, -0.2, 0.1));
+  CHECK(MotionModel(named_basis("edd-2"), {.sensor_extrinsics = true}).sensor_extrinsics(all).vector() ==
+        Eigen::Vector3d(1.5, -0.2, 0.1));
 }
 
 TEST_CASE("places and scales are the derivative of the actuator by the model's parameters") {
@@ -90,8 +91,8 @@ TEST_CASE("places and scales are the derivative of the actuator by the model's p
     const auto value = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
       const ActuatorModel c = model.actuator(at);
       Eigen::VectorXd all(kActuatorParameters);
-      all << c.lag_v, c.lag_omega, c.delay_v, c.delay_omega, c.clock_offset, c.gain_v, c.gain_omega, c.slow_share_v,
-          c.slow_share_omega, c.slow_lag_v, c.slow_lag_omega;
+      all << c.time_constant_v, c.time_constant_omega, c.delay_v, c.delay_omega, c.clock_offset, c.gain_v, c.gain_omega,
+          c.slow_fraction_v, c.slow_fraction_omega, c.slow_time_constant_v, c.slow_time_constant_omega;
       return all;
     };
     const Eigen::MatrixXd numeric = tests::finite_difference(value, p, 0.05);

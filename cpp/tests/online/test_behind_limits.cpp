@@ -9,7 +9,7 @@
 
 using slipwise::CommandLimits;
 using slipwise::DrivenSegment;
-using slipwise::InputTrack;
+using slipwise::InputHistory;
 using slipwise::MotionPosterior;
 using slipwise::NoiseSettings;
 
@@ -19,7 +19,7 @@ constexpr double kTop = 0.6;  // [m/s]
 
 CommandLimits limited() {
   CommandLimits limits;
-  limits.speed.top = kTop;
+  limits.speed.saturation = kTop;
   return limits;
 }
 
@@ -28,7 +28,8 @@ std::vector<DrivenSegment> segments(int count) {
   std::vector<DrivenSegment> all;
   for (int i = 0; i < count; ++i) {
     const double start = 2.0 * i;
-    DrivenSegment driven{.inputs = InputTrack({start}, {{.v = 1.0}}), .segment = {.start = start, .end = start + 2.0}};
+    DrivenSegment driven{.inputs = InputHistory({start}, {{.v = 1.0}}),
+                         .segment = {.start = start, .end = start + 2.0}};
     driven.segment.measured.x = 2.0 * kTop;
     all.push_back(driven);
   }

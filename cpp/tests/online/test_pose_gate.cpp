@@ -12,8 +12,8 @@ constexpr double kPeriod = 0.1;
 /// A robot that drives straight at 0.5 m/s.
 MeasuredPose pose_at(int i) { return {.t = kPeriod * i, .x = 0.5 * kPeriod * i, .y = 0.0, .yaw = 0.0}; }
 
-InputHistory driven(int until) {
-  InputHistory inputs(0.5);
+InputBuffer driven(int until) {
+  InputBuffer inputs(0.5);
   for (int i = 0; i <= until; ++i) {
     inputs.push({kPeriod * i, {0.5, 0.0, 0.0}});
   }
@@ -86,7 +86,7 @@ TEST_CASE("what is decided of a pose does not depend on later inputs") {
   MeasuredPose away = pose_at(40);
   away.x += 1.6;
   PoseGate other = gate;
-  InputHistory faster = driven(40);
+  InputBuffer faster = driven(40);
   faster.push({4.01, {30.0, 0.0, 0.0}});
   CHECK(gate.push(away, driven(40)).accepted.size() == other.push(away, faster).accepted.size());
 }

@@ -13,7 +13,7 @@ using slipwise::adjoint;
 using slipwise::BodyTwist;
 using slipwise::compose;
 using slipwise::exp;
-using slipwise::InputHistory;
+using slipwise::InputBuffer;
 using slipwise::Pose2;
 using slipwise::PoseTwists;
 using slipwise::TimedPose;
@@ -25,7 +25,7 @@ const Eigen::Vector3d kTwist(0.8, 0.05, -0.4);
 
 /// The stretches of poses that come each `interval` [s] for `seconds`, none between `gap` and half a second later.
 std::vector<TwistStretch> stretches(double interval, double seconds, const Pose2& sensor = {}, double gap = 1e9) {
-  InputHistory commands(1.0);
+  InputBuffer commands(1.0);
   PoseTwists twists({}, sensor);
   std::vector<TwistStretch> all;
   const auto add = [&](const std::vector<TwistStretch>& more) { all.insert(all.end(), more.begin(), more.end()); };
@@ -84,7 +84,7 @@ TEST_CASE("no twist goes over a gap") {
 TEST_CASE("poses that are rare give none") { CHECK(stretches(0.5, 20.0).empty()); }
 
 TEST_CASE("commands are needed from the stretch's start on") {
-  InputHistory commands(1.0);
+  InputBuffer commands(1.0);
   PoseTwists twists({}, {});
   CHECK(twists.begins() == std::numeric_limits<double>::infinity());
   for (int i = 0; i < 5; ++i) {

@@ -10,7 +10,7 @@ namespace slipwise {
 namespace {
 
 struct Setting {
-  InputHistory inputs{0.5};
+  InputBuffer inputs{0.5};
   PoseTimer timer;
   SegmentCutter cutter{1.0, SegmentRules{}, true};
   std::vector<SegmentCut> cuts;

@@ -40,7 +40,7 @@ inline ManoeuvreBounds sample_bounds(double longest) {
   return bounds;
 }
 
-/// A sample model with gains and a slow part that differ between the channels.
+/// A sample model with gains and a slow mode that differ between the channels.
 inline SampleModel responding_model(const Basis& basis) {
   MotionModel motion(basis, {.dynamics = true, .response = true});
   Eigen::VectorXd parameters(motion.size());

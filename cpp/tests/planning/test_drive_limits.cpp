@@ -35,7 +35,7 @@ TEST_CASE("the limit that is no positive number is named") {
   }
 }
 
-TEST_CASE("a start whose drive, command or fast part is not finite is refused") {
+TEST_CASE("a start whose drive, command or fast mode is not finite is refused") {
   CHECK_NOTHROW(ActuatorState{}.check());
   CHECK_NOTHROW(ActuatorState{.drive = {.v = -2.0}, .commanded = {.v = 1.0}, .fast = BodyTwist{.v = 0.1}}.check());
   CHECK_THROWS_AS(ActuatorState{.drive = {.v = kNan}}.check(), std::invalid_argument);

@@ -62,7 +62,7 @@ TEST_CASE("period, speeds and yaw rates know their derivatives by the parameters
 TEST_CASE("commands without limits stay as they are; a top holds them and their derivatives") {
   const HeldCommands held = held_commands(kFrame, bent());
   CHECK(limited_commands(held, {}, {}).commands.size() == held.commands.size());
-  const HeldCommands cut = limited_commands(held, {.speed = {.top = 0.6}}, {.v = 0.2});
+  const HeldCommands cut = limited_commands(held, {.speed = {.saturation = 0.6}}, {.v = 0.2});
   CHECK(cut.period.value == held.period.value);
   int held_down = 0;
   for (std::size_t k = 0; k < held.end; ++k) {
@@ -78,7 +78,7 @@ TEST_CASE("a manoeuvre behind ramps is cut in pieces and settles for as long as 
   ManoeuvreFrame stop = kFrame;
   stop.speeds = {.start = 0.0, .cruise = 1.0, .end = 0.0};
   stop.settling = 0.25;
-  const CommandLimits limits{.speed = {.acceleration = 5.0, .braking = 0.25}};
+  const CommandLimits limits{.speed = {.slew_rate_up = 5.0, .slew_rate_down = 0.25}};
   const HeldCommands held = held_commands(stop, bent());
   const HeldCommands ramped = limited_commands(held, limits, {});
   const auto pieces = static_cast<double>(ramped.end) / static_cast<double>(held.end);

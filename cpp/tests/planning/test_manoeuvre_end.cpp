@@ -30,7 +30,7 @@ ManoeuvreVector sample_parameters() {
 }
 
 /// The commands as the integrator takes them: what was commanded before the start, then one command after the other.
-InputTrack track_of(const HeldCommands& held) {
+InputHistory track_of(const HeldCommands& held) {
   std::vector<double> t{-100.0}, v{kStart.commanded.v}, vy{0.0}, omega{kStart.commanded.omega};
   for (std::size_t k = 0; k < held.commands.size(); ++k) {
     t.push_back(static_cast<double>(k) * held.period.value);
@@ -66,8 +66,8 @@ TEST_CASE("a manoeuvre ends where the integrator says, over all bases and chains
 }
 
 TEST_CASE("behind limits a manoeuvre ends where the integrator says of the limited commands") {
-  const AxisLimits lane{.dead_band = 0.05, .top = 1.0, .acceleration = 0.7, .braking = 0.9};
-  const CommandLimits limits{.speed = lane, .yaw_rate = lane, .side = lane, .track = 0.6};
+  const AxisLimits lane{.dead_band = 0.05, .saturation = 1.0, .slew_rate_up = 0.7, .slew_rate_down = 0.9};
+  const CommandLimits limits{.speed = lane, .yaw_rate = lane, .side = lane, .wheel_separation = 0.6};
   for (const tests::SampleModel& sample : tests::sample_models()) {
     CAPTURE(sample.name);
     const ManoeuvreFrame frame = sample_frame(1.0, 0.0);
@@ -83,10 +83,10 @@ TEST_CASE("behind limits a manoeuvre ends where the integrator says of the limit
         omega.push_back(held.commands[k].omega);
       }
     }
-    const InputTrack track({t, v, std::vector<double>(t.size(), 0.0), omega});
+    const InputHistory history({t, v, std::vector<double>(t.size(), 0.0), omega});
     const double end = frame.commands * period + limited.settling;
     const Segment segment{.start = 0.0, .end = end, .initial = kStart.drive};
-    const InputTrack driven = limited_track(track, limits, limited.period.value);
+    const InputHistory driven = limited_inputs(history, limits, limited.period.value);
     const Pose2 expected = integrate_segment(sample.motion, sample.parameters, driven, segment).poses.back();
     const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), kStart);
     CHECK((pose.vector() - expected.vector()).norm() < 1e-5);

@@ -57,10 +57,10 @@ Driven closed_loop(Mppi& controller, const tests::SampleModel& sample, double y,
     v.push_back(command.v);
     vy.push_back(0.0);
     omega.push_back(command.omega);
-    const InputTrack track(t, v, vy, omega);
+    const InputHistory reference(t, v, vy, omega);
     const double now = (k + 1) * period;
     const Segment segment{.start = 0.0, .end = now, .initial = BodyTwist{}};
-    const SegmentPath path = integrate_segment(sample.motion, sample.parameters, track, segment);
+    const SegmentPath path = integrate_segment(sample.motion, sample.parameters, reference, segment);
     const ActuatorStep& last = path.drive.back();
     state.start = {.pose = path.poses.back(),
                    .drive = {.v = last.forward / last.duration, .omega = last.turn / last.duration}};

@@ -31,7 +31,7 @@ Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const Act
   omega.insert(omega.end(), plan.omega.begin(), plan.omega.end());
   const std::vector<double> vy(t.size(), 0.0);
   const Segment segment{.start = 0.0, .end = plan.path.t.back(), .initial = start.drive};
-  return integrate_segment(sample.motion, sample.parameters, InputTrack(t, v, vy, omega), segment).poses.back();
+  return integrate_segment(sample.motion, sample.parameters, InputHistory(t, v, vy, omega), segment).poses.back();
 }
 
 void check_limits(const Trajectory& plan, double start_speed) {

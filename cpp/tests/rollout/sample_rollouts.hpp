@@ -47,7 +47,7 @@ struct SampleCommands {
   }
 
   /// The commands of one rollout, after those sent before the start.
-  InputTrack track(std::size_t rollout, std::span<const DriveCommand> past) const {
+  InputHistory input_history(std::size_t rollout, std::span<const DriveCommand> past) const {
     std::vector<double> t, forward, left, turn;
     if (!past.empty()) {  // what is older equals the oldest
       t.push_back(-1e3);

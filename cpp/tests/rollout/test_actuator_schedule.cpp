@@ -47,7 +47,7 @@ TEST_CASE("without delay and lag a period is one part in which both commands act
 
 TEST_CASE("delays are whole periods and a rest, and a cycle is one period long") {
   for (const double period : {0.05, 0.1, 0.25}) {
-    const ActuatorModel actuator{.lag_v = 0.2, .delay_v = 0.13, .delay_omega = 0.36, .clock_offset = -0.02};
+    const ActuatorModel actuator{.time_constant_v = 0.2, .delay_v = 0.13, .delay_omega = 0.36, .clock_offset = -0.02};
     const ActuatorSchedule schedule = schedule_actuator(actuator, period);
     CHECK(static_cast<double>(schedule.v.shift) * period + schedule.v.rest == doctest::Approx(0.11));
     CHECK(static_cast<double>(schedule.omega.shift) * period + schedule.omega.rest == doctest::Approx(0.34));
@@ -76,7 +76,8 @@ TEST_CASE("a delay that is whole periods but for rounding has no rest") {
 }
 
 TEST_CASE("over a part a gap closes by the exponential of its lag, and lagging parts are short") {
-  const ActuatorSchedule schedule = schedule_actuator({.lag_v = 0.3, .slow_share_v = 0.2, .slow_lag_v = 2.0}, 0.45);
+  const ActuatorSchedule schedule =
+      schedule_actuator({.time_constant_v = 0.3, .slow_fraction_v = 0.2, .slow_time_constant_v = 2.0}, 0.45);
   CHECK(schedule.cycle.size() > 4);
   CHECK(schedule.lags);
   CHECK(schedule.responds);

@@ -14,12 +14,16 @@ namespace {
 
 constexpr double kPeriod = 0.1;
 
-ActuatorSchedule schedule(double slow_lag) {
-  return schedule_actuator({.lag_v = 0.2, .delay_v = 0.25, .gain_v = 0.8, .slow_share_v = 0.3, .slow_lag_v = slow_lag},
+ActuatorSchedule schedule(double slow_time_constant) {
+  return schedule_actuator({.time_constant_v = 0.2,
+                            .delay_v = 0.25,
+                            .gain_v = 0.8,
+                            .slow_fraction_v = 0.3,
+                            .slow_time_constant_v = slow_time_constant},
                            kPeriod);
 }
 
-TEST_CASE("without a slow part all of the drive is the fast lag's") {
+TEST_CASE("without a slow mode all of the drive is the fast lag's") {
   const ActuatorSchedule actuator = schedule(0.0);
   const ActuatorStart start = actuator_start(actuator, actuator.v, 0.7, -3, [](std::ptrdiff_t) { return 9.0; });
   CHECK(start.fast == 0.7);

@@ -14,7 +14,7 @@ RolloutProgram program_of(const CommandLimits& limits) {
   return {MotionModel(named_basis("edd-2"), {}), Eigen::Vector2d(0.1, -0.1), {.period = 0.1, .limits = limits}};
 }
 
-const CommandLimits kRamps{.speed = {.top = 1.0, .acceleration = 1.0, .braking = 1.0}};
+const CommandLimits kRamps{.speed = {.saturation = 1.0, .slew_rate_up = 1.0, .slew_rate_down = 1.0}};
 
 TEST_CASE("without commands before the start the limits give what the drive does") {
   const LimitedStart start = limited_start(program_of(kRamps), {}, {.v = 0.6, .omega = -0.2});

@@ -25,19 +25,21 @@ struct SampleLimits {
 };
 
 std::vector<SampleLimits> sample_limits() {
-  const AxisLimits speed{.dead_band = 0.3, .top = 1.1, .acceleration = 0.8, .braking = 1.7};
-  const AxisLimits turn{.dead_band = 0.1, .top = 0.7, .acceleration = 1.3, .braking = 0.9};
-  const AxisLimits side{.dead_band = 0.2, .top = 1.2, .acceleration = 0.6, .braking = 1.1};
-  return {{"dead-band and top", {.speed = {.dead_band = 0.5, .top = 1.0}, .yaw_rate = {.top = 0.5}}},
-          {"acceleration alone", {.speed = {.acceleration = 0.7}}},
-          {"speed and yaw rate", {.speed = speed, .yaw_rate = turn}},
-          {"sides", {.side = side, .track = 0.6, .gain_v = 1.1, .gain_omega = 0.9}},
-          {"all", {.speed = speed, .yaw_rate = turn, .side = side, .track = 0.6, .gain_v = 1.1, .gain_omega = 0.9}}};
+  const AxisLimits speed{.dead_band = 0.3, .saturation = 1.1, .slew_rate_up = 0.8, .slew_rate_down = 1.7};
+  const AxisLimits turn{.dead_band = 0.1, .saturation = 0.7, .slew_rate_up = 1.3, .slew_rate_down = 0.9};
+  const AxisLimits side{.dead_band = 0.2, .saturation = 1.2, .slew_rate_up = 0.6, .slew_rate_down = 1.1};
+  return {
+      {"dead-band and top", {.speed = {.dead_band = 0.5, .saturation = 1.0}, .yaw_rate = {.saturation = 0.5}}},
+      {"acceleration alone", {.speed = {.slew_rate_up = 0.7}}},
+      {"speed and yaw rate", {.speed = speed, .yaw_rate = turn}},
+      {"sides", {.side = side, .wheel_separation = 0.6, .gain_v = 1.1, .gain_omega = 0.9}},
+      {"all",
+       {.speed = speed, .yaw_rate = turn, .side = side, .wheel_separation = 0.6, .gain_v = 1.1, .gain_omega = 0.9}}};
 }
 
 /// The commands sent again at the start of each of `pieces` equal parts, which changes nothing that they say; `later`
 /// is added to their stamps [s].
-InputTrack repeated(const InputTrack& commands, std::size_t pieces, double later) {
+InputHistory repeated(const InputHistory& commands, std::size_t pieces, double later) {
   std::vector<double> t, v, vy, omega;
   for (std::size_t i = 0; i < commands.size(); ++i) {
     const bool last = i + 1 == commands.size();
@@ -87,12 +89,12 @@ Worst error(const RolloutProgram& program, const MotionModel& model, Eigen::Vect
   const double piece = kPeriod / static_cast<double>(program.pieces());
   Worst worst;
   for (std::size_t n = 0; n < commands.rollouts; n += 9) {
-    const InputTrack track =
-        limited_track(repeated(commands.track(n, kPast), program.pieces(), offset), program.setting().limits, piece);
+    const InputHistory history = limited_inputs(repeated(commands.input_history(n, kPast), program.pieces(), offset),
+                                                program.setting().limits, piece);
     for (std::size_t k = commands.periods; k >= 1; k /= 3) {
       const Segment segment{
           .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
-      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, track, segment).poses.back());
+      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst.xy = std::max(worst.xy,
                           std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y));
@@ -151,20 +153,20 @@ TEST_CASE("a limited rollout's bytes depend neither on threads nor on its neighb
 TEST_CASE("the ramp goes on from what the commands before the start had left it at") {
   const MotionModel model(Basis("none", {}, {}, {}), {});
   const RolloutProgram program(model, Eigen::VectorXd(),
-                               {.period = 0.1, .limits = {.speed = {.acceleration = 0.5, .braking = 0.5}}});
+                               {.period = 0.1, .limits = {.speed = {.slew_rate_up = 0.5, .slew_rate_down = 0.5}}});
   const std::vector<double> v(10, 1.0), omega(10, 0.0);
   const std::vector<RolloutStart> start{{{}, {0.6, 0.0}}};
   const CommandView<double> view{v.data(), omega.data(), 1, 1};
   // Nothing was commanded before: the drive goes on from what it does. 0.6 m/s to 1 m/s in 0.8 s.
   CHECK(tests::roll(program, RolloutBatch<double>{1, 10, view, start}).x[9] == doctest::Approx(1.0 - 0.5 * 0.4 * 0.8));
-  // Told to stand for long, and 1 m/s for the last 0.4 s: 0.2 m/s to 0.7 m/s.
+  // Commanded to stand for long, and 1 m/s for the last 0.4 s: 0.2 m/s to 0.7 m/s.
   const std::vector<DriveCommand> past{{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}, {1.0, 0.0}};
   CHECK(tests::roll(program, RolloutBatch<double>{1, 10, view, start, past}).x[9] == doctest::Approx(0.45));
 }
 
 TEST_CASE("costs behind limits are those at the ends of the periods") {
   const MotionModel model(Basis("none", {}, {}, {}), {});
-  const RolloutProgram program(model, Eigen::VectorXd(), {.period = 0.1, .limits = {.speed = {.acceleration = 1.0}}});
+  const RolloutProgram program(model, Eigen::VectorXd(), {.period = 0.1, .limits = {.speed = {.slew_rate_up = 1.0}}});
   const std::vector<float> v(10, 1.0F), omega(10, 0.0F), cells{1.0F, 2.0F, 4.0F, 8.0F, 16.0F};
   const Costmap map{cells, 1, 5, 0.11, 0.0, -0.05, 0.0F};
   const std::vector<RolloutStart> start{{}};
@@ -190,7 +192,7 @@ TEST_CASE("behind limits a command that is not finite is refused all the same") 
     CHECK_THROWS_WITH_AS(tests::roll(program, commands.batch(kStart)),
                          "the command of rollout 2 over period 1 is not finite", std::invalid_argument);
   }
-  CHECK_THROWS_AS(RolloutProgram(model, parameters, {.period = kPeriod, .limits = {.speed = {.top = -1.0}}}),
+  CHECK_THROWS_AS(RolloutProgram(model, parameters, {.period = kPeriod, .limits = {.speed = {.saturation = -1.0}}}),
                   std::invalid_argument);
 }
 

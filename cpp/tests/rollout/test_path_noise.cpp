@@ -71,8 +71,8 @@ TEST_CASE("the drive alone has no slip") {
   for (const SlipProduct& product : program.slip().products) {
     const bool drive =
         &product == &program.slip().products[kProductV] || &product == &program.slip().products[kProductOmega];
-    for (const double share : product.share) {
-      CHECK((share == 0.0 || (drive && share == 1.0)));
+    for (const double fraction : product.fraction) {
+      CHECK((fraction == 0.0 || (drive && fraction == 1.0)));
     }
   }
 }
@@ -84,7 +84,7 @@ TEST_CASE("an uncertainty that does not fit its model or holds no number is refu
   CHECK_THROWS_WITH_AS(check_uncertainty(small), "the covariance is 4 by 4 for 5 parameters", std::invalid_argument);
   for (const double wrong : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     UncertainModel grown = sample();
-    grown.uncertainty.growth = wrong;
+    grown.uncertainty.inflation = wrong;
     CHECK_THROWS_AS(check_uncertainty(grown), std::invalid_argument);
     UncertainModel scaled = sample();
     scaled.uncertainty.scale[1] = wrong;

@@ -29,11 +29,11 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
   const std::size_t fewest = program.actuator().v.shift < 0 ? commands.periods : 1;
   double worst = 0.0;
   for (std::size_t n = 0; n < commands.rollouts; n += 5) {
-    const InputTrack track = commands.track(n, kPast);
+    const InputHistory history = commands.input_history(n, kPast);
     for (std::size_t k = commands.periods; k >= fewest; k /= 3) {
       const Segment segment{
           .start = 0.0, .end = commands.period * static_cast<double>(k), .initial = drive, .gx = 0.3, .gy = -0.2};
-      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, track, segment).poses.back());
+      const Pose2 end = compose(kStart[0].pose, integrate_segment(model, parameters, history, segment).poses.back());
       const std::size_t i = (k - 1) * commands.rollouts + n;
       worst =
           std::max({worst, std::hypot(static_cast<double>(paths.x[i]) - end.x, static_cast<double>(paths.y[i]) - end.y),
@@ -130,7 +130,7 @@ TEST_CASE("every rollout may have a start of its own") {
   }
 }
 
-TEST_CASE("without commands before the start a drive with a slow part is taken to be settled") {
+TEST_CASE("without commands before the start a drive with a slow mode is taken to be settled") {
   const tests::SampleChain actuator = tests::sample_chains()[6];
   const MotionModel model(Basis("none", {}, {}, {}), actuator.learned);
   const Eigen::VectorXd parameters = tests::sample_parameters(model, actuator);

@@ -27,7 +27,7 @@ UncertainModel sample_model(const MotionModel& model, const tests::SampleChain& 
           {.covariance = covariance,
            .noise = {.psd_time = {1e-4, 2e-4, 1e-4}, .psd_motion = {2e-4, 1e-4, 3e-4}, .fraction = {0.01, 0.02, 0.01}},
            .scale = {1.5, 0.7, 2.0},
-           .growth = 1.2,
+           .inflation = 1.2,
            .disturbance = {{{0.0, 0.0, 1.0}, {0.1, 0.3, 0.8}, {0.3, 0.0, 20.0}}, Eigen::Vector3d(0.2, 0.5, 0.3)},
            .prior_std = Eigen::VectorXd::Constant(model.size(), 0.2)},
           {kPeriod}};
@@ -57,7 +57,7 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
       rollout_covariance(uncertain, commands.batch(kOrigin, past), entries);
       for (std::size_t n = 0; n < 4; ++n) {
         const Segment segment{.start = 0.0, .end = 60 * kPeriod, .initial = BodyTwist{0.4, 0.0, 0.2}};
-        const auto at = linearize_segment(model, uncertain.parameters, commands.track(n, past), segment);
+        const auto at = linearize_segment(model, uncertain.parameters, commands.input_history(n, past), segment);
         const Eigen::Matrix3d root = uncertain.uncertainty.scale.cwiseSqrt().asDiagonal();
         const Eigen::Matrix3d from_parameters =
             at.by_parameter * covariance_at(uncertain, segment.end) * at.by_parameter.transpose();
@@ -70,18 +70,18 @@ TEST_CASE("the covariance of a pose is that of its segment in every basis") {
   }
 }
 
-TEST_CASE("without noise the parameters' share is exact to the difference's step") {
+TEST_CASE("without noise the parameters' fraction is exact to the difference's step") {
   const tests::SampleCommands<double> commands(3, 40, kPeriod);
   const tests::SampleChain actuator = tests::sample_chains()[0];
   const MotionModel model(named_basis("odd-even-10"), actuator.learned);
   UncertainModel uncertain = sample_model(model, actuator);
   uncertain.uncertainty.noise = {};
-  uncertain.uncertainty.growth = 1.0;
+  uncertain.uncertainty.inflation = 1.0;
   std::vector<double> entries(6 * 3 * 40);
   rollout_covariance(uncertain, commands.batch(kOrigin), entries);
   for (std::size_t n = 0; n < 3; ++n) {
-    const auto at =
-        linearize_segment(model, uncertain.parameters, commands.track(n, {}), {.start = 0.0, .end = 40 * kPeriod});
+    const auto at = linearize_segment(model, uncertain.parameters, commands.input_history(n, {}),
+                                      {.start = 0.0, .end = 40 * kPeriod});
     const Eigen::Matrix3d expected =
         at.by_parameter * covariance_at(uncertain, 40 * kPeriod) * at.by_parameter.transpose();
     CHECK((matrix_at(entries, 3 * 40, 39 * 3 + n) - expected).norm() < 1e-6 * expected.norm());

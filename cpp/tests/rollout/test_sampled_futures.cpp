@@ -62,10 +62,10 @@ TEST_CASE("a seed fixes the bytes at any number of threads; another seed gives o
   CHECK_FALSE(one == draw(model, 5, 8));
 }
 
-TEST_CASE("drawn parameters have the mean and the covariance that are stated, widened by the growth") {
+TEST_CASE("drawn parameters have the mean and the covariance that are stated, widened by the inflation") {
   UncertainModel model = sample(0.2);
   model.uncertainty.covariance(0, 1) = model.uncertainty.covariance(1, 0) = 0.03;
-  model.uncertainty.growth = 2.0;
+  model.uncertainty.inflation = 2.0;
   constexpr std::size_t kSamples = 20000;
   const Eigen::MatrixXd drawn = draw_parameters(model, kSamples, 11);
   const Eigen::VectorXd mean = drawn.rowwise().mean();

@@ -32,7 +32,7 @@ Eigen::Vector3d evaluate(const SlipProgram& program, const SlipState& state) {
   Eigen::Vector3d twist = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < values.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
-      twist[static_cast<Eigen::Index>(c)] += program.products[i].share[c] * values[i];
+      twist[static_cast<Eigen::Index>(c)] += program.products[i].fraction[c] * values[i];
     }
   }
   return twist;

@@ -14,11 +14,11 @@
 namespace slipwise {
 namespace {
 
-Pose2 last_pose(const Basis& basis, const Eigen::VectorXd& alpha, const InputTrack& inputs, const Segment& segment) {
+Pose2 last_pose(const Basis& basis, const Eigen::VectorXd& alpha, const InputHistory& inputs, const Segment& segment) {
   return integrate_segment(MotionModel(basis, {}), alpha, inputs, segment).poses.back();
 }
 
-InputTrack constant_drive(const BodyTwist& twist) {
+InputHistory constant_drive(const BodyTwist& twist) {
   const std::vector<double> t{0.0}, v{twist.v}, vy{twist.vy}, omega{twist.omega};
   return {t, v, vy, omega};
 }
@@ -29,7 +29,7 @@ TEST_CASE("splitting a segment in two changes nothing in any basis") {
     for (const tests::SampleDrive& drive : tests::sample_drives()) {
       CAPTURE(basis.name());
       CAPTURE(drive.name);
-      const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+      const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
       const Pose2 whole = last_pose(basis, alpha, inputs, {.start = 1.01, .end = 4.47});
       for (const double middle : {1.05, 2.2, 2.217, 4.469}) {
         const Pose2 first = last_pose(basis, alpha, inputs, {.start = 1.01, .end = middle});
@@ -84,7 +84,7 @@ TEST_CASE("left turns mirror right turns where the basis respects the mirror") {
 
 TEST_CASE("paths carry times in pose stamps, one pose more than steps, and the drive without slip") {
   const MotionModel model(named_basis("edd-2"), {.clock_offset = true});
-  const InputTrack inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
+  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   const auto path = integrate_segment(model, Eigen::Vector3d(0.1, -0.1, 0.13), inputs, {.start = 2.0, .end = 3.0});
   CHECK(path.times.front() == 2.0);
   CHECK(path.times.back() == doctest::Approx(3.0).epsilon(1e-12));
@@ -97,7 +97,7 @@ TEST_CASE("paths carry times in pose stamps, one pose more than steps, and the d
 TEST_CASE("Runge-Kutta is Simpson's rule on a constant twist: its error is f^4 / 2880") {
   const MotionModel model(named_basis("edd-2"), {});
   const auto relative_error = [&](double turn) {
-    const InputTrack inputs = constant_drive({1.0, 0.0, turn});
+    const InputHistory inputs = constant_drive({1.0, 0.0, turn});
     const Segment second{.start = 1.0, .end = 2.0};
     const Pose2 exact = integrate_segment(model, Eigen::Vector2d::Zero(), inputs, second).poses.back();
     const Pose2 rk4 = integrate_segment(model, Eigen::Vector2d::Zero(), inputs, second, Integrator::Rk4).poses.back();
@@ -115,7 +115,7 @@ TEST_CASE("Runge-Kutta's error falls with the fourth power of the step over all 
     const MotionModel model(basis, {});
     const Eigen::VectorXd alpha = tests::sample_slip(basis, 35);
     const auto twist = [](double) { return BodyTwist{0.9, 0.0, 0.8}; };
-    const InputTrack inputs = tests::sampled(twist, 0.0, period, static_cast<std::size_t>(std::lround(6.0 / period)));
+    const InputHistory inputs = tests::sampled(twist, 0.0, period, static_cast<std::size_t>(std::lround(6.0 / period)));
     const Segment segment{.start = 1.6, .end = 4.8};
     const Pose2 exact = integrate_segment(model, alpha, inputs, segment).poses.back();
     const Pose2 rk4 = integrate_segment(model, alpha, inputs, segment, Integrator::Rk4).poses.back();
@@ -129,7 +129,7 @@ TEST_CASE("Runge-Kutta's error falls with the fourth power of the step over all 
 
 TEST_CASE("parameters that do not fit the model are refused") {
   const MotionModel model(named_basis("edd-2"), {});
-  const InputTrack inputs = constant_drive({1.0, 0.0, 0.0});
+  const InputHistory inputs = constant_drive({1.0, 0.0, 0.0});
   CHECK_THROWS_AS(integrate_segment(model, Eigen::Vector3d::Zero(), inputs, {.start = 0.0, .end = 1.0}),
                   std::invalid_argument);
   CHECK_THROWS_AS(linearize_segment(model, Eigen::Vector3d::Zero(), inputs, {.start = 0.0, .end = 1.0}),

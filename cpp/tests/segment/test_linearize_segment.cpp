@@ -24,22 +24,24 @@ struct Case {
 };
 
 std::vector<Case> sample_chains() {
-  const double lag_v = std::log(0.31), lag_omega = std::log(0.22), delay_v = std::log(0.0827),
+  const double time_constant_v = std::log(0.31), time_constant_omega = std::log(0.22), delay_v = std::log(0.0827),
                delay_omega = std::log(0.1133);
   Eigen::VectorXd dynamics(4), both(5), all(11), observed(14);
   const Eigen::Vector3d mount(1.5, -0.4, 0.21);
-  dynamics << lag_v, lag_omega, delay_v, delay_omega;
-  both << lag_v, lag_omega, delay_v, delay_omega, 0.0231;
-  all << lag_v, lag_omega, delay_v, delay_omega, 0.93, 1.12, 0.21, 0.34, std::log(1.31), std::log(0.82), 0.0231;
+  dynamics << time_constant_v, time_constant_omega, delay_v, delay_omega;
+  both << time_constant_v, time_constant_omega, delay_v, delay_omega, 0.0231;
+  all << time_constant_v, time_constant_omega, delay_v, delay_omega, 0.93, 1.12, 0.21, 0.34, std::log(1.31),
+      std::log(0.82), 0.0231;
   observed << all, mount;
-  return {{"no actuator", {}, Eigen::VectorXd(0)},
-          {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
-          {"dynamics", {.dynamics = true}, dynamics},
-          {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
-          {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
-          {"mount", {.mount = true}, mount},
-          {"everything", {.dynamics = true, .clock_offset = true, .response = true, .mount = true}, observed},
-          {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)}};
+  return {
+      {"no actuator", {}, Eigen::VectorXd(0)},
+      {"clock offset", {.clock_offset = true}, Eigen::VectorXd::Constant(1, 0.0231)},
+      {"dynamics", {.dynamics = true}, dynamics},
+      {"dynamics and clock offset", {.dynamics = true, .clock_offset = true}, both},
+      {"dynamics, response and clock offset", {.dynamics = true, .clock_offset = true, .response = true}, all},
+      {"sensor_extrinsics", {.sensor_extrinsics = true}, mount},
+      {"everything", {.dynamics = true, .clock_offset = true, .response = true, .sensor_extrinsics = true}, observed},
+      {"delays", {.delays = true}, Eigen::Vector2d(0.0827, -0.0133)}};
 }
 
 Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& actuator) {
@@ -48,7 +50,7 @@ Eigen::VectorXd joined(const Eigen::VectorXd& slip, const Eigen::VectorXd& actua
   return all;
 }
 
-double linearization_error(const MotionModel& model, const Eigen::VectorXd& parameters, const InputTrack& inputs,
+double linearization_error(const MotionModel& model, const Eigen::VectorXd& parameters, const InputHistory& inputs,
                            const Segment& segment) {
   const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
     return integrate_segment(model, p, inputs, segment).sensor_motion().vector();
@@ -64,7 +66,7 @@ void check_all_drives(const Basis& basis, const Case& actuator, double period, c
     CAPTURE(basis.name());
     CAPTURE(actuator.name);
     CAPTURE(drive.name);
-    const InputTrack inputs = tests::sampled(drive.twist, 0.0, period, 200);
+    const InputHistory inputs = tests::sampled(drive.twist, 0.0, period, 200);
     CHECK(linearization_error(model, parameters, inputs, segment) < tests::kDerivativeTolerance);
   }
 }
@@ -102,7 +104,7 @@ TEST_CASE("the derivative where both channels have the same delay is the limit o
   later[model.slip_size() + 3] += 1e-7;
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(drive.name);
-    const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+    const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
     const auto at = [&](const Eigen::VectorXd& p) {
       return linearize_segment(model, p, inputs, kSegment).by_parameter;
     };
@@ -118,7 +120,7 @@ TEST_CASE("a segment's beginnings are linearised as segments that end there, and
     for (const tests::SampleDrive& drive : tests::sample_drives()) {
       CAPTURE(actuator.name);
       CAPTURE(drive.name);
-      const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+      const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
       const auto beginnings = linearize_beginnings(model, parameters, inputs, kSegment, 5);
       REQUIRE(beginnings.size() == 5);
       for (std::size_t i = 0; i < 5; ++i) {
@@ -144,7 +146,7 @@ TEST_CASE("linearised segments predict what integration predicts") {
       const MotionModel model(basis, actuator.learned);
       const Eigen::VectorXd parameters = joined(tests::sample_slip(basis, 22), actuator.actuator);
       for (const tests::SampleDrive& drive : tests::sample_drives()) {
-        const InputTrack inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
+        const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
         const auto linearized = linearize_segment(model, parameters, inputs, kSegment);
         const SegmentPath path = integrate_segment(model, parameters, inputs, kSegment);
         CHECK((linearized.predicted.vector() - path.sensor_motion().vector()).norm() < 1e-12);
@@ -168,7 +170,7 @@ TEST_CASE("the derivative is exact for a sensor whose place is known") {
 
 TEST_CASE("a spin of more than one turn keeps its turns in the prediction") {
   const MotionModel model(named_basis("edd-2"), {});
-  const InputTrack inputs = tests::sampled([](double) { return BodyTwist{0.1, 0.0, 5.0}; }, 0.0, 0.05, 100);
+  const InputHistory inputs = tests::sampled([](double) { return BodyTwist{0.1, 0.0, 5.0}; }, 0.0, 0.05, 100);
   const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 1.0, .end = 3.0});
   CHECK(at.predicted.theta == doctest::Approx(10.0).epsilon(1e-12));
 }

@@ -18,7 +18,7 @@ namespace {
 
 SegmentPath sample_path() {
   const Basis basis = named_basis("odd-even-10");
-  const InputTrack inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
+  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
   return integrate_segment(MotionModel(basis, {}), tests::sample_slip(basis, 41), inputs, {.start = 1.0, .end = 4.0});
 }
 
@@ -33,7 +33,7 @@ Eigen::Matrix3d sample_covariance(int draws, const std::function<Eigen::Vector3d
   return squares / draws - sum * sum.transpose() / draws / draws;
 }
 
-/// Eigenvalues of sampled against stated covariance: all one where they agree.
+/// Eigenvalues of sampled against reported covariance: all one where they agree.
 double worst_ratio(const Eigen::Matrix3d& sampled, const Eigen::Matrix3d& stated) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> solver(sampled, stated);
   return (solver.eigenvalues().array() - 1.0).abs().maxCoeff();
@@ -145,7 +145,7 @@ TEST_CASE("motions that meet at a measured pose share its noise") {
 }
 
 TEST_CASE("a parked robot gathers no slip noise") {
-  const InputTrack inputs = tests::sampled([](double) { return BodyTwist{}; }, 0.0, 0.05, 100);
+  const InputHistory inputs = tests::sampled([](double) { return BodyTwist{}; }, 0.0, 0.05, 100);
   const SegmentPath path = integrate_segment(MotionModel(named_basis("edd-2"), {}), Eigen::Vector2d::Zero(), inputs,
                                              {.start = 1.0, .end = 4.0});
   const MotionNoise noise{.psd_time = {1.0, 1.0, 1.0}, .psd_motion = {1.0, 1.0, 1.0}, .fraction = {1.0, 1.0, 1.0}};
@@ -155,8 +155,8 @@ TEST_CASE("a parked robot gathers no slip noise") {
 TEST_CASE("white slip noise does not depend on how finely the drive is sampled") {
   const MotionNoise noise{.psd_time = {2e-3, 1e-3, 3e-3}, .psd_motion = {1e-3, 2e-3, 1e-3}};
   const auto covariance = [&](double period) {
-    const InputTrack inputs = tests::sampled([](double) { return BodyTwist{1.0, 0.0, 0.4}; }, 0.0, period,
-                                             static_cast<std::size_t>(6.0 / period));
+    const InputHistory inputs = tests::sampled([](double) { return BodyTwist{1.0, 0.0, 0.4}; }, 0.0, period,
+                                               static_cast<std::size_t>(6.0 / period));
     const SegmentPath path = integrate_segment(MotionModel(named_basis("edd-2"), {}), Eigen::Vector2d::Zero(), inputs,
                                                {.start = 1.0, .end = 4.0});
     return slip_covariance(path, noise);
@@ -165,7 +165,7 @@ TEST_CASE("white slip noise does not depend on how finely the drive is sampled")
 }
 
 TEST_CASE("on a straight line, slip noise grows as time and yaw noise swings the end sideways") {
-  const InputTrack inputs = tests::sampled([](double) { return BodyTwist{2.0, 0.0, 0.0}; }, 0.0, 0.01, 1000);
+  const InputHistory inputs = tests::sampled([](double) { return BodyTwist{2.0, 0.0, 0.0}; }, 0.0, 0.01, 1000);
   const SegmentPath path = integrate_segment(MotionModel(named_basis("edd-2"), {}), Eigen::Vector2d::Zero(), inputs,
                                              {.start = 1.0, .end = 4.0});
   const Eigen::Matrix3d covariance = slip_covariance(path, {.psd_time = {0.1, 0.0, 0.2}});

@@ -38,10 +38,10 @@ TEST_CASE("a sensor turned to the left sees the robot drive to its right") {
 
 TEST_CASE("the robot's motion that a sensor tells is the one that moved the sensor so") {
   for (const Pose2& robot : kMotions) {
-    for (const Pose2& mount : kMounts) {
+    for (const Pose2& sensor_extrinsics : kMounts) {
       SegmentPath path;
       path.poses = {Pose2{}, robot};
-      path.sensor = mount;
+      path.sensor = sensor_extrinsics;
       CHECK((path.robot_motion(path.sensor_motion()).vector() - robot.vector()).norm() < 1e-12);
     }
   }
@@ -49,18 +49,18 @@ TEST_CASE("the robot's motion that a sensor tells is the one that moved the sens
 
 TEST_CASE("the derivatives of a sensor's motion are exact") {
   for (const Pose2& robot : kMotions) {
-    for (const Pose2& mount : kMounts) {
+    for (const Pose2& sensor_extrinsics : kMounts) {
       const auto by_robot = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
-        return sensor_motion(Pose2::from_vector(at), mount).vector();
+        return sensor_motion(Pose2::from_vector(at), sensor_extrinsics).vector();
       };
       const auto by_mount = [&](const Eigen::VectorXd& at) -> Eigen::VectorXd {
         return sensor_motion(robot, Pose2::from_vector(at)).vector();
       };
-      CHECK(tests::jacobian_error(sensor_by_robot(robot, mount),
+      CHECK(tests::jacobian_error(sensor_by_robot(robot, sensor_extrinsics),
                                   tests::finite_difference(by_robot, robot.vector(), 1e-3),
                                   0.1) < tests::kDerivativeTolerance);
-      CHECK(tests::jacobian_error(sensor_by_mount(robot, mount),
-                                  tests::finite_difference(by_mount, mount.vector(), 1e-3),
+      CHECK(tests::jacobian_error(sensor_by_extrinsics(robot, sensor_extrinsics),
+                                  tests::finite_difference(by_mount, sensor_extrinsics.vector(), 1e-3),
                                   0.1) < tests::kDerivativeTolerance);
     }
   }
@@ -68,7 +68,7 @@ TEST_CASE("the derivatives of a sensor's motion are exact") {
 
 TEST_CASE("slip noise is the robot's: a sensor ahead of the axle turns yaw noise into sideways noise") {
   const MotionModel model(Basis("none", {}, {}, {}), {});
-  const InputTrack inputs = tests::sampled([](double) { return BodyTwist{0.0, 0.0, 1.0}; }, 0.0, 0.05, 100);
+  const InputHistory inputs = tests::sampled([](double) { return BodyTwist{0.0, 0.0, 1.0}; }, 0.0, 0.05, 100);
   Segment segment{.start = 1.0, .end = 1.5};
   const MotionNoise noise{.psd_time = {0.0, 0.0, 1e-3}};
   const Eigen::Matrix3d robot = slip_covariance(integrate_segment(model, Eigen::VectorXd(0), inputs, segment), noise);

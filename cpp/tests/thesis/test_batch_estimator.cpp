@@ -69,7 +69,7 @@ TEST_CASE("it needs the inputs no longer than learning takes") {
   const auto drive = drive_of(model);
   Estimator known = make_estimator("batch", model, wide_prior(model), settings_with(2.5));
   Estimator alone = make_estimator("batch", model, wide_prior(model), settings_with(2.5));
-  std::optional<InputTrack> passing(drive.inputs);
+  std::optional<InputHistory> passing(drive.inputs);
   for (const Segment& segment : drive.segments) {
     known.learn(drive.inputs, segment);
     alone.learn(*passing, segment);

@@ -25,7 +25,7 @@ MotionModel linear_model() {
   return {Basis("linear", lon, lat, none), {}};
 }
 
-InputTrack varying_speed() {
+InputHistory varying_speed() {
   const std::vector<double> t{0.0, 2.0, 5.0, 7.5, 9.0}, v{1.0, 2.0, 0.5, 1.5, 0.7}, zero(5, 0.0);
   return {t, v, zero, zero};
 }
@@ -75,7 +75,7 @@ Estimate batch_axis(const Eigen::VectorXd& z, const Eigen::VectorXd& driven, dou
 
 TEST_CASE("with shared poses the filter is the batch solution of the whole drive") {
   const MotionModel model = linear_model();
-  const InputTrack inputs = varying_speed();
+  const InputHistory inputs = varying_speed();
   const auto poses = measured_poses(91);
   const Estimate prior{Eigen::VectorXd::Zero(2), 0.04 * Eigen::MatrixXd::Identity(2, 2)};
   DelayedState filter(model, prior, settings_of(kShared));
@@ -105,7 +105,7 @@ TEST_CASE("with shared poses the filter is the batch solution of the whole drive
 
 TEST_CASE("a pose that arrives late tells as much as one in time") {
   const MotionModel model = linear_model();
-  const InputTrack inputs = varying_speed();
+  const InputHistory inputs = varying_speed();
   const Estimate prior{Eigen::VectorXd::Zero(2), 0.04 * Eigen::MatrixXd::Identity(2, 2)};
   DelayedState in_time(model, prior, settings_of(kShared));
   in_time.start(0.0, {});
@@ -125,7 +125,8 @@ TEST_CASE("a pose that arrives late tells as much as one in time") {
 
 TEST_CASE("the Jacobian of the pose prediction by parameters and start is the derivative") {
   const MotionModel model(named_basis("odd-even-10"), {});
-  const InputTrack inputs = tests::simulate_drive(model, Eigen::VectorXd::Zero(10), {.seed = 92, .windows = 2}).inputs;
+  const InputHistory inputs =
+      tests::simulate_drive(model, Eigen::VectorXd::Zero(10), {.seed = 92, .windows = 2}).inputs;
   // Without noise the covariance after advance() is F P F^T: with P = I, the cross-covariance is F itself.
   const MotionNoise exact{.pose_std_xy = 1.0, .pose_std_yaw = 1.0};
   DelayedState filter(model, {Eigen::VectorXd::Constant(10, 0.05), Eigen::MatrixXd::Identity(10, 10)},

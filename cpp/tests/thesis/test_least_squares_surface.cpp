@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares over slip terms: solution, named undetermined directions, and the two spread surfaces.
+// Least squares over slip terms: solution, named not_identifiable directions, and the two spread surfaces.
 #include <doctest/doctest.h>
 
 #include <Eigen/LU>

@@ -12,11 +12,11 @@
 namespace slipwise {
 namespace {
 
-const SlidingModeSettings kSettings{.track = tests::kTestTrack};
+const SlidingModeSettings kSettings{.wheel_separation = tests::kTestTrack};
 
-Segment exact_segment(const InputTrack& track, double start, const SlipRatios& slip) {
+Segment exact_segment(const InputHistory& history, double start, const SlipRatios& slip) {
   Segment segment{.start = start, .end = start + 1.0};
-  segment.measured = linearize_slip_ratios(track, segment, slip, tests::kTestTrack).segment.predicted;
+  segment.measured = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
   return segment;
 }
 
@@ -38,11 +38,11 @@ TEST_CASE("known slip is reached within twenty seconds of driving at 0.4 m/s and
 }
 
 TEST_CASE("outside its boundary layer a slip moves at the full gain and no faster") {
-  SlidingModeObserver observer({.track = tests::kTestTrack, .ratio_gain = 0.02});
-  const InputTrack track = tests::straight_track(1.0);
+  SlidingModeObserver observer({.wheel_separation = tests::kTestTrack, .ratio_gain = 0.02});
+  const InputHistory history = tests::straight_inputs(1.0);
   const SlipRatios slip{.left = 0.5, .right = -0.5};
   for (int i = 1; i <= 10; ++i) {
-    observer.learn(track, exact_segment(track, i, slip));
+    observer.learn(history, exact_segment(history, i, slip));
     CHECK(observer.slip().left == doctest::Approx(0.02 * i));
     CHECK(observer.slip().right == doctest::Approx(-0.02 * i));
   }
@@ -52,10 +52,10 @@ TEST_CASE("at its goal the observer comes to rest without chatter, at any speed"
   for (const double v : {0.1, 1.0, 20.0, -3.0}) {
     CAPTURE(v);
     SlidingModeObserver observer(kSettings);
-    const InputTrack track = tests::straight_track(v);
+    const InputHistory history = tests::straight_inputs(v);
     double before = tests::kTestSlip.left;
     for (int i = 1; i <= 200; ++i) {
-      observer.learn(track, exact_segment(track, i, {.left = 0.18, .right = 0.18, .angle = 0.1}));
+      observer.learn(history, exact_segment(history, i, {.left = 0.18, .right = 0.18, .angle = 0.1}));
       const double left = 0.18 - observer.slip().left;
       CHECK(left >= -1e-12);  // it never overshoots
       CHECK(left <= before + 1e-12);
@@ -86,7 +86,7 @@ TEST_CASE("a parked side and a turn in place teach nothing about the slip that t
   SlidingModeObserver observer(kSettings);
   const double c = tests::kTestTrack / 2.0;
   const std::vector<double> t{0.0}, v{0.4}, zero{0.0}, pivot{0.4 / c}, turn{1.0};
-  const InputTrack one_side(t, v, zero, pivot), in_place(t, zero, zero, turn);
+  const InputHistory one_side(t, v, zero, pivot), in_place(t, zero, zero, turn);
   observer.learn(one_side, {.start = 1.0, .end = 2.0, .measured = {0.2, 0.1, 0.5}});
   CHECK(observer.slip().left == 0.0);
   CHECK(observer.slip().right != 0.0);
@@ -97,19 +97,19 @@ TEST_CASE("a parked side and a turn in place teach nothing about the slip that t
 
 TEST_CASE("a segment of nearly half a turn is left out, and says so") {
   SlidingModeObserver observer(kSettings);
-  const InputTrack track = tests::straight_track(1.0);
-  const auto update = observer.learn(track, {.start = 1.0, .end = 2.0, .measured = {0.1, 0.1, 3.1}});
+  const InputHistory history = tests::straight_inputs(1.0);
+  const auto update = observer.learn(history, {.start = 1.0, .end = 2.0, .measured = {0.1, 0.1, 3.1}});
   CHECK_FALSE(update.used);
   CHECK(observer.slip().vector() == Eigen::Vector3d::Zero());
 }
 
 TEST_CASE("senseless settings and segments are refused") {
   CHECK_THROWS_AS(SlidingModeObserver({.ratio_gain = 0.0}), std::invalid_argument);
-  CHECK_THROWS_WITH_AS(SlidingModeObserver({.track = -1.0}), doctest::Contains("must be positive"),
+  CHECK_THROWS_WITH_AS(SlidingModeObserver({.wheel_separation = -1.0}), doctest::Contains("must be positive"),
                        std::invalid_argument);
   SlidingModeObserver observer(kSettings);
-  const InputTrack track = tests::straight_track(1.0);
-  CHECK_THROWS_AS(observer.learn(track, {.start = 2.0, .end = 2.0}), std::invalid_argument);
+  const InputHistory history = tests::straight_inputs(1.0);
+  CHECK_THROWS_AS(observer.learn(history, {.start = 2.0, .end = 2.0}), std::invalid_argument);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ namespace {
 const MotionNoise kNoise{.psd_time = {1e-4, 1e-4, 1e-4}, .pose_std_xy = 0.005, .pose_std_yaw = 0.003};
 
 SlipRatioFilterSettings constant_slip() {
-  return {.track = tests::kTestTrack, .walk_ratio = 0.0, .walk_angle = 0.0, .noise = kNoise};
+  return {.wheel_separation = tests::kTestTrack, .walk_ratio = 0.0, .walk_angle = 0.0, .noise = kNoise};
 }
 
 TEST_CASE("the predicted chart has the derivative that is stated") {
@@ -65,13 +65,13 @@ TEST_CASE("the random walk lets the filter follow slip that changes") {
   settings.walk_ratio = 0.1;
   settings.walk_angle = 0.05;
   SlipRatioFilter following(settings), stiff(constant_slip());
-  const InputTrack track = tests::straight_track(1.0);
+  const InputHistory history = tests::straight_inputs(1.0);
   for (int i = 0; i < 80; ++i) {
     const SlipRatios slip = i < 60 ? SlipRatios{} : SlipRatios{.left = 0.2, .right = 0.2, .angle = -0.1};
     Segment segment{.start = 1.0 + i, .end = 2.0 + i};
-    segment.measured = linearize_slip_ratios(track, segment, slip, tests::kTestTrack).segment.predicted;
-    following.learn(track, segment);
-    stiff.learn(track, segment);
+    segment.measured = linearize_slip_ratios(history, segment, slip, tests::kTestTrack).segment.predicted;
+    following.learn(history, segment);
+    stiff.learn(history, segment);
   }
   CHECK(following.slip().left == doctest::Approx(0.2).epsilon(0.05));
   CHECK(following.slip().angle == doctest::Approx(-0.1).epsilon(0.05));
@@ -81,10 +81,10 @@ TEST_CASE("the random walk lets the filter follow slip that changes") {
 TEST_CASE("turning in place teaches both slip ratios and no slip angle") {
   SlipRatioFilter filter(constant_slip());
   const std::vector<double> t{0.0}, zero{0.0}, turn{0.8};
-  const InputTrack track(t, zero, zero, turn);
+  const InputHistory history(t, zero, zero, turn);
   for (int i = 0; i < 20; ++i) {
     Segment segment{.start = 1.0 + i, .end = 2.0 + i, .measured = {0.0, 0.0, 0.6}};
-    filter.learn(track, segment);
+    filter.learn(history, segment);
   }
   CHECK(filter.slip().left == doctest::Approx(0.25).epsilon(0.05));
   CHECK(filter.slip().right == doctest::Approx(0.25).epsilon(0.05));
@@ -93,8 +93,8 @@ TEST_CASE("turning in place teaches both slip ratios and no slip angle") {
 
 TEST_CASE("a pose jump counts for less and leaves the slip possible") {
   SlipRatioFilter filter(constant_slip());
-  const InputTrack track = tests::straight_track(1.0);
-  const auto update = filter.learn(track, {.start = 1.0, .end = 2.0, .measured = {-40.0, 25.0, 1.0}});
+  const InputHistory history = tests::straight_inputs(1.0);
+  const auto update = filter.learn(history, {.start = 1.0, .end = 2.0, .measured = {-40.0, 25.0, 1.0}});
   CHECK(update.weight < 0.1);
   CHECK(bounded(filter.slip()).vector() == filter.slip().vector());
   CHECK(filter.estimate().covariance.allFinite());
@@ -115,14 +115,15 @@ TEST_CASE("the linear posterior predicts what the slip ratios predict") {
 }
 
 TEST_CASE("senseless settings and segments are refused") {
-  CHECK_THROWS_AS(SlipRatioFilter({.track = 0.0, .noise = kNoise}), std::invalid_argument);
+  CHECK_THROWS_AS(SlipRatioFilter({.wheel_separation = 0.0, .noise = kNoise}), std::invalid_argument);
   CHECK_THROWS_AS(SlipRatioFilter({.walk_ratio = -0.1, .noise = kNoise}), std::invalid_argument);
-  CHECK_THROWS_WITH_AS(SlipRatioFilter({}), doctest::Contains("positive track"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(SlipRatioFilter({}), doctest::Contains("positive history"), std::invalid_argument);
   SlipRatioFilter filter(constant_slip());
-  const InputTrack track = tests::straight_track(1.0);
-  CHECK_THROWS_AS(filter.learn(track, {.start = 2.0, .end = 1.0}), std::invalid_argument);
+  const InputHistory history = tests::straight_inputs(1.0);
+  CHECK_THROWS_AS(filter.learn(history, {.start = 2.0, .end = 1.0}), std::invalid_argument);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_AS(filter.learn(track, {.start = 1.0, .end = 2.0, .measured = {nan, 0.0, 0.0}}), std::invalid_argument);
+  CHECK_THROWS_AS(filter.learn(history, {.start = 1.0, .end = 2.0, .measured = {nan, 0.0, 0.0}}),
+                  std::invalid_argument);
 }
 
 }  // namespace

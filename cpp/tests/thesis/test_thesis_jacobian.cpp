@@ -14,7 +14,7 @@ namespace {
 
 const Segment kSegment{.start = 0.3, .end = 5.3};
 
-InputTrack forward_drive() { return tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 120); }
+InputHistory forward_drive() { return tests::sampled(tests::sample_drives().front().twist, 0.0, 0.05, 120); }
 
 /// Integral of Gamma(theta) U dt (6.7, 6.9, 6.11) by Simpson's rule over every held input.
 Eigen::MatrixXd printed(const MotionModel& model, const SegmentPath& path) {
@@ -27,9 +27,9 @@ Eigen::MatrixXd printed(const MotionModel& model, const SegmentPath& path) {
     for (Eigen::Index i = 0; i < model.size(); ++i) {
       u(static_cast<Eigen::Index>(model.basis().channel(static_cast<std::size_t>(i))), i) = c[i];
     }
-    for (const auto& [share, weight] : {std::pair{0.0, 1.0}, std::pair{0.5, 4.0}, std::pair{1.0, 1.0}}) {
+    for (const auto& [fraction, weight] : {std::pair{0.0, 1.0}, std::pair{0.5, 4.0}, std::pair{1.0, 1.0}}) {
       Eigen::Matrix3d gamma = Eigen::Matrix3d::Identity();
-      gamma.topLeftCorner<2, 2>() = rotation(path.poses[k].theta + share * path.tangents[k].z());
+      gamma.topLeftCorner<2, 2>() = rotation(path.poses[k].theta + fraction * path.tangents[k].z());
       jacobian += gamma * u * (weight / 6.0 * step.duration);
     }
   }
@@ -48,7 +48,7 @@ TEST_CASE("the thesis's Jacobian is the integral of (6.7)") {
 TEST_CASE(
     "the exact Jacobian is the derivative, and the thesis's is not: it lacks what yaw slip does to the position") {
   const MotionModel model(named_basis("thesis-15"), {});
-  const InputTrack inputs = forward_drive();
+  const InputHistory inputs = forward_drive();
   const Eigen::VectorXd alpha = tests::sample_slip(model.basis(), 62, 0.05);
   const auto predict = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
     return integrate_segment(model, p, inputs, kSegment).poses.back().vector();

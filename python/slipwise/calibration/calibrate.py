@@ -13,7 +13,7 @@ from slipwise.calibration.learner import Progress
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
 from slipwise.calibration.plain import baseline_predictor
-from slipwise.calibration.predictors import Predictor, final_tail, predict_all, predictions_of, tail_of
+from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
 from slipwise.calibration.prepared_run import (
     PreparedRun,
     WindowSet,
@@ -54,7 +54,7 @@ def calibrate(
             is that of the filter that runs along.
         smooth: also say what the slip was during each window, given the whole log: for slip that changes
             slowly. The model stays what it is.
-        progress: called with the share done, 0 to 1.
+        progress: called with the fraction done, 0 to 1.
 
     Raises:
         LogError: the log has no such input, no poses or no window to learn from, or no model holds it.
@@ -65,7 +65,9 @@ def calibrate(
     drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
+    found = contradictions(
+        log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
+    )
     learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
     learned = learn(settings, windows, progress)
     judged = judged_on(learned, windows, (log, input_name, settings), found)
@@ -91,10 +93,10 @@ def calibrate(
 
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn in one pass, which also makes the predictions that are judged."""
-    keep = Keep(settings.vehicle.track)
+    keep = Keep(settings.vehicle.wheel_separation)
     learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress)
-    tails = {
-        p.horizon: tail_of(student)
+    students = {
+        p.horizon: student_of(student)
         for p, student in zip(learned.predictions, learned.students, strict=True)
         if len(p)
     }
@@ -103,7 +105,7 @@ def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | Non
         learned.slip,
         learned.predictions,
         learned.baseline,
-        tails,
+        students,
         learned.history,
         learned.bases,
         learned.limits,
@@ -117,15 +119,15 @@ def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | N
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]
     predictions = predict_all(predictor, windows, sets)
     plain = tuple(predictions_of(baseline_predictor(settings), windows, targets) for targets in sets)
-    tails = {p.horizon: final_tail(p) for p in predictions if len(p)}
+    students = {p.horizon: final_student(p) for p in predictions if len(p)}
     kept = run.kept()
-    return Learned(kept, kept, predictions, plain, tails, run.history(), run.bases)
+    return Learned(kept, kept, predictions, plain, students, run.history(), run.bases)
 
 
 def learning_windows(drive: tuple[PreparedRun, ...], input_name: str, settings: Settings) -> WindowSet:
     """Cut the windows to learn from: of the length in the settings, or whole frames that are shorter."""
     rules = replace(settings.rules(), whole_frames=True)
-    return collect_windows(drive, settings.window_length(input_name), rules)
+    return collect_windows(drive, settings.segment_length(input_name), rules)
 
 
 def refuse_empty(windows: WindowSet, log: Log) -> None:

@@ -17,7 +17,7 @@ UpdateT_co = TypeVar("UpdateT_co", covariant=True)
 class OnlineLearner(Protocol[UpdateT_co]):
     """Anything that learns windows in order, and says what it believes now."""
 
-    def learn(self, inputs: _core.InputTrack, segment: _core.Segment, /) -> UpdateT_co:
+    def learn(self, inputs: _core.InputHistory, segment: _core.Segment, /) -> UpdateT_co:
         """Learn one window and say how it was taken in."""
         ...
 
@@ -72,7 +72,7 @@ class CausalPass(Generic[UpdateT]):
         if until < self._learned:
             raise ValueError(f"the posterior after {until} windows is gone: {self._learned} are learned")
         for i in range(self._learned, until):
-            update = self._learner.learn(self._windows.track(i), self._windows.segments[i])
+            update = self._learner.learn(self._windows.input_history(i), self._windows.segments[i])
             self._learned = i + 1
             if self._observer is not None:
                 self._observer(i, update, self._learner.posterior())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the stated uncertainty is true: held-out errors beside the ellipsoids that should hold them."""
+"""Whether the reported uncertainty is true: held-out errors beside the ellipsoids that should hold them."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Consistency:
 
     @property
     def too_small(self) -> bool:
-        """Whether the stated covariance is far too small."""
+        """Whether the reported covariance is far too small."""
         return self.nis > FAR * self.band[1]
 
     @property
     def too_large(self) -> bool:
-        """Whether the stated covariance is far too large."""
+        """Whether the reported covariance is far too large."""
         return self.segments >= ENOUGH and self.nis < self.band[0] / FAR
 
     @property
@@ -43,7 +43,7 @@ class Consistency:
 
     @property
     def true(self) -> bool:
-        """Whether nothing speaks against the stated covariance."""
+        """Whether nothing speaks against the reported covariance."""
         return not (self.too_small or self.too_large)
 
     def sentence(self) -> str:
@@ -52,7 +52,7 @@ class Consistency:
             return ""
         size = "small" if self.too_small else "large"
         return (
-            f"Its stated uncertainty is too {size}: NIS {number_text(self.nis)} where {TRUE_NIS:g} is true, "
+            f"Its reported uncertainty is too {size}: NIS {number_text(self.nis)} ({TRUE_NIS:g} is true), "
             f"and the 95 % ellipsoids hold {100.0 * self.inside:.0f} % of the held-out segments."
         )
 
@@ -62,7 +62,7 @@ class Consistency:
             return ()
         factor = number_text(self.nis / TRUE_NIS, 2)
         look = (
-            " The report's errors over time show where it fails: pose jumps, or ground that changed?"
+            " The report's errors over time show where it fails: pose jumps, or terrain that changed?"
             if self.too_small
             else ""
         )

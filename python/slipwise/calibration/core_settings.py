@@ -22,10 +22,15 @@ def core_settings(settings: Settings, input_name: str, horizons: Sequence[float]
     """
     core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
     from_commands = input_name == "command"
-    stream = settings.rules().stream_settings(settings.window_length(input_name), from_commands=from_commands)
+    stream = settings.rules().stream_settings(
+        settings.segment_length(input_name), from_commands=from_commands
+    )
     stream.whole_frames, stream.horizons = True, list(horizons)
     hypotheses.bases, hypotheses.dynamics = settings.bases(), from_commands
-    hypotheses.clock_offset, hypotheses.mount = settings.learn_clock_offset, settings.mount.learn
+    hypotheses.clock_offset, hypotheses.sensor_extrinsics = (
+        settings.learn_clock_offset,
+        settings.sensor_extrinsics.learn,
+    )
     tried = settings.auto.structures if settings.basis == "auto" else []
     hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
     hypotheses.baseline = "baseline" in tried

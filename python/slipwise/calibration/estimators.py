@@ -23,12 +23,12 @@ def estimator_basis(settings: Settings) -> str:
 
 
 def estimator_motion(name: str, settings: Settings, input_name: str) -> _core.MotionModel:
-    """Return the model that an estimator learns; those of the thesis have no lag, delay, offset or mount."""
+    """Return the model that an estimator learns; those of the thesis have neither actuator nor offset."""
     chosen = settings.model_copy(update={"basis": estimator_basis(settings)})
     thesis = _core.learns_overlapping_segments(name)
     dynamics, offset = learned_parts(settings, input_name)
     motion = _core.MotionModel(chosen.bases()[0], dynamics and not thesis, offset and not thesis)
-    return motion.with_mount(settings.mount.learn and not thesis)
+    return motion.with_extrinsics(settings.sensor_extrinsics.learn and not thesis)
 
 
 def learned_parts(settings: Settings, input_name: str) -> tuple[bool, bool]:
@@ -53,7 +53,7 @@ def fed_windows(name: str, settings: Settings, windows: WindowSet) -> WindowSet:
     if not _core.learns_overlapping_segments(name):
         return windows
     rules = replace(settings.rules(), whole_frames=True, stride=THESIS_STRIDE)
-    return collect_windows(windows.drive, settings.window.length or THESIS_WINDOW, rules)
+    return collect_windows(windows.drive, settings.segment.length or THESIS_WINDOW, rules)
 
 
 class EstimatorLearner:
@@ -64,7 +64,7 @@ class EstimatorLearner:
         self._estimator = estimator
         self._motion = estimator.model
 
-    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+    def learn(self, inputs: _core.InputHistory, segment: _core.Segment) -> _core.IekfUpdate:
         """Learn one window."""
         return self._estimator.learn(inputs, segment)
 

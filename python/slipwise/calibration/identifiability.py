@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from slipwise import _core
 from slipwise.calibration.learner import Posterior
 from slipwise.models.parameter_table import physical_name
-from slipwise.models.schema import UNDETERMINED_RATIO
+from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
-LOOK_ALIKE = 0.9  # correlation from which on two parameters count as look-alikes
+LOOK_ALIKE = 0.9  # correlation from which on two parameters count as confounded parameters
 
 
 @dataclass(frozen=True)
-class LookAlike:
+class Confounded:
     """Two parameters that the drive can hardly tell apart: together they are known better than each."""
 
     first: str
@@ -26,21 +26,21 @@ class LookAlike:
         return f"{physical_name(self.first)} and {physical_name(self.second)} ({self.correlation:+.2f})"
 
 
-def undetermined(posterior: Posterior) -> tuple[str, ...]:
+def not_identifiable(posterior: Posterior) -> tuple[str, ...]:
     """Return the parameters of which the drive told little more than the prior did."""
     ratios = posterior.variance_ratio.tolist()
     return tuple(
         info.name
         for info, ratio in zip(posterior.motion.parameters, ratios, strict=True)
-        if ratio > UNDETERMINED_RATIO
+        if ratio > UNIDENTIFIABLE_RATIO
     )
 
 
-def look_alikes(posterior: Posterior) -> tuple[LookAlike, ...]:
+def confounded(posterior: Posterior) -> tuple[Confounded, ...]:
     """Return the pairs that the drive can hardly tell apart, the closest first."""
     names = [info.name for info in posterior.motion.parameters]
     pairs = _core.correlated_pairs(posterior.covariance, LOOK_ALIKE)
-    return tuple(LookAlike(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
+    return tuple(Confounded(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
 
 
 def drives_for(names: tuple[str, ...]) -> tuple[str, ...]:
@@ -53,8 +53,8 @@ def drives_for(names: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(advice)
 
 
-def advice_for_pairs(pairs: tuple[LookAlike, ...]) -> tuple[str, ...]:
-    """Say what would tell look-alikes apart, where that is known, in words."""
+def advice_for_pairs(pairs: tuple[Confounded, ...]) -> tuple[str, ...]:
+    """Say what would tell confounded parameters apart, where that is known, in words."""
     advice = []
     for matches, sentence in _APART:
         found = [str(pair) for pair in pairs if matches(pair) or matches(_swapped(pair))]
@@ -100,25 +100,25 @@ def _turns(name: str) -> bool:
     return "w" in _terms(name) or "kappa" in _terms(name)
 
 
-def _swapped(pair: LookAlike) -> LookAlike:
-    return LookAlike(pair.second, pair.first, pair.correlation)
+def _swapped(pair: Confounded) -> Confounded:
+    return Confounded(pair.second, pair.first, pair.correlation)
 
 
-def _same_channel(pair: LookAlike) -> bool:
+def _same_channel(pair: Confounded) -> bool:
     return pair.first.rpartition("_")[2] == pair.second.rpartition("_")[2]
 
 
 _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
     (
-        lambda n: n in ("log_lag_v", "log_delay_v", "delay_v", "gain_v"),
+        lambda n: n in ("log_time_constant_v", "log_delay_v", "delay_v", "gain_v"),
         "Change the speed in steps, from rest and back, several times",
     ),
     (
-        lambda n: n in ("log_lag_omega", "log_delay_omega", "delay_omega", "gain_omega"),
+        lambda n: n in ("log_time_constant_omega", "log_delay_omega", "delay_omega", "gain_omega"),
         "Change the yaw rate in steps, to both sides, several times",
     ),
     (
-        lambda n: n.startswith(("slow_share", "log_slow_lag")),
+        lambda n: n.startswith(("slow_fraction", "log_slow_time_constant")),
         "After a step of the command, hold it for several seconds",
     ),
     (
@@ -145,13 +145,15 @@ _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
     ),
 )
 
-_APART: tuple[tuple[Callable[[LookAlike], bool], str], ...] = (
+_APART: tuple[tuple[Callable[[Confounded], bool], str], ...] = (
     (
         lambda p: p.first.startswith("sensor_") and "." in p.second,
-        "A sensor away from base_link looks like slip; give its place under [mount], or leave out that term",
+        "A sensor away from base_link looks like slip: give its place under [sensor_extrinsics]",
     ),
     (
-        lambda p: p.first.startswith("log_lag") and p.second.startswith("log_delay") and _same_channel(p),
+        lambda p: (
+            p.first.startswith("log_time_constant") and p.second.startswith("log_delay") and _same_channel(p)
+        ),
         "Lag and delay trade places; record poses more often, and change the command in steps",
     ),
 )

@@ -32,7 +32,7 @@ class Judgement:
     @property
     def too_short(self) -> bool:
         """Whether there are too few segments to judge."""
-        return self.held_out.windows < FEWEST_WINDOWS
+        return self.held_out.segments < FEWEST_WINDOWS
 
     @property
     def beats_baseline(self) -> bool:
@@ -76,13 +76,13 @@ def judge(learned: Predictions, baseline: Predictions) -> Judgement:
     half = held_out_half(len(learned))
     held_out = HeldOut(
         horizon=learned.horizon,
-        windows=half.stop - half.start,
+        segments=half.stop - half.start,
         position=_mean(learned.position_error[half]),
         heading=_mean(learned.heading_error[half]),
-        plain_position=_mean(baseline.position_error[half]),
-        plain_heading=_mean(baseline.heading_error[half]),
+        baseline_position=_mean(baseline.position_error[half]),
+        baseline_heading=_mean(baseline.heading_error[half]),
     )
-    if held_out.windows == 0:
+    if held_out.segments == 0:
         return Judgement(held_out, (np.nan, np.nan, np.nan), (np.nan, np.nan, np.nan))
     return Judgement(
         held_out,

@@ -8,9 +8,9 @@ from slipwise.number_text import number_text
 
 _KINDS = {
     _core.LimitKind.DeadBand: "dead band",
-    _core.LimitKind.Top: "top",
-    _core.LimitKind.Acceleration: "acceleration",
-    _core.LimitKind.Braking: "braking",
+    _core.LimitKind.Saturation: "saturation",
+    _core.LimitKind.SlewRateUp: "slew_rate_up",
+    _core.LimitKind.SlewRateDown: "slew_rate_down",
 }
 _AXES = {
     _core.LimitedAxis.Speed: "speed",
@@ -43,10 +43,11 @@ def limits_advice(search: _core.LimitSearch) -> tuple[str, ...]:
         kinds.DeadBand: f"No dead-band shows: command less than {_pair(*slowest)} to see one."
         if any(slowest)
         else "",
-        kinds.Top: f"No top speed shows: command more than {_pair(speed.fastest, turn.fastest)} to see one.",
-        kinds.Acceleration: "No limit of acceleration shows: step from rest by more than"
+        kinds.Saturation: "No saturation shows: command more than"
+        f" {_pair(speed.fastest, turn.fastest)} to see one.",
+        kinds.SlewRateUp: "No limit of acceleration shows: step from rest by more than"
         f" {_pair(speed.step, turn.step)} to see one.",
-        kinds.Braking: "No limit of braking shows: step to rest from more than"
+        kinds.SlewRateDown: "No limit of braking shows: step to rest from more than"
         f" {_pair(speed.step, turn.step)} to see one.",
     }
     return tuple(sentence for kind, sentence in sentences.items() if sentence and kind not in found)

@@ -31,7 +31,7 @@ class LogTable(BaseModel):
     left_joints: list[str] = []
     right_joints: list[str] = []
     wheel_radius: Positive | None = None  # m
-    track: Positive | None = None  # m
+    wheel_separation: Positive | None = None  # m
     wheelbase: Positive | None = None  # m
     command_scale: Factors = [1.0, 1.0]  # of the commanded speed and yaw rate
     wheel_scale: Factors = [1.0, 1.0]  # of the wheels'

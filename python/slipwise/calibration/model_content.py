@@ -26,7 +26,7 @@ class Learned:
     identifiable: Posterior  # the same; of the next best where the baseline is kept, which has no parameters
     predictions: tuple[Predictions, ...]  # causal, of the horizons that are judged
     baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
-    tails: dict[float, schema.Tail]
+    students: dict[float, schema.StudentT]
     history: History | None
     bases: tuple[str, ...]
     limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
@@ -73,12 +73,12 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         delays=motion.delays,
         clock_offset=motion.clock_offset,
         response=motion.response,
-        mount=motion.mount,
+        sensor_extrinsics=motion.sensor_extrinsics,
         limits=_limits(learned),
         parameters=_parameters(learned.kept),
         covariance=learned.kept.covariance.tolist(),
         noise=_noise(learned, facts.settings),
-        coloured=_coloured(learned.kept, facts.settings.window_length(facts.input_name)),
+        slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         range=facts.range,
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
@@ -86,16 +86,16 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             logs=facts.logs,
             settings=facts.settings.model_dump(exclude_defaults=True),
             learned_seconds=facts.seconds,
-            learned_windows=facts.segments,
+            learned_segments=facts.segments,
         ),
         verdict=schema.VerdictSection(
             good=verdict.good,
             sentence=verdict.sentence,
-            undetermined=list(verdict.undetermined),
+            not_identifiable=list(verdict.not_identifiable),
             advice=list(verdict.advice),
-            look_alikes=[
-                schema.LookAlike(first=pair.first, second=pair.second, correlation=pair.correlation)
-                for pair in verdict.look_alikes
+            confounded=[
+                schema.Confounded(first=pair.first, second=pair.second, correlation=pair.correlation)
+                for pair in verdict.confounded
             ],
             timing=verdict.timing,
             reservations=list(verdict.reservations),
@@ -119,7 +119,7 @@ def _parameters(posterior: Posterior) -> list[schema.Parameter]:
             value=float(posterior.mean[i]),
             std=float(stds[i]),
             prior_std=float(posterior.prior_std[i]),
-            determined=bool(posterior.variance_ratio[i] <= schema.UNDETERMINED_RATIO),
+            identifiable=bool(posterior.variance_ratio[i] <= schema.UNIDENTIFIABLE_RATIO),
         )
         for i, info in enumerate(posterior.motion.parameters)
     ]
@@ -133,22 +133,22 @@ def _noise(learned: Learned, settings: Settings) -> schema.Noise:
         fraction=shape.fraction,
         pose_std_xy=shape.pose_std_xy,
         pose_std_yaw=shape.pose_std_yaw,
-        scale=learned.kept.noise_scale.tolist(),
-        tails=learned.tails,
+        variance_scale=learned.kept.noise_scale.tolist(),
+        student_t=learned.students,
     )
 
 
-def _coloured(posterior: Posterior, window: float) -> schema.SlipDisturbanceSection | None:
+def _slip_disturbance(posterior: Posterior, segment: float) -> schema.SlipDisturbanceSection | None:
     if posterior.disturbance is None:
         return None
     law = posterior.disturbance.law
     candidates = [
         schema.DisturbanceCandidate(
-            drift=disturbance.drift,
-            turn=disturbance.turn,
+            linear=disturbance.linear,
+            angular=disturbance.angular,
             time_constant=disturbance.time_constant,
             weight=float(weight),
         )
         for disturbance, weight in zip(law.candidates, law.weights, strict=True)
     ]
-    return schema.SlipDisturbanceSection(window=window, candidates=candidates)
+    return schema.SlipDisturbanceSection(segment=segment, candidates=candidates)

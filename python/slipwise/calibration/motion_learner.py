@@ -17,7 +17,7 @@ from slipwise.calibration.learned_log import held_out_predictions, kept_posterio
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
-from slipwise.calibration.predictors import tail_of
+from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
@@ -197,7 +197,7 @@ class MotionLearner:
             raise SettingsError(
                 "nothing was learned yet", advice="push inputs and poses of some seconds first"
             )
-        found = self._core.find_limits(self._settings.vehicle.track) if limits else None
+        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
         predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
         students = zip(predictions, model.students, strict=True)
         learned = Learned(
@@ -205,7 +205,7 @@ class MotionLearner:
             posterior_of(model.slip, model.disturbance),
             predictions,
             baseline,
-            {p.horizon: tail_of(student) for p, student in students if len(p)},
+            {p.horizon: student_of(student) for p, student in students if len(p)},
             None,
             tuple(basis.name for basis in self._settings.bases()),
             None if found is None else found.search,

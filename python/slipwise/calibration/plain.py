@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Methods that learn nothing: the plain model, a vendor's track multiplier, and a model from a file."""
+"""Methods that learn nothing: the kinematic baseline, a vendor's multiplier, and a model from a file."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from slipwise.models.model import Model
 
 
 def baseline_predictor(settings: Settings) -> Predictor:
-    """`none`: the robot does at once and exactly what it is told."""
+    """`none`: the robot does at once and exactly what it is commanded."""
     model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
     return _fixed("none", model, np.zeros(0), settings)
 
@@ -27,7 +27,8 @@ def vendor_predictor(multiplier: float, settings: Settings) -> Predictor:
     """
     if not (np.isfinite(multiplier) and multiplier > 0.0):
         raise SettingsError(
-            "the vendor's track multiplier must be positive", advice="Clearpath ships 1.875 for the Husky"
+            "the vendor's wheel separation multiplier must be positive",
+            advice="Clearpath ships 1.875 for the Husky",
         )
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     return _fixed("vendor", model, np.array([0.0, 1.0 / multiplier - 1.0]), settings)
@@ -39,7 +40,7 @@ def model_predictor(model: Model) -> Predictor:
         model.motion,
         model.mean,
         model.covariance,
-        np.array(model.content.noise.scale),
+        np.array(model.content.noise.variance_scale),
         model.prior_std,
         np.ones(len(model.mean)),
         np.ones(1),

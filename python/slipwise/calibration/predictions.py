@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.student import share_inside
+from slipwise.student import fraction_inside
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,10 +24,10 @@ class Predictions:
     t_start: Floats  # s
     t_end: Floats  # s
     pose: Floats  # [N, 3] predicted x, y [m], yaw [rad]
-    covariance: Floats  # [N, 3, 3] of a Student t, growth included
-    growth: Floats  # [N] factor in the covariance that follows from earlier held-out windows
+    covariance: Floats  # [N, 3, 3] of a Student t, inflation included
+    inflation: Floats  # [N] factor in the covariance that follows from earlier held-out windows
     dof: Floats  # [N] degrees of freedom of the t, from the same windows; few are heavy tails
-    usual_nis: Floats  # [N] as `stated_nis`, had nothing recent been known of the slip disturbance
+    nominal_nis: Floats  # [N] as `reported_nis`, had nothing recent been known of the slip disturbance
     structure: Ints  # [N] of STRUCTURES, that predicted
     measured: Floats  # [N, 3] what the poses say
     learned_until: Floats  # s, in the log's time: nothing measured later was used
@@ -65,14 +65,14 @@ class Predictions:
         return normalised_squared(self.residual, self.covariance)
 
     @property
-    def stated_nis(self) -> Floats:
-        """The same under the covariance without growth: what a filter states that never looks back, [N]."""
-        return self.nis * self.growth
+    def reported_nis(self) -> Floats:
+        """The same under the covariance without inflation: of a filter that never looks back, [N]."""
+        return self.nis * self.inflation
 
     @property
     def inside(self) -> Floats:
-        """Share of the smallest ellipsoid of the predicted t that holds the measured pose, [N], 0 to 1."""
-        return share_inside(self.nis, self.dof)
+        """Fraction of the smallest ellipsoid of the predicted t that holds the measured pose, [N], 0 to 1."""
+        return fraction_inside(self.nis, self.dof)
 
 
 def residual(measured: Floats, predicted: Floats) -> Floats:

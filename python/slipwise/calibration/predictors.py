@@ -13,7 +13,7 @@ from slipwise import _core
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions, normalised_squared, residual
 from slipwise.calibration.prepared_run import WindowSet
-from slipwise.models.schema import Tail
+from slipwise.models.schema import StudentT
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -90,15 +90,15 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 def _predict(predictor: Predictor, posterior: Posterior, draft: _Draft, i: int) -> None:
     known = posterior.for_core(predictor.noise)
     disturbance = posterior.disturbance or _core.DisturbanceFilter(_core.DisturbanceModel([], np.empty(0)))
-    track, segment = draft.targets.track(i, posterior.limits), draft.targets.segments[i]
-    expected = disturbance.predict(known, track, disturbance.now(known, track, []), segment)
+    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i]
+    expected = disturbance.predict(known, history, disturbance.now(known, history, []), segment)
     draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
     draft.structure[i] = posterior.structure
 
 
 def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
-    track, segment = draft.targets.track(i, posterior.limits), draft.targets.segments[i]
-    path = _core.integrate_segment(posterior.motion, posterior.mean, track, segment, _core.Integrator.Exact)
+    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i]
+    path = _core.integrate_segment(posterior.motion, posterior.mean, history, segment, _core.Integrator.Exact)
     draft.in_sample[i] = path.sensor_poses[-1]
 
 
@@ -106,8 +106,8 @@ def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predic
     targets, pose = draft.targets, draft.pose
     known = targets.count_until(targets.position, targets.start - targets.length)
     squared = normalised_squared(residual(targets.measured, pose), draft.covariance)
-    tails = _tails(known, squared)
-    inflation = np.array([tail.inflation for tail in tails])
+    students = _tails(known, squared)
+    inflation = np.array([tail.inflation for tail in students])
     left = residual(targets.measured, draft.in_sample)
     return Predictions(
         method=predictor.method,
@@ -117,9 +117,9 @@ def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predic
         t_end=targets.end,
         pose=pose,
         covariance=draft.covariance * inflation[:, None, None],
-        growth=inflation,
-        dof=np.array([tail.dof for tail in tails]),
-        usual_nis=squared,
+        inflation=inflation,
+        dof=np.array([tail.dof for tail in students]),
+        nominal_nis=squared,
         structure=draft.structure,
         measured=targets.measured,
         learned_until=_learned_until(predictor, ((learned, draft.counts), (targets, known)), targets),
@@ -139,20 +139,20 @@ def _tails(known: Ints, squared: Floats) -> list[_core.StudentT]:
     return found[1:]
 
 
-def final_tail(predictions: Predictions) -> Tail:
+def final_student(predictions: Predictions) -> StudentT:
     """Inflation and degrees of freedom at this horizon from all held-out windows.
 
     They go with a model file, which does not know the slip disturbance of the moment.
     """
     calibration = _core.StudentCalibration()
-    for value in predictions.usual_nis.tolist():
+    for value in predictions.nominal_nis.tolist():
         calibration.learn(value)
-    return tail_of(calibration.fitted())
+    return student_of(calibration.fitted())
 
 
-def tail_of(student: _core.StudentT) -> Tail:
+def student_of(student: _core.StudentT) -> StudentT:
     """Return a Student t as the model file has it."""
-    return Tail(growth=student.inflation, dof=student.dof)
+    return StudentT(inflation=student.inflation, dof=student.dof)
 
 
 def _learned_until(

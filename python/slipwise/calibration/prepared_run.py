@@ -45,17 +45,17 @@ class WindowSet:
     end: Floats  # s
     measured: Floats  # [N, 3]
     segments: tuple[_core.Segment, ...]
-    tracks: tuple[_core.InputTrack, ...]  # the inputs that act in each, or before it
+    histories: tuple[_core.InputHistory, ...]  # the inputs that act in each, or before it
     unknown_after: float  # s; an input is unknown once it is older than this
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
         return len(self.start)
 
-    def track(self, i: int, limits: _core.CommandLimits | None = None) -> _core.InputTrack:
+    def input_history(self, i: int, limits: _core.CommandLimits | None = None) -> _core.InputHistory:
         """Return the inputs of window i, behind the limits of the actuator where there are some."""
-        track = self.tracks[i]
-        return track if limits is None else _core.limited_track(track, limits, _core.RAMP_PIECE)
+        history = self.histories[i]
+        return history if limits is None else _core.limited_inputs(history, limits, _core.RAMP_PIECE)
 
     def distances(self) -> Floats:
         """Return how far the robot was driven in each window, by its inputs, [N] m."""
@@ -143,7 +143,7 @@ def collect_windows(drive: tuple[PreparedRun, ...], length: float, rules: Window
         end=cut.end,
         measured=cut.measured,
         segments=cut.segments,
-        tracks=cut.tracks,
+        histories=cut.histories,
         unknown_after=rules.unknown_after,
         left_out=cut.left_out,
     )

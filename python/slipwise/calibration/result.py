@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from slipwise.calibration.identifiability import LookAlike
+from slipwise.calibration.identifiability import Confounded
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
@@ -31,9 +31,9 @@ class Verdict:
 
     good: bool
     sentence: str
-    undetermined: tuple[str, ...] = ()  # parameters that the log does not determine
-    advice: tuple[str, ...] = ()  # what would determine them, and tell look-alikes apart
-    look_alikes: tuple[LookAlike, ...] = ()  # pairs of parameters that the log can hardly tell apart
+    not_identifiable: tuple[str, ...] = ()  # parameters that the log does not determine
+    advice: tuple[str, ...] = ()  # what would determine them, and tell confounded parameters apart
+    confounded: tuple[Confounded, ...] = ()  # pairs of parameters that the log can hardly tell apart
     timing: str = ""  # which delay and which clock offset is which
     reservations: tuple[str, ...] = ()  # sentences of a good verdict that qualify it: it is not plainly good
     contradictions: tuple[str, ...] = ()  # between poses and inputs: what was learned is no slip
@@ -55,8 +55,8 @@ class History:
     weight: Floats  # [W] how much the window counted: 1 full, 0 left out
     bases: tuple[str, ...]  # [B] bases averaged, one where the basis is fixed
     basis_weight: Floats  # [W, B] their weights after the window
-    change: Floats  # [W] log odds, before the window was learned, that the ground had changed; 0 or more
-    alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of ground
+    change: Floats  # [W] log odds, before the window was learned, that the terrain had changed; 0 or more
+    alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of terrain
     structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
     structure_weight: Floats | None = None  # [W, S] their weights after the window
 

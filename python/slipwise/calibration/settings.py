@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+import warnings
 from pathlib import Path
 from typing import Annotated, Any, Literal, cast
 
@@ -15,6 +16,8 @@ from slipwise.calibration.log_table import LogTable
 from slipwise.errors import SettingsError
 from slipwise.files import read_whole
 from slipwise.logs.options import LogOptions
+from slipwise.models.renamed_keys import with_new_keys
+from slipwise.models.upgrade import RENAMED_SETTINGS
 from slipwise.segments import WindowRules
 from slipwise.validation_text import first_problem
 
@@ -30,7 +33,7 @@ Metres = Annotated[float, Field(ge=-FARTHEST_SENSOR, le=FARTHEST_SENSOR)]
 AUTO_BASES = tuple(basis.name for basis in _core.HypothesisSettings().bases)
 AVERAGE = "average"  # the estimator that weighs bases, each learned by a causal filter
 ESTIMATORS = (AVERAGE, *_core.estimator_names())
-WINDOW_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
+SEGMENT_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
 _RULES, _DRIFT = WindowRules(), _core.DriftSettings()
@@ -55,7 +58,7 @@ class PriorTable(_Section):
 
     slip_fraction: Annotated[float, Field(ge=LEAST, le=10.0)] = _PRIOR.slip_fraction
     clock_offset_std: Seconds = _PRIOR.clock_offset_std
-    lag: Seconds = _PRIOR.lag
+    time_constant: Seconds = _PRIOR.time_constant
     delay: Seconds = _PRIOR.delay
 
 
@@ -129,8 +132,8 @@ class ChangeTable(_Section):
     detect: bool = True
 
 
-class WindowTable(_Section):
-    """How the log is cut into windows."""
+class SegmentTable(_Section):
+    """How the log is cut into segments."""
 
     length: Positive | None = None  # s; None takes the default of the input
     unknown_after: Positive = _RULES.unknown_after
@@ -139,12 +142,12 @@ class WindowTable(_Section):
 class VehicleTable(_Section):
     """What the log does not say of the robot; the methods with slip ratios alone need it."""
 
-    track: Annotated[float, Field(ge=0.01, le=100.0)] = (
-        _core.NOMINAL_TRACK
+    wheel_separation: Annotated[float, Field(ge=0.01, le=100.0)] = (
+        _core.NOMINAL_WHEEL_SEPARATION
     )  # m, between the left and the right wheels
 
 
-class MountTable(_Section):
+class SensorExtrinsicsTable(_Section):
     """Where the sensor whose poses the log holds sits on the robot: its pose in base_link (REP-105)."""
 
     x: Metres = 0.0  # m, ahead of base_link
@@ -165,7 +168,7 @@ class Settings(_Section):
     estimator: Annotated[str, AfterValidator(_known_estimator)] = AVERAGE
     terms: BasisTerms = BasisTerms()
     learn_clock_offset: bool = True  # wheel input; from commands the offset is part of the delay
-    window: WindowTable = WindowTable()
+    segment: SegmentTable = SegmentTable()
     prior: PriorTable = PriorTable()
     filter: FilterTable = FilterTable()
     noise: NoiseTable = NoiseTable()
@@ -174,31 +177,31 @@ class Settings(_Section):
     change: ChangeTable = ChangeTable()
     smoothing: SmoothingTable = SmoothingTable()
     vehicle: VehicleTable = VehicleTable()
-    mount: MountTable = MountTable()
+    sensor_extrinsics: SensorExtrinsicsTable = SensorExtrinsicsTable()
     log: LogTable = LogTable()
 
     def __repr__(self) -> str:
         changed = self.model_dump(exclude_defaults=True)
         return f"Settings({', '.join(f'{name}={value!r}' for name, value in changed.items())})"
 
-    def window_length(self, input_name: str) -> float:
-        """Return the length of the windows to learn from [s]."""
-        return self.window.length or WINDOW_SECONDS[input_name]
+    def segment_length(self, input_name: str) -> float:
+        """Return the length of the segments to learn from [s]."""
+        return self.segment.length or SEGMENT_SECONDS[input_name]
 
     def rules(self) -> WindowRules:
         """Return the rules of cutting windows."""
-        return WindowRules(self.window.unknown_after, sensor=self.mount.pose)
+        return WindowRules(self.segment.unknown_after, sensor=self.sensor_extrinsics.pose)
 
     def log_options(self, **given: Any) -> LogOptions:
         """Return the options for `open_log`: those of [log], and `given` ones before them."""
-        return self.log.options(self.window.unknown_after, given)
+        return self.log.options(self.segment.unknown_after, given)
 
     def filter_settings(self) -> _core.CausalFilterSettings:
         """Return the core's settings of one causal filter."""
         settings = _core.CausalFilterSettings()
         prior, iekf, noise = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
         _copy(self.prior, prior)
-        prior.sensor = _core.Pose2(*self.mount.pose)
+        prior.sensor = _core.Pose2(*self.sensor_extrinsics.pose)
         _copy(self.filter, iekf)
         table = self.noise
         noise.shape = _core.MotionNoise(
@@ -262,15 +265,34 @@ def load_settings(path: Path) -> Settings:
 
 
 def make_settings(content: dict[str, Any], *, where: str = "settings") -> Settings:
-    """Check settings given as nested dictionaries.
+    """Check settings given as nested dictionaries; warns of keys by the names they had before version 0.2.
 
     Raises:
         SettingsError: a key is unknown or a value is wrong.
     """
     try:
-        return Settings.model_validate(content)
+        return Settings.model_validate(_with_new_keys(content, where))
     except ValidationError as problem:
         raise SettingsError(first_problem(problem), where=where, advice=_SEE) from problem
+
+
+def _with_new_keys(content: dict[str, Any], where: str) -> object:
+    """The same under the names that keys have now; says so where one is old."""
+    result = with_new_keys(content, RENAMED_SETTINGS)
+    if result != content:
+        old = ", ".join(
+            f"{name} is {new} now" for place, name, new in _RENAMED if name in _table(content, place)
+        )
+        warnings.warn(f"{where}: older names of settings: {old}", FutureWarning, stacklevel=3)
+    return result
+
+
+_RENAMED = [(place, old, new) for place, names in RENAMED_SETTINGS.items() for old, new in names.items()]
+
+
+def _table(content: dict[str, Any], place: str) -> dict[str, Any]:
+    table = content.get(place) if place else content
+    return table if isinstance(table, dict) else {}
 
 
 def _copy(table: _Section, target: object) -> None:

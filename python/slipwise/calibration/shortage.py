@@ -13,7 +13,7 @@ NEEDED = 2 * FEWEST_WINDOWS  # segments, half of which are held out
 _NAMES = {"command": "commands", "wheel": "wheel speeds"}
 _CURES = {
     "late-pose": "record poses at a steady rate",
-    "unknown-input": "record the inputs without gaps, or raise unknown_after under [window]",
+    "unknown-input": "record the inputs without gaps, or raise unknown_after under [segment]",
     "standing-still": "drive for more of the time",
     "heading-ambiguous": "record poses more often, or turn more slowly",
 }

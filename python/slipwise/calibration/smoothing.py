@@ -73,7 +73,7 @@ class SmoothedCourse:
 def smooth(posterior: Posterior, windows: WindowSet, settings: Settings) -> SmoothedCourse:
     """Smooth over all windows: forward filter, backward pass of Rauch, Tung and Striebel (1965).
 
-    Lag, delay and clock offset are the robot's, not the ground's: they are taken as learned.
+    Lag, delay and clock offset are the robot's, not the terrain's: they are taken as learned.
 
     Args:
         posterior: what was learned: its model, its prior of the slip, its actuator and its noise are used.
@@ -82,11 +82,11 @@ def smooth(posterior: Posterior, windows: WindowSet, settings: Settings) -> Smoo
     """
     motion, filters = posterior.motion, settings.filter_settings()
     slip = slice(motion.slip_size)
-    tracks = [windows.track(i) for i in range(len(windows))]
+    histories = [windows.input_history(i) for i in range(len(windows))]
     noise = [_noise(posterior, filters.noise.shape, windows, i) for i in range(len(windows))]
     drift = settings.smoothing.drift_settings()
     course = _core.rts_smooth(
-        motion, _prior(posterior), tracks, list(windows.segments), noise, drift, filters.iekf
+        motion, _prior(posterior), histories, list(windows.segments), noise, drift, filters.iekf
     )
     return SmoothedCourse(
         run=np.array([windows.drive[p].index for p in windows.position], dtype=np.int64),
@@ -112,7 +112,7 @@ def _noise(posterior: Posterior, shape: _core.MotionNoise, windows: WindowSet, i
     """Covariance of the measured chart of window i, [3, 3]."""
     segment = windows.segments[i]
     path = _core.integrate_segment(
-        posterior.motion, posterior.mean, windows.track(i), segment, _core.Integrator.Exact
+        posterior.motion, posterior.mean, windows.input_history(i), segment, _core.Integrator.Exact
     )
     covariance = _core.slip_covariance(path, shape) + _core.pose_noise_covariance(segment.measured, shape)
     root = np.sqrt(posterior.noise_scale)

@@ -101,12 +101,12 @@ def chi_square_band(count: int, degrees: int) -> tuple[float, float]:
 
 
 def coverage(inside: Floats) -> Shares:
-    """Share of windows inside the 50, 90 and 95 % ellipsoids of their t, from `Predictions.inside`."""
+    """Fraction of windows inside the 50, 90 and 95 % ellipsoids of their t, from `Predictions.inside`."""
     return _shares(inside, ELLIPSOIDS)
 
 
 def normal_coverage(nis: Floats) -> Shares:
-    """Share of windows inside the 50, 90 and 95 % ellipsoids of a normal distribution."""
+    """Fraction of windows inside the 50, 90 and 95 % ellipsoids of a normal distribution."""
     return _shares(nis, ELLIPSOIDS.values())
 
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from slipwise.calibration.identifiability import (
-    LookAlike,
+    Confounded,
     advice_for_pairs,
+    confounded,
     drives_for,
-    look_alikes,
+    not_identifiable,
     timing_words,
-    undetermined,
 )
 from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement
 from slipwise.calibration.learner import Posterior
@@ -29,9 +29,9 @@ class Identified:
     """What is known of a model's parameters."""
 
     parameters: int
-    undetermined: tuple[str, ...]
+    not_identifiable: tuple[str, ...]
     advice: tuple[str, ...] = ()
-    look_alikes: tuple[LookAlike, ...] = ()
+    confounded: tuple[Confounded, ...] = ()
     timing: str = ""
     from_log: str = "the log"  # that the parameters were learned from
 
@@ -47,7 +47,7 @@ class LogFacts:
 
 def identified(posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
     """Say what a posterior knows of its parameters, and which driving would tell the rest."""
-    unknown, pairs = undetermined(posterior), look_alikes(posterior)
+    unknown, pairs = not_identifiable(posterior), confounded(posterior)
     advice = (*drives_for(unknown), *advice_for_pairs(pairs))
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     return Identified(len(posterior.mean), unknown, advice, pairs, timing)
@@ -67,9 +67,9 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     return Verdict(
         not fault,
         " ".join(sentence for sentence in sentences if sentence),
-        known.undetermined,
+        known.not_identifiable,
         tuple(dict.fromkeys(advice)),
-        known.look_alikes,
+        known.confounded,
         "" if contradicted else known.timing,
         () if fault else reservations,
         tuple(each.sentence for each in contradicted),
@@ -84,7 +84,7 @@ def _not_judged(judgement: Judgement) -> str:
     if not judgement.too_short:
         return ""
     return (
-        f"Too little driving to judge: {judgement.held_out.windows} held-out segments of "
+        f"Too little driving to judge: {judgement.held_out.segments} held-out segments of "
         f"{judgement.held_out.horizon:g} s, at least {FEWEST_WINDOWS} are needed."
     )
 
@@ -112,13 +112,13 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
 def _figures(held_out: HeldOut) -> str:
     return (
         f"The learned model's mean error after {held_out.horizon:g} s is {held_out.position:.3g} m and "
-        f"{held_out.heading:.3g} rad, the kinematic baseline's {held_out.plain_position:.3g} m and "
-        f"{held_out.plain_heading:.3g} rad ({held_out.windows} held-out segments)."
+        f"{held_out.heading:.3g} rad, the kinematic baseline's {held_out.baseline_position:.3g} m and "
+        f"{held_out.baseline_heading:.3g} rad ({held_out.segments} held-out segments)."
     )
 
 
 def _unknown(known: Identified) -> str:
-    count = len(known.undetermined)
+    count = len(known.not_identifiable)
     if count == 0:
         return ""
     return f"{count} of {known.parameters} parameters stay about where they were before {known.from_log}."
@@ -145,10 +145,10 @@ def _advice(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
 
 def _more_or_none(held_out: HeldOut, input_name: str) -> str:
     """What to do where the gain may be chance."""
-    if held_out.windows < FEW:
+    if held_out.segments < FEW:
         minutes = 2.0 * FEW * held_out.horizon / 60.0
         return (
-            f"Record a longer drive: {held_out.windows} held-out segments of {held_out.horizon:g} s tell "
+            f"Record a longer drive: {held_out.segments} held-out segments of {held_out.horizon:g} s tell "
             f"little; {FEW} take {minutes:.2g} minutes of driving."
         )
     return (

@@ -88,7 +88,7 @@ def calibrate(
                 input=input_name and input_name.value,
                 settings=chosen,
                 smooth=smooth,
-                progress=lambda share: update("learning", share),
+                progress=lambda fraction: update("learning", fraction),
             )
             files = {
                 "model": calibration.model.save(folder / "model.yaml"),
@@ -133,9 +133,9 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     from slipwise.calibration.next_step import after_learning
     from slipwise.cli.tables import (
         show_alarms,
+        show_confounded,
         show_files,
         show_left_out,
-        show_look_alikes,
         show_notes,
         show_parameters,
         show_summary,
@@ -147,7 +147,7 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     learned, summary = content.provenance, summarise(calibration.model)
     out.line(
         f"Learned {content.slip.basis} from {content.input}s: "
-        f"{learned.learned_windows} segments, {learned.learned_seconds:.0f} s of driving."
+        f"{learned.learned_segments} segments, {learned.learned_seconds:.0f} s of driving."
     )
     show_summary(out, summary)
     show_verdict(out, calibration.verdict, after_learning(calibration.verdict, files["model"]))
@@ -156,5 +156,5 @@ def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None
     show_left_out(out, calibration.left_out)
     if calibration.history is not None:
         show_alarms(out, calibration.history)
-    show_look_alikes(out, calibration.verdict.look_alikes)
+    show_confounded(out, calibration.verdict.confounded)
     show_parameters(out, summary.parameters)

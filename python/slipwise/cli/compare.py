@@ -69,7 +69,7 @@ def _predicted(models: dict[str, Model], logs: Sequence[Path], options: LogOptio
         return evaluate(
             open_log(*logs, options=options),
             options=EvaluationOptions(methods=("none", *models), model=models),
-            progress=lambda name, share: update(f"method {name}", share),
+            progress=lambda name, fraction: update(f"method {name}", fraction),
         )
 
 

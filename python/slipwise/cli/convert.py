@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`slipwise convert`: any log as a tidy table or as MCAP."""
+"""`slipwise convert`: a log as a tidy table or as MCAP; a model file of an older version as one of this."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
-from slipwise.cli.options import Json, Logs, SettingsFile, takes_log_options
+from slipwise.cli.options import Json, Logs, SettingsFile, optional, takes_log_options
+from slipwise.errors import ModelError, OutputError
 
 if TYPE_CHECKING:
+    from slipwise.cli.output import Output
     from slipwise.logs import LogOptions
+
+_MODEL_ENDINGS = (".yaml", ".yml")
 
 
 @takes_log_options
@@ -19,20 +21,23 @@ def convert(
     logs: Logs,
     log_options: LogOptions,
     output: Annotated[
-        Path,
-        typer.Option("-o", "--output", metavar="FILE", help="The new log: .csv, .csv.gz, .parquet or .mcap."),
-    ],
+        Path | None,
+        optional("FILE", "The new log (.csv, .csv.gz, .parquet, .mcap), or model (.yaml).", "-o", "--output"),
+    ] = None,
     settings: SettingsFile = None,
     json: Json = None,
 ) -> int:
     """Write one or several logs as one tidy table, or as MCAP; says what was guessed and what was left out.
 
+    A model file of slipwise 0.1 is written under the names of this version, beside it where no -o is given.
+
     \b
     Examples:
       slipwise convert drive.mcap -o drive.csv
       slipwise convert monday.bag tuesday.db3 -o both.parquet --pose-topic /rtk/odom
-      slipwise convert wheels.csv -o drive.mcap --wheel-radius 0.165 --track 0.555
+      slipwise convert wheels.csv -o drive.mcap --wheel-radius 0.165 --wheel-separation 0.555
       slipwise convert run.mcap -o run.csv --poses lidar_tum.txt --pose-clock-offset auto
+      slipwise convert model.yaml -o model-0.2.yaml
     """  # noqa: D301
     from slipwise.cli.document import head, log_part
     from slipwise.cli.output import Output
@@ -42,6 +47,10 @@ def convert(
     from slipwise.logs import open_log, save_log
 
     out = Output(json)
+    if logs[0].suffix in _MODEL_ENDINGS:
+        return _convert_model(logs, output, out)
+    if output is None:
+        raise OutputError("say where the new log goes", advice="give -o FILE, such as -o drive.csv")
     refuse_unknown_log_format(output)
     refuse_unwritable(output, out.written_file, inputs=(*logs, log_options.poses, settings))
     with progress_bar("reading") as update:
@@ -52,4 +61,23 @@ def convert(
     show_notes(out, log.notes)
     show_left_out(out, log.left_out)
     show_files(out, {"log": output})
+    return 0
+
+
+def _convert_model(models: list[Path], output: Path | None, out: Output) -> int:
+    """Write one model file under the names of this version."""
+    from slipwise.cli.document import head
+    from slipwise.cli.tables import show_files
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.models import SCHEMA_VERSION, load_model
+
+    source, *more = models
+    if more:
+        raise ModelError("one model at a time", where=str(more[0]), advice="run convert once for each file")
+    target = output or source.with_name(f"{source.stem}-schema{SCHEMA_VERSION}.yaml")
+    refuse_unwritable(target, out.written_file, inputs=(source,))
+    model = load_model(source)
+    model.save(target)
+    out.document(head("convert") | {"exit_code": 0, "files": {"model": target}})
+    show_files(out, {"model": target})
     return 0

@@ -79,12 +79,12 @@ def _show(out: Output, result: DemoResult, files: dict[str, Path]) -> None:
     from slipwise.calibration.next_step import after_learning
     from slipwise.cli.output import Column
     from slipwise.cli.tables import show_files, show_summary, show_verdict
-    from slipwise.demo.run_demo import VENDOR_TRACK_MULTIPLIER
+    from slipwise.demo.run_demo import VENDOR_WHEEL_SEPARATION_MULTIPLIER
     from slipwise.models.summary import summarise
 
     names = {
         "none": "none",
-        "vendor": f"vendor, track x {VENDOR_TRACK_MULTIPLIER:g}",
+        "vendor": f"vendor, separation x {VENDOR_WHEEL_SEPARATION_MULTIPLIER:g}",
         "edd-2": "edd-2, with lag and delay",
         "auto": "slipwise",
     }

@@ -47,9 +47,9 @@ def calibration_part(calibration: Calibration) -> dict[str, Any]:
         "parameters": [parameter.model_dump() for parameter in content.parameters],
         "limits": content.limits.model_dump() if content.limits else None,
         "held_out": content.verdict.held_out.model_dump() if content.verdict.held_out else None,
-        "learned_windows": content.provenance.learned_windows,
+        "learned_segments": content.provenance.learned_segments,
         "learned_seconds": content.provenance.learned_seconds,
-        "ground_changes": [{"run": run, "t": t} for run, t in alarms],
+        "terrain_changes": [{"run": run, "t": t} for run, t in alarms],
     }
 
 

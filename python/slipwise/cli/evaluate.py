@@ -53,7 +53,7 @@ def evaluate(
             "Default: all but estimators, slip ratios and surfaces.",
         ),
     ] = None,
-    vendor_track_multiplier: Annotated[
+    vendor_wheel_separation_multiplier: Annotated[
         float | None, optional("X", "wheel_separation_multiplier of the method `vendor`.")
     ] = None,
     predictions: Annotated[
@@ -80,7 +80,7 @@ def evaluate(
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
       slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
-      slipwise evaluate drive.csv --vendor-track-multiplier 1.875 --predictions predictions.csv
+      slipwise evaluate drive.csv --vendor-wheel-separation-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
     from slipwise.cli.evaluation_verdict import verdict_on
@@ -95,7 +95,10 @@ def evaluate(
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
-    options, models = _options(horizons, methods, vendor_track_multiplier, model or []), model or []
+    options, models = (
+        _options(horizons, methods, vendor_wheel_separation_multiplier, model or []),
+        model or [],
+    )
     read = (*logs, log_options.poses, *models, settings)
     refuse_unwritable(predictions, report, out.written_file, inputs=read)
     with progress_bar("reading") as update:
@@ -106,7 +109,7 @@ def evaluate(
                 input=input_name and input_name.value,
                 settings=chosen,
                 options=options,
-                progress=lambda name, share: update(f"method {name}", share),
+                progress=lambda name, fraction: update(f"method {name}", fraction),
             )
             files = {"settings": write_settings(folder, chosen)}
             if predictions is not None:

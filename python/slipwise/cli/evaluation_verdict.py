@@ -52,7 +52,7 @@ def _identified(source: Calibration | Model) -> Identified:
     content = source.model.content if isinstance(source, Calibration) else source.content
     return Identified(
         len(content.parameters),
-        tuple(content.verdict.undetermined),
+        tuple(content.verdict.not_identifiable),
         tuple(content.verdict.advice),
         timing=content.verdict.timing,
         from_log="the log" if calibrated else "the log that they were learned from",

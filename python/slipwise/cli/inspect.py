@@ -65,7 +65,7 @@ def _document(inspection: Inspection) -> dict[str, object]:
     log = inspection.log
     learnable = [
         {name: value for name, value in asdict(item).items() if name != "parameters"}
-        | {"parameters": [asdict(p) | {"determined": p.determined} for p in item.parameters]}
+        | {"parameters": [asdict(p) | {"identifiable": p.identifiable} for p in item.parameters]}
         for item in inspection.learned
     ]
     return (
@@ -152,14 +152,14 @@ def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
     from slipwise.cli.output import Column
 
     columns = [Column("input"), Column("time"), Column("value [s]", True), Column("std [s]", True)]
-    columns += [Column("determined"), Column("meaning")]
+    columns += [Column("identifiable"), Column("meaning")]
     rows = [
         (
             t.input,
             t.name,
             number_text(t.seconds),
             number_text(t.std, 2),
-            "yes" if t.determined else "no",
+            "yes" if t.identifiable else "no",
             t.meaning,
         )
         for t in timing
@@ -177,12 +177,12 @@ def _show_learnability(out: Output, item: Learnability) -> None:
     if item.missing:
         out.line(f"From {item.input}s nothing can be learned: {item.missing}")
         return
-    known = [physical_name(p.name) for p in item.parameters if p.determined]
-    unknown = [physical_name(p.name) for p in item.parameters if not p.determined]
+    known = [physical_name(p.name) for p in item.parameters if p.identifiable]
+    unknown = [physical_name(p.name) for p in item.parameters if not p.identifiable]
     out.line(f"From {item.input}s: {item.windows} segments, {item.seconds:.0f} s of driving")
-    out.line(f"  determined: {', '.join(known) or 'nothing'}")
+    out.line(f"  identifiable: {', '.join(known) or 'nothing'}")
     if unknown:
-        out.line(f"  not determined: {', '.join(unknown)}")
+        out.line(f"  not identifiable: {', '.join(unknown)}")
     for entry in item.left_out:
         out.line(f"  left out: {entry.count} x {entry.reason}, first at {entry.where}")
     for advice in item.advice:

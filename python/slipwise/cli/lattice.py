@@ -98,7 +98,7 @@ def _write_table(path: Path, held: CurvatureMap) -> None:
     for i, j in np.argwhere(np.isfinite(held.held)).tolist():
         values = (
             held.speed[i],
-            held.told[j],
+            held.commanded[j],
             held.held[i, j],
             held.achieved_speed[i, j],
             held.sideslip[i, j],

@@ -24,6 +24,11 @@ from slipwise.cli.show import show
 from slipwise.cli.simulate import simulate
 
 DEBUG = "--debug"
+#: Options that have another name since version 0.2; scripts that use the older one are told, and go on.
+RENAMED = {
+    "--track": "--wheel-separation",
+    "--vendor-track-multiplier": "--vendor-wheel-separation-multiplier",
+}
 
 app = typer.Typer(
     name="slipwise",
@@ -65,7 +70,7 @@ def _slipwise(
         bool, typer.Option("--version", help="Show the version.", callback=_show_version, is_eager=True)
     ] = False,
 ) -> None:
-    """Learn a robot's motion model - slip, lag, delay, uncertainty - from what it was told and where it went.
+    """Learn a robot's motion model - slip, lag, delay, uncertainty - from its commands and where it went.
 
     Exit codes: 0 success, 1 the answer is "not good enough", 2 bad input or use. demo, calibrate, evaluate
     and reproduce keep each run in runs/<UTC time>-<command>; runs/latest is the last one.
@@ -89,7 +94,18 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command; return its exit code: 0 success, 1 not good enough, 2 bad input or use."""
     plain = [argument for argument in arguments if argument != DEBUG] or ["--help"]
-    return exit_code_of(lambda: _invoke(plain), debug=DEBUG in arguments)
+    return exit_code_of(lambda: _invoke(_with_new_names(plain)), debug=DEBUG in arguments)
+
+
+def _with_new_names(arguments: list[str]) -> list[str]:
+    """The same with options under the names they have now; says so where one is old."""
+    result = []
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if name in RENAMED:
+            print(f"note: {name} is called {RENAMED[name]} now", file=sys.stderr)
+        result.append(RENAMED.get(name, name) + equals + value)
+    return result
 
 
 def _invoke(arguments: list[str]) -> int:

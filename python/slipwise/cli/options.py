@@ -92,7 +92,11 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "left_joints": (str, "NAMES", "JointState: left wheels, separated by commas."),
     "right_joints": (str, "NAMES", "JointState: right wheels, separated by commas."),
     "wheel_radius": (float, "METRES", "Wheel radius, for wheel speeds in rad/s."),
-    "track": (float, "METRES", "Distance between left and right wheels, for wheel speeds in rad/s."),
+    "wheel_separation": (
+        float,
+        "METRES",
+        "Distance between left and right wheels, for wheel speeds in rad/s.",
+    ),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
     "command_scale": (
         str,

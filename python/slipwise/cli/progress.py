@@ -12,7 +12,7 @@ Update = Callable[[str, float], None]
 
 @contextlib.contextmanager
 def progress_bar(first: str) -> Iterator[Update]:
-    """Yield a function that is told what is being done and which share of the whole is done, 0 to 1."""
+    """Yield a function that is told what is being done and which fraction of the whole is done, 0 to 1."""
     if not sys.stderr.isatty():
         yield lambda _what, _share: None
         return
@@ -27,4 +27,4 @@ def progress_bar(first: str) -> Iterator[Update]:
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task(first, total=1.0)
-        yield lambda what, share: progress.update(task, description=what, completed=share)
+        yield lambda what, fraction: progress.update(task, description=what, completed=fraction)

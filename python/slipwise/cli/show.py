@@ -49,7 +49,7 @@ def _origin(model: Model) -> tuple[str, ...]:
 
     origin, span = model.content.provenance, model.content.range
     speed, yaw_rate = (" to ".join(number_text(end) for end in ends) for ends in (span.speed, span.yaw_rate))
-    amount = f"{origin.learned_windows} segments, {origin.learned_seconds:.0f} s of driving"
+    amount = f"{origin.learned_segments} segments, {origin.learned_seconds:.0f} s of driving"
     return (
         f"Learned by slipwise {origin.slipwise_version} from {amount}:",
         *(f"  {log.path}" for log in origin.logs),

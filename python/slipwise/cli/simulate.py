@@ -20,7 +20,7 @@ def simulate(
     drive: Annotated[
         str, typer.Option(metavar="NAME", help="Command script: thesis, steps or dull.")
     ] = "thesis",
-    ground: Annotated[
+    terrain: Annotated[
         str, typer.Option(metavar="NAME", help="tyre-force, traction-law, or MuJoCo's own contact-friction.")
     ] = "tyre-force",
     seed: Seed = 1,
@@ -57,14 +57,16 @@ def simulate(
     scenario = Scenario(
         duration=duration,
         drive=drive,
-        ground=ground,
+        terrain=terrain,
         pose_rate=pose_rate,
         std_xy=std_xy,
         std_yaw=std_yaw,
         pose_delay=pose_delay,
     )
     with progress_bar("simulating") as update:
-        log = run_simulation(scenario, seed=seed, progress=lambda share: update("simulating", share)).log
+        log = run_simulation(
+            scenario, seed=seed, progress=lambda fraction: update("simulating", fraction)
+        ).log
         save_log(log, output)
     out.document(head("simulate") | {"exit_code": 0, "files": {"log": output}} | log_part(log, log.left_out))
     show_notes(out, log.notes)

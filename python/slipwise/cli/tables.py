@@ -15,7 +15,7 @@ from slipwise.number_text import estimate_texts, number_text
 
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
-    from slipwise.calibration.identifiability import LookAlike
+    from slipwise.calibration.identifiability import Confounded
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
@@ -43,14 +43,16 @@ def show_left_out(output: Output, left_out: Sequence[LeftOut]) -> None:
 
 
 def show_alarms(output: Output, history: History) -> None:
-    """Say when the ground seemed to change; nothing where it did not."""
+    """Say when the terrain seemed to change; nothing where it did not."""
     alarms = history.alarms()
     if not alarms:
         return
     shown = ", ".join(f"{t:.1f} s of run {run}" for run, t in alarms[:_MOST_ALARMS])
     more = f" and {len(alarms) - _MOST_ALARMS} more" if len(alarms) > _MOST_ALARMS else ""
     times = "once" if len(alarms) == 1 else f"{len(alarms)} times"
-    output.line(f"The ground seems to change {times}: at {shown}{more}. What was learned before counts less.")
+    output.line(
+        f"The terrain seems to change {times}: at {shown}{more}. What was learned before counts less."
+    )
 
 
 def show_summary(output: Output, summary: Summary) -> None:
@@ -104,7 +106,7 @@ def show_parameters(output: Output, parameters: Sequence[PhysicalParameter]) -> 
     output.table("Parameters", columns, rows, caption=caption)
 
 
-def show_look_alikes(output: Output, pairs: Sequence[LookAlike]) -> None:
+def show_confounded(output: Output, pairs: Sequence[Confounded]) -> None:
     """Say which parameters the log can hardly tell apart; nothing where there are none."""
     if pairs:
         shown = ", ".join(map(str, pairs[:_MOST_PAIRS]))
@@ -146,7 +148,7 @@ _SCORE_COLUMNS = (
 )
 _LEGEND = (
     "Mean errors with 95 % intervals; /none and /rival: relative to doing nothing and to the best other one. "
-    "NIS is 3 and the shares are 50/90/95 % where the predicted covariance is true. "
+    "NIS is 3 and the fractions are 50/90/95 % where the predicted covariance is true. "
     "* too optimistic: the error after the segment itself was learned, as in the thesis."
 )
 
@@ -164,7 +166,7 @@ def _score_row(score: Score) -> tuple[str, ...]:
         number_text(score.heading_to_rival, 2),
         number_text(score.in_sample_heading * degrees, 2),
         number_text(score.nis, 2),
-        "/".join(f"{100.0 * share:.0f}" for share in score.coverage),
+        "/".join(f"{100.0 * fraction:.0f}" for fraction in score.coverage),
     )
 
 

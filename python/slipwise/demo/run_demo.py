@@ -13,9 +13,11 @@ from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
 from slipwise.logs import Log, open_log, save_log
 from slipwise.simulation import Scenario, simulate
 
-INPUT = "command"  # what a planner knows: where the robot was told to go, not how its wheels turned
+INPUT = "command"  # what a planner knows: where the robot was commanded to go, not how its wheels turned
 METHODS = ("none", "vendor", "edd-2", "auto")
-VENDOR_TRACK_MULTIPLIER = 1.875  # Clearpath's for the Husky, a number such as a vendor would have typed in
+VENDOR_WHEEL_SEPARATION_MULTIPLIER = (
+    1.875  # Clearpath's for the Husky, a number such as a vendor would have typed in
+)
 HORIZONS = (1.0, 2.0, 5.0)  # [s]
 SHORTEST = 60.0  # [s] a shorter drive has too few held-out windows to judge by
 
@@ -51,7 +53,7 @@ def run_demo(
     Args:
         folder: where to write; created if it is not there.
         options: length and seed of the drive.
-        progress: told what is being done and which share of the whole is done, 0 to 1.
+        progress: told what is being done and which fraction of the whole is done, 0 to 1.
 
     Raises:
         SlipwiseError: MuJoCo is missing, the drive is too short to learn from, or a file cannot be written.
@@ -62,7 +64,7 @@ def run_demo(
     progress("simulating", 0.0)
     scenario = Scenario(duration=options.duration)
     simulation = simulate(
-        scenario, seed=options.seed, progress=lambda share: progress("simulating", 0.6 * share)
+        scenario, seed=options.seed, progress=lambda fraction: progress("simulating", 0.6 * fraction)
     )
     progress("writing the bag", 0.6)
     bag = folder / "drive.mcap"
@@ -77,9 +79,12 @@ def run_demo(
         input=INPUT,
         settings=Settings(),
         options=EvaluationOptions(
-            HORIZONS, METHODS, VENDOR_TRACK_MULTIPLIER, made={calibration.method: calibration.predictions}
+            HORIZONS,
+            METHODS,
+            VENDOR_WHEEL_SEPARATION_MULTIPLIER,
+            made={calibration.method: calibration.predictions},
         ),
-        progress=lambda name, share: progress(f"judging {name}", 0.8 + 0.1 * share),
+        progress=lambda name, fraction: progress(f"judging {name}", 0.8 + 0.1 * fraction),
     )
     progress("writing the report", 0.9)
     report = _report(folder / "report.html", (log, calibration, evaluation), options)

@@ -38,7 +38,7 @@ class EvaluationOptions:
 
     horizons: tuple[float, ...] = DEFAULT_HORIZONS  # s
     methods: tuple[str, ...] | None = None  # None: all that apply
-    vendor_track_multiplier: float | None = None
+    vendor_wheel_separation_multiplier: float | None = None
     model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
     # What a calibration of this log with these settings predicted, by method: not learned a second time.
     made: Mapping[str, tuple[Predictions, ...]] = field(default_factory=dict)
@@ -88,7 +88,7 @@ def evaluate(
         left_out=log.left_out + contest.targets[-1].left_out,
         notes=log.notes + notes,
         contradictions=contradictions(
-            log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw
+            log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
         ),
         models=tuple(models),
     )
@@ -141,7 +141,7 @@ def _contest(
         settings,
         windows,
         targets,
-        options.vendor_track_multiplier,
+        options.vendor_wheel_separation_multiplier,
         options.models,
         learned_from_this,
     )
@@ -196,8 +196,8 @@ def _score(predictions: Predictions, group: Sequence[Predictions], distance: flo
         nis=float(nis.mean()),
         nis_band=nis_band(len(nis)),
         coverage=coverage(predictions.inside[half]),
-        stated_nis=float(predictions.stated_nis[half].mean()),
-        stated_coverage=normal_coverage(predictions.stated_nis[half]),
+        reported_nis=float(predictions.reported_nis[half].mean()),
+        reported_coverage=normal_coverage(predictions.reported_nis[half]),
     )
 
 

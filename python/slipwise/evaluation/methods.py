@@ -28,7 +28,7 @@ class Contest:
     settings: Settings
     windows: WindowSet  # to learn from
     targets: tuple[WindowSet, ...]  # to predict, one set per horizon
-    vendor_track_multiplier: float | None = None
+    vendor_wheel_separation_multiplier: float | None = None
     models: Mapping[str, Model] = field(default_factory=dict)  # model files as they are, by method
     learned_from_this: frozenset[str] = frozenset()  # those of them that were learned from this very log
 
@@ -44,7 +44,7 @@ class MethodInfo:
 def method_names(contest: Contest) -> tuple[str, ...]:
     """Return the methods compared where none are named: all that the contest allows but single estimators."""
     names = ["none"]
-    if contest.vendor_track_multiplier is not None:
+    if contest.vendor_wheel_separation_multiplier is not None:
         names.append("vendor")
     names += [*_core.basis_names(), "batch"]
     names += contest.models
@@ -144,13 +144,13 @@ def _surface(name: str, contest: Contest) -> Predictor:
 
 
 def _vendor(name: str, contest: Contest) -> Predictor:
-    if contest.vendor_track_multiplier is None:
+    if contest.vendor_wheel_separation_multiplier is None:
         raise SettingsError(
             f"the method {name} needs a multiplier",
             where="--methods",
-            advice="give --vendor-track-multiplier, such as 1.875",
+            advice="give --vendor-wheel-separation-multiplier, such as 1.875",
         )
-    return vendor_predictor(contest.vendor_track_multiplier, contest.settings)
+    return vendor_predictor(contest.vendor_wheel_separation_multiplier, contest.settings)
 
 
 def _model(name: str, contest: Contest) -> Predictor:

@@ -27,7 +27,7 @@ UpdateT = TypeVar("UpdateT")
 class SlipRatioEstimator(Generic[UpdateT]):
     """An estimator of slip ratios: how it learns a window, and what it believes now."""
 
-    learn: Callable[[_core.InputTrack, _core.Segment], UpdateT]
+    learn: Callable[[_core.InputHistory, _core.Segment], UpdateT]
     posterior: Callable[[], Posterior]
 
 
@@ -40,7 +40,7 @@ def slip_ratio_filter(input_name: str, settings: Settings, windows: WindowSet) -
     name = "slip-ratio-ekf"
     _refuse_commands(name, input_name)
     table = _core.SlipRatioFilterSettings()
-    table.track, table.huber = settings.vehicle.track, settings.filter.huber
+    table.wheel_separation, table.huber = settings.vehicle.wheel_separation, settings.filter.huber
     table.noise = settings.filter_settings().noise.shape
     estimator = _core.SlipRatioFilter(table)
 
@@ -60,7 +60,7 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
     name = "slip-ratio-smo"
     _refuse_commands(name, input_name)
     table = _core.SlidingModeSettings()
-    table.track = settings.vehicle.track
+    table.wheel_separation = settings.vehicle.wheel_separation
     estimator = _core.SlidingModeObserver(table)
 
     def posterior() -> Posterior:
@@ -72,7 +72,7 @@ def slip_ratio_observer(input_name: str, settings: Settings, windows: WindowSet)
 def _refuse_commands(name: str, input_name: str) -> None:
     if input_name != "wheel":
         raise SettingsError(
-            f"the method {name} learns slip between wheels and ground, and needs wheel speeds",
+            f"the method {name} learns slip between wheels and terrain, and needs wheel speeds",
             where="--methods",
             advice="give --input wheel, or leave the method out",
         )

@@ -39,7 +39,7 @@ LARGEST_PROCESS, SHAPING = (
 )  # examples of a Gaussian process, O(N^3), and those its kernel is shaped by
 UNDRIVEN = (0.05, 0.05)  # m/s, rad/s: reference speeds of the prior before the first example
 #: Examples grow by this factor from one fit to the next; the Bayesian surface also learns in between.
-GROWTH = {"surface-least-squares": 1.1, "surface-gaussian-process": 2.0, "surface-bayesian": 2.0}
+INFLATION = {"surface-least-squares": 1.1, "surface-gaussian-process": 2.0, "surface-bayesian": 2.0}
 
 _log = logging.getLogger(__name__)
 
@@ -62,13 +62,13 @@ def surface_predictor(name: str, input_name: str, settings: Settings, windows: W
     """
     dynamics, offset = learned_parts(settings, input_name)
     basis = settings.model_copy(update={"basis": estimator_basis(settings)}).bases()[0]
-    motion = _core.MotionModel(basis, dynamics, offset).with_mount(settings.mount.learn)
+    motion = _core.MotionModel(basis, dynamics, offset).with_extrinsics(settings.sensor_extrinsics.learn)
     actuator = _core.ModelAverage(
         CHAIN_BASIS,
         [_core.named_basis(CHAIN_BASIS)],
         dynamics,
         offset,
-        settings.mount.learn,
+        settings.sensor_extrinsics.learn,
         settings.filter_settings(),
         settings.average_settings(),
     )
@@ -85,7 +85,7 @@ class _ActuatorLearner:
     def __init__(self, actuator: _core.ModelAverage) -> None:
         self._actuator, self._motion = actuator, actuator.model
 
-    def learn(self, inputs: _core.InputTrack, segment: _core.Segment) -> _core.IekfUpdate:
+    def learn(self, inputs: _core.InputHistory, segment: _core.Segment) -> _core.IekfUpdate:
         """Learn one window."""
         return self._actuator.learn(inputs, segment)
 
@@ -204,7 +204,7 @@ class SurfaceRegression:
         if examples is None:
             return
         self._count = len(examples)
-        self._next_fit = max(self._count + 1, math.ceil(self._count * GROWTH[self._rules.method]))
+        self._next_fit = max(self._count + 1, math.ceil(self._count * INFLATION[self._rules.method]))
         self.slip = self._fit(examples)
 
     def _fit(self, examples: SlipExamples) -> BasisSlip:

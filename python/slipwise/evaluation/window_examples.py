@@ -41,10 +41,10 @@ def window_examples(
 def _row(reference: tuple[_core.MotionModel, Floats], windows: WindowSet, i: int) -> tuple[float, ...] | None:
     """V, omega and the three slip rates of window i."""
     model, mean = reference
-    track, segment = windows.track(i), windows.segments[i]
+    history, segment = windows.input_history(i), windows.segments[i]
     without_slip = np.concatenate((np.zeros(model.slip_size), mean[model.slip_size :]))
     paths = [
-        _core.integrate_segment(model, parameters, track, segment, _core.Integrator.Exact)
+        _core.integrate_segment(model, parameters, history, segment, _core.Integrator.Exact)
         for parameters in (without_slip, mean)
     ]
     driven, predicted = (_core.Pose2(*np.array(path.poses[-1]).tolist()) for path in paths)

@@ -13,7 +13,7 @@ from slipwise.models.model import Model
 
 _KNOWN = {"clock_offset"} | {
     f"{name}_{place}"
-    for name in ("log_lag", "log_delay", "delay", "gain", "slow_share", "log_slow_lag")
+    for name in ("log_time_constant", "log_delay", "delay", "gain", "slow_fraction", "log_slow_time_constant")
     for place in ("v", "omega")
 }
 
@@ -25,13 +25,13 @@ class ChannelResponse:
     lag: LearnedNumber  # s
     delay: LearnedNumber  # s
     gain: LearnedNumber
-    slow_share: LearnedNumber  # of the answer that follows by the slow lag
-    slow_lag: LearnedNumber  # s; zero where there is no slow part
+    slow_fraction: LearnedNumber  # of the answer that follows by the slow lag
+    slow_time_constant: LearnedNumber  # s; zero where there is no slow mode
 
     @property
     def mean_lag(self) -> LearnedNumber:
         """The time constant of one lag that loses as much distance [s]."""
-        return self.lag + self.slow_share * (self.slow_lag + self.lag * -1.0)
+        return self.lag + self.slow_fraction * (self.slow_time_constant + self.lag * -1.0)
 
     @property
     def mean_delay(self) -> LearnedNumber:
@@ -80,11 +80,11 @@ def actuator_of(model: Model) -> Actuator:
 
     def channel(place: str) -> ChannelResponse:
         return ChannelResponse(
-            lag=seconds(f"log_lag_{place}"),
+            lag=seconds(f"log_time_constant_{place}"),
             delay=plain(f"delay_{place}", 0.0) + seconds(f"log_delay_{place}"),
             gain=plain(f"gain_{place}", 1.0),
-            slow_share=plain(f"slow_share_{place}", 0.0),
-            slow_lag=seconds(f"log_slow_lag_{place}"),
+            slow_fraction=plain(f"slow_fraction_{place}", 0.0),
+            slow_time_constant=seconds(f"log_slow_time_constant_{place}"),
         )
 
     return Actuator(channel("v"), channel("omega"), plain("clock_offset", 0.0))

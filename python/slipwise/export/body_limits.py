@@ -17,12 +17,12 @@ Gains = tuple[LearnedNumber, LearnedNumber]  # of the body over the input, speed
 class BodyLimits:
     """What bounds the body's speed (v) and yaw rate (omega); none of several may be passed."""
 
-    top_v: Sequence[LearnedNumber] = ()  # m/s
-    top_omega: Sequence[LearnedNumber] = ()  # rad/s
-    acceleration_v: Sequence[LearnedNumber] = ()  # m/s^2
-    acceleration_omega: Sequence[LearnedNumber] = ()  # rad/s^2
-    braking_v: Sequence[LearnedNumber] = ()  # m/s^2
-    braking_omega: Sequence[LearnedNumber] = ()  # rad/s^2
+    saturation_v: Sequence[LearnedNumber] = ()  # m/s
+    saturation_omega: Sequence[LearnedNumber] = ()  # rad/s
+    slew_rate_up_v: Sequence[LearnedNumber] = ()  # m/s^2
+    slew_rate_up_omega: Sequence[LearnedNumber] = ()  # rad/s^2
+    slew_rate_down_v: Sequence[LearnedNumber] = ()  # m/s^2
+    slew_rate_down_omega: Sequence[LearnedNumber] = ()  # rad/s^2
 
 
 def slip_gains(numbers: LearnedNumbers, twists: BodyTwists) -> Gains:
@@ -49,7 +49,7 @@ def body_limits(limits: LimitsSection | None, gains: Gains, numbers: LearnedNumb
     if limits is None:
         return BodyLimits()
     speed, yaw_rate, side = limits.speed, limits.yaw_rate, limits.side
-    apart = numbers.limit(LearnedLimit(value=limits.track, std=limits.track_std))
+    apart = numbers.limit(LearnedLimit(value=limits.wheel_separation, std=limits.wheel_separation_std))
 
     def of_speed(own: LearnedLimit | None, of_side: LearnedLimit | None) -> list[LearnedNumber]:
         found = [] if own is None else [numbers.limit(own) * limits.gain_v * gains[0]]
@@ -62,12 +62,12 @@ def body_limits(limits: LimitsSection | None, gains: Gains, numbers: LearnedNumb
         return [*found, _at_most_drive(numbers.limit(of_side) * 2.0 / apart, gains[1])]
 
     return BodyLimits(
-        top_v=of_speed(speed.top, side.top),
-        top_omega=of_yaw(yaw_rate.top, side.top),
-        acceleration_v=of_speed(speed.acceleration, side.acceleration),
-        acceleration_omega=of_yaw(yaw_rate.acceleration, side.acceleration),
-        braking_v=of_speed(speed.braking, side.braking),
-        braking_omega=of_yaw(yaw_rate.braking, side.braking),
+        saturation_v=of_speed(speed.saturation, side.saturation),
+        saturation_omega=of_yaw(yaw_rate.saturation, side.saturation),
+        slew_rate_up_v=of_speed(speed.slew_rate_up, side.slew_rate_up),
+        slew_rate_up_omega=of_yaw(yaw_rate.slew_rate_up, side.slew_rate_up),
+        slew_rate_down_v=of_speed(speed.slew_rate_down, side.slew_rate_down),
+        slew_rate_down_omega=of_yaw(yaw_rate.slew_rate_down, side.slew_rate_down),
     )
 
 

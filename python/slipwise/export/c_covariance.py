@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of the C header that say how sure a prediction is: covariance, slip noise and tails."""
+"""The parts of the C header that say how sure a prediction is: covariance, slip noise and students."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
-from slipwise.prediction import tail_at
+from slipwise.prediction import student_at
 
 _SHIFTED = {
-    "log_lag_v": "model.speed.lag *= SLIPWISE_MATH(exp)({by})",
-    "log_lag_omega": "model.yaw.lag *= SLIPWISE_MATH(exp)({by})",
+    "log_time_constant_v": "model.speed.lag *= SLIPWISE_MATH(exp)({by})",
+    "log_time_constant_omega": "model.yaw.lag *= SLIPWISE_MATH(exp)({by})",
     "log_delay_v": "model.delay_v *= SLIPWISE_MATH(exp)({by})",
     "log_delay_omega": "model.delay_omega *= SLIPWISE_MATH(exp)({by})",
     "delay_v": "model.delay_v += {by}",
     "delay_omega": "model.delay_omega += {by}",
     "gain_v": "model.speed.gain += {by}",
     "gain_omega": "model.yaw.gain += {by}",
-    "slow_share_v": "model.speed.slow_share += {by}",
-    "slow_share_omega": "model.yaw.slow_share += {by}",
-    "log_slow_lag_v": "model.speed.slow_lag *= SLIPWISE_MATH(exp)({by})",
-    "log_slow_lag_omega": "model.yaw.slow_lag *= SLIPWISE_MATH(exp)({by})",
+    "slow_fraction_v": "model.speed.slow_fraction += {by}",
+    "slow_fraction_omega": "model.yaw.slow_fraction += {by}",
+    "log_slow_time_constant_v": "model.speed.slow_time_constant *= SLIPWISE_MATH(exp)({by})",
+    "log_slow_time_constant_omega": "model.yaw.slow_time_constant *= SLIPWISE_MATH(exp)({by})",
     "clock_offset": "model.clock_offset += {by}",
 }
 
@@ -62,7 +62,7 @@ def noise(model: Model) -> str:
         "POSE_STD_XY": (learned.pose_std_xy, "[m] of a measured pose"),
         "POSE_STD_YAW": (learned.pose_std_yaw, "[rad]"),
     }
-    root = np.sqrt(np.array(model.content.noise.scale)).tolist()
+    root = np.sqrt(np.array(model.content.noise.variance_scale)).tolist()
     lines = [
         f"#define SLIPWISE_{name} SLIPWISE_R({value!r})  /* {what} */"
         for name, (value, what) in scalars.items()
@@ -74,18 +74,18 @@ def noise(model: Model) -> str:
         {
             "NOISE_TIME": _numbers(learned.psd_time),
             "NOISE_MOTION": _numbers(learned.psd_motion),
-            "NOISE_SHARE": _numbers(learned.fraction),
+            "NOISE_FRACTION": _numbers(learned.fraction),
             "NOISE_SCALARS": "\n".join(lines),
         },
     )
 
 
 def covariance(model: Model) -> str:
-    """Return the roots of the parameters' covariance, the slip disturbance, the tails, and what uses them."""
+    """Return the roots of the parameters' covariance, the slip disturbance, the Student t, and their code."""
     rows = _roots(model)
-    seconds = sorted(model.content.noise.tails) or [0.0]
-    at = [(s, tail_at(model, s)) for s in seconds]
-    tails = [(s, math.log(tail.growth), math.log(tail.dof)) for s, tail in at]
+    seconds = sorted(model.content.noise.student_t) or [0.0]
+    at = [(s, student_at(model, s)) for s in seconds]
+    students = [(s, math.log(tail.inflation), math.log(tail.dof)) for s, tail in at]
     disturbance = _disturbed(model)
     return _filled(
         "covariance_template.h",
@@ -97,8 +97,8 @@ def covariance(model: Model) -> str:
             "TIME_COUNT": str(len(disturbance.times)),
             "TIMES": _numbers(disturbance.times) or _numbers([0.0]),
             "VARIANCES": _rows(disturbance.variances.T.tolist()),
-            "TAIL_COUNT": str(len(tails)),
-            "TAILS": ", ".join(f"{{{_numbers(row)}}}" for row in tails),
+            "TAIL_COUNT": str(len(students)),
+            "TAILS": ", ".join(f"{{{_numbers(row)}}}" for row in students),
         },
     )
 

@@ -78,15 +78,15 @@ def _constants(model: Model) -> str:
             (f"LAG_{place}", channel.lag.value, f"[s] time constant of the {what}", "lag"),
             (
                 f"SLOW_SHARE_{place}",
-                channel.slow_share.value,
-                f"share of the {what} that follows slowly",
-                "slow_share",
+                channel.slow_fraction.value,
+                f"fraction of the {what} that follows slowly",
+                "slow_fraction",
             ),
             (
                 f"SLOW_LAG_{place}",
-                channel.slow_lag.value,
+                channel.slow_time_constant.value,
                 "[s] its time constant; 0 where there is none",
-                "slow_lag",
+                "slow_time_constant",
             ),
         ]
     how = how_known(model)

@@ -19,12 +19,12 @@ def limits(model: Model) -> str:
     of_drive = model.limits or _core.CommandLimits(_NONE, _NONE, _NONE, 1.0, 1.0, 1.0)
     axes = {"SPEED": of_drive.speed, "YAW_RATE": of_drive.yaw_rate, "SIDE": of_drive.side}
     lines = [
-        "/* Limits of the drive, in front of delay and lag: dead-band, top, acceleration, braking. */",
+        "/* Limits of the drive, before delay and lag: dead-band, saturation, slew rates up and down. */",
         *_said(model),
     ]
     lines += [f"#define SLIPWISE_LIMITS_{name} {_axis(axis)}" for name, axis in axes.items()]
     lines += [
-        f"#define SLIPWISE_LIMITS_TRACK SLIPWISE_R({of_drive.track!r})  /* [m] between the sides */",
+        f"#define SLIPWISE_LIMITS_WHEEL_SEPARATION SLIPWISE_R({of_drive.wheel_separation!r})  /* [m] */",
         f"#define SLIPWISE_LIMITS_GAIN_V SLIPWISE_R({of_drive.gain_v!r})  /* of what the sides are asked */",
         f"#define SLIPWISE_LIMITS_GAIN_OMEGA SLIPWISE_R({of_drive.gain_omega!r})",
         f"#define SLIPWISE_LIMITS_SIDES {int(_axis(of_drive.side) != _axis(_NONE))}",
@@ -37,10 +37,10 @@ def how_known(model: Model) -> dict[str, str]:
 
     A number that is not identified stays in the header, which predicts what the model does; it says so.
     """
-    undetermined = {p.name.removeprefix("log_") for p in model.content.parameters if not p.determined}
+    not_identifiable = {p.name.removeprefix("log_") for p in model.content.parameters if not p.identifiable}
     return {
         p.name: f", {' +- '.join(estimate_texts(p.value, p.std))}"
-        + ("" if p.identified and p.name not in undetermined else ", not identified")
+        + ("" if p.identified and p.name not in not_identifiable else ", not identified")
         for p in physical_parameters(model)
     }
 
@@ -58,5 +58,5 @@ def cursor(model: Model) -> str:
 
 
 def _axis(axis: _core.AxisLimits) -> str:
-    values = (axis.dead_band, axis.top, axis.acceleration, axis.braking)
+    values = (axis.dead_band, axis.saturation, axis.slew_rate_up, axis.slew_rate_down)
     return ", ".join("INFINITY" if math.isinf(value) else repr(value) for value in values)

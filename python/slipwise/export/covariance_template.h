@@ -14,26 +14,26 @@ static const slipwise_real slipwise_disturbance_variance[SLIPWISE_SLOTS(SLIPWISE
                                                    [SLIPWISE_SLOTS(SLIPWISE_DISTURBANCE_TIMES)] = {
 @VARIANCES@
 };
-/* What held-out predictions of these horizons [s] needed: ln of the growth of the covariance, and of the degrees of
+/* What held-out predictions of these horizons [s] needed: ln of the inflation of the covariance, and of the degrees of
  * freedom of the Student t that has it. */
 #define SLIPWISE_TAILS @TAIL_COUNT@
 static const slipwise_real slipwise_tails[SLIPWISE_TAILS][3] = {@TAILS@};
 
 /* Growth of the covariance, and degrees of freedom, at a horizon [s]: between those judged by their logarithms. */
-static inline void slipwise_tail(slipwise_real horizon, slipwise_real *growth, slipwise_real *dof) {
+static inline void slipwise_tail(slipwise_real horizon, slipwise_real *inflation, slipwise_real *dof) {
   const slipwise_real(*at)[3] = slipwise_tails;
-  slipwise_real share = 0;
+  slipwise_real fraction = 0;
   int i = 0;
   while (i + 2 < SLIPWISE_TAILS && horizon > at[i + 1][0]) {
     ++i;
   }
   if (SLIPWISE_TAILS > 1) {
-    share = (horizon - at[i][0]) / (at[i + 1][0] - at[i][0]);
-    share = share < 0 ? SLIPWISE_R(0) : share > 1 ? SLIPWISE_R(1) : share;
-    *growth = SLIPWISE_MATH(exp)(at[i][1] + share * (at[i + 1][1] - at[i][1]));
-    *dof = SLIPWISE_MATH(exp)(at[i][2] + share * (at[i + 1][2] - at[i][2]));
+    fraction = (horizon - at[i][0]) / (at[i + 1][0] - at[i][0]);
+    fraction = fraction < 0 ? SLIPWISE_R(0) : fraction > 1 ? SLIPWISE_R(1) : fraction;
+    *inflation = SLIPWISE_MATH(exp)(at[i][1] + fraction * (at[i + 1][1] - at[i][1]));
+    *dof = SLIPWISE_MATH(exp)(at[i][2] + fraction * (at[i + 1][2] - at[i][2]));
   } else {
-    *growth = SLIPWISE_MATH(exp)(at[0][1]);
+    *inflation = SLIPWISE_MATH(exp)(at[0][1]);
     *dof = SLIPWISE_MATH(exp)(at[0][2]);
   }
 }
@@ -62,14 +62,14 @@ static inline void slipwise_add_square(slipwise_real sum[3][3], const slipwise_r
 }
 
 /* As slipwise_predict, with the covariance of (x, y, yaw) that slipwise.predict states: learned parameters, the slip
- * disturbance about them, slip noise, the noise of two measured poses, and growth. It costs 2 * (SLIPWISE_ROOTS +
+ * disturbance about them, slip noise, the noise of two measured poses, and inflation. It costs 2 * (SLIPWISE_ROOTS +
  * SLIPWISE_DISTURBED) + 1 predictions. */
 static inline int slipwise_predict_covariance(const slipwise_commands *commands, const slipwise_window *window,
                                               slipwise_pose *pose, slipwise_drive *drive,
                                               slipwise_real covariance[3][3]) {
   const slipwise_model model = slipwise_model_shifted(0);
   slipwise_real parameters[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, noise_sum[3][3];
-  slipwise_real by[SLIPWISE_SLOTS(SLIPWISE_PARAMETER_COUNT)], growth, dof;
+  slipwise_real by[SLIPWISE_SLOTS(SLIPWISE_PARAMETER_COUNT)], inflation, dof;
   slipwise_noise noise = {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
   slipwise_walk walk;
   int root, i, j, side;
@@ -121,11 +121,11 @@ static inline int slipwise_predict_covariance(const slipwise_commands *commands,
     slipwise_add_square(noise_sum, turned);
     slipwise_add_square(noise_sum, own);
   }
-  slipwise_tail(window->end - window->start, &growth, &dof);
+  slipwise_tail(window->end - window->start, &inflation, &dof);
   for (i = 0; i < 3; ++i) {
     for (j = 0; j < 3; ++j) {
       covariance[i][j] =
-          growth * (parameters[i][j] + slipwise_noise_root[i] * slipwise_noise_root[j] * noise_sum[i][j]);
+          inflation * (parameters[i][j] + slipwise_noise_root[i] * slipwise_noise_root[j] * noise_sum[i][j]);
     }
   }
   slipwise_results(&walk, pose, drive);

@@ -108,7 +108,7 @@ def _covariances(model: Model, options: ExportOptions) -> list[Entry | Kept]:
             "pose_covariance_diagonal",
             pose,
             numbers,
-            f"[m^2, rad^2] {where}: growth within {seconds:g} s. The controller never lets it grow,\n"
+            f"[m^2, rad^2] {where}: inflation within {seconds:g} s. The controller never lets it grow,\n"
             "so fuse the twist, or the pose as differences, never the pose itself",
         ),
     ]

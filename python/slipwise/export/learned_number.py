@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import known
-from slipwise.models.schema import UNDETERMINED_RATIO, LearnedLimit
+from slipwise.models.schema import UNIDENTIFIABLE_RATIO, LearnedLimit
 from slipwise.number_text import estimate_texts
 
 Floats = NDArray[np.float64]
@@ -56,10 +56,10 @@ class LearnedNumbers:
     def __init__(self, model: Model) -> None:
         self._covariance = model.covariance
         self._prior = np.square(model.prior_std)
-        guessed = np.array([not parameter.determined for parameter in model.content.parameters], dtype=bool)
+        guessed = np.array([not parameter.identifiable for parameter in model.content.parameters], dtype=bool)
         unlearned = np.where(guessed[:, None] | guessed, 0.0, model.covariance)
         self._unlearned = unlearned + np.diag(np.where(guessed, self._prior, 0.0))
-        self._windows = model.content.provenance.learned_windows
+        self._windows = model.content.provenance.learned_segments
 
     def exactly(self, value: float) -> LearnedNumber:
         """Return a number that is not learned."""
@@ -109,7 +109,7 @@ class LearnedNumbers:
         shown = self.text(number)
         if std > 0.0 and not known(number.value, std):
             return f"learned {shown}, which is not known well enough"
-        if self._guessed_fraction(number) > UNDETERMINED_RATIO:
+        if self._guessed_fraction(number) > UNIDENTIFIABLE_RATIO:
             return f"the log does not determine it: {shown} is about what was guessed before it"
         return ""
 

@@ -78,7 +78,7 @@ static inline slipwise_real slipwise_ramp_mean(const slipwise_lane *lane, slipwi
 /* What a twist asks of both sides, and back. */
 static inline void slipwise_to_sides(slipwise_drive twist, slipwise_real sides[2]) {
   const slipwise_real v = SLIPWISE_LIMITS_GAIN_V * twist.v;
-  const slipwise_real half = SLIPWISE_LIMITS_GAIN_OMEGA * twist.omega * SLIPWISE_LIMITS_TRACK / 2;
+  const slipwise_real half = SLIPWISE_LIMITS_GAIN_OMEGA * twist.omega * SLIPWISE_LIMITS_WHEEL_SEPARATION / 2;
   sides[0] = v - half;
   sides[1] = v + half;
 }
@@ -86,7 +86,7 @@ static inline void slipwise_to_sides(slipwise_drive twist, slipwise_real sides[2
 static inline slipwise_drive slipwise_from_sides(const slipwise_real sides[2]) {
   slipwise_drive twist;
   twist.v = (sides[0] + sides[1]) / 2;
-  twist.omega = (sides[1] - sides[0]) / SLIPWISE_LIMITS_TRACK;
+  twist.omega = (sides[1] - sides[0]) / SLIPWISE_LIMITS_WHEEL_SEPARATION;
   return twist;
 }
 
@@ -97,9 +97,9 @@ typedef struct {
   int v_reached, omega_reached; /* whether the ramps have been moved to where the measured drive is */
   slipwise_real delay, known_until;
   slipwise_ramp speed, yaw_rate, side[2];
-  slipwise_drive told, held;
+  slipwise_drive commanded, held;
   slipwise_real change, piece; /* when the next piece begins, as commands are stamped [s]; how long pieces are [s] */
-  int next;                    /* the command that is told next */
+  int next;                    /* the command that is commanded next */
   int pieces;                  /* of the last one, so far */
 } slipwise_cursor;
 
@@ -108,11 +108,11 @@ static inline slipwise_real slipwise_told_next(const slipwise_cursor *cursor) {
                                                 : SLIPWISE_R(INFINITY);
 }
 
-/* What is left of the command that is told, once all ramps are over. */
+/* What is left of the command that is commanded, once all ramps are over. */
 static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
   slipwise_drive goal;
-  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
-  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
 #if SLIPWISE_LIMITS_SIDES
   {
     slipwise_real sides[2];
@@ -129,8 +129,8 @@ static inline slipwise_drive slipwise_goal(const slipwise_cursor *cursor) {
 static inline slipwise_real slipwise_seconds_left(const slipwise_cursor *cursor) {
   slipwise_drive goal;
   slipwise_real left, other;
-  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
-  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
   left = slipwise_ramp_seconds(&slipwise_lanes[0], cursor->speed.state, goal.v);
   other = slipwise_ramp_seconds(&slipwise_lanes[1], cursor->yaw_rate.state, goal.omega);
   left = other > left ? other : left;
@@ -163,8 +163,8 @@ static inline void slipwise_reach(slipwise_cursor *cursor, slipwise_real end) {
   const int v = !cursor->v_reached && end > cursor->at.v_until;
   const int omega = !cursor->omega_reached && end > cursor->at.omega_until;
   slipwise_drive goal;
-  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->told.v);
-  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->told.omega);
+  goal.v = slipwise_limited(&slipwise_lanes[0], cursor->commanded.v);
+  goal.omega = slipwise_limited(&slipwise_lanes[1], cursor->commanded.omega);
   if (v) {
     slipwise_ramp_reach(&cursor->speed, asked.v, goal.v);
     cursor->v_reached = 1;
@@ -188,8 +188,8 @@ static inline void slipwise_reach(slipwise_cursor *cursor, slipwise_real end) {
 
 static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwise_real taken) {
   slipwise_drive mean;
-  mean.v = slipwise_ramp_mean(&slipwise_lanes[0], &cursor->speed, cursor->told.v, cursor->piece, taken);
-  mean.omega = slipwise_ramp_mean(&slipwise_lanes[1], &cursor->yaw_rate, cursor->told.omega, cursor->piece, taken);
+  mean.v = slipwise_ramp_mean(&slipwise_lanes[0], &cursor->speed, cursor->commanded.v, cursor->piece, taken);
+  mean.omega = slipwise_ramp_mean(&slipwise_lanes[1], &cursor->yaw_rate, cursor->commanded.omega, cursor->piece, taken);
 #if SLIPWISE_LIMITS_SIDES
   {
     slipwise_real sides[2];
@@ -204,7 +204,7 @@ static inline slipwise_drive slipwise_piece_mean(slipwise_cursor *cursor, slipwi
   return mean;
 }
 
-/* The next command is told. Pieces divide the time that the one before was held. */
+/* The next command is commanded. Pieces divide the time that the one before was held. */
 static inline void slipwise_tell(slipwise_cursor *cursor) {
   const slipwise_command *const command = slipwise_command_at(cursor->commands, cursor->next);
   slipwise_real hold = SLIPWISE_RAMP_PIECE, parts, ramp;
@@ -212,8 +212,8 @@ static inline void slipwise_tell(slipwise_cursor *cursor) {
     hold = command->t - slipwise_command_at(cursor->commands, cursor->next - 1)->t;
   }
   cursor->change = command->t;
-  cursor->told.v = command->v;
-  cursor->told.omega = command->omega;
+  cursor->commanded.v = command->v;
+  cursor->commanded.omega = command->omega;
   ++cursor->next;
   parts = SLIPWISE_MATH(ceil)(hold / SLIPWISE_RAMP_PIECE - SLIPWISE_SAME_STEP);
   cursor->piece = hold / (parts < 1 ? SLIPWISE_R(1) : parts);
@@ -280,7 +280,7 @@ static inline void slipwise_begin(slipwise_cursor *cursor, slipwise_real first) 
   cursor->yaw_rate.state = cursor->yaw_rate.target = before.omega;
   cursor->side[0].state = cursor->side[0].target = sides[0];
   cursor->side[1].state = cursor->side[1].target = sides[1];
-  cursor->told = cursor->held = before;
+  cursor->commanded = cursor->held = before;
 }
 
 static inline slipwise_cursor slipwise_cursor_at(const slipwise_commands *commands, const slipwise_start *at,

@@ -118,7 +118,7 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
 
 /* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
 typedef struct {
-  slipwise_real lag, gain, slow_share, slow_lag;
+  slipwise_real lag, gain, slow_fraction, slow_time_constant;
 } slipwise_response;
 
 /* What was learned, as numbers that can be shifted. */
@@ -134,12 +134,12 @@ static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
   slipwise_model model;
   model.speed.lag = SLIPWISE_LAG_V;
   model.speed.gain = SLIPWISE_GAIN_V;
-  model.speed.slow_share = SLIPWISE_SLOW_SHARE_V;
-  model.speed.slow_lag = SLIPWISE_SLOW_LAG_V;
+  model.speed.slow_fraction = SLIPWISE_SLOW_SHARE_V;
+  model.speed.slow_time_constant = SLIPWISE_SLOW_LAG_V;
   model.yaw.lag = SLIPWISE_LAG_OMEGA;
   model.yaw.gain = SLIPWISE_GAIN_OMEGA;
-  model.yaw.slow_share = SLIPWISE_SLOW_SHARE_OMEGA;
-  model.yaw.slow_lag = SLIPWISE_SLOW_LAG_OMEGA;
+  model.yaw.slow_fraction = SLIPWISE_SLOW_SHARE_OMEGA;
+  model.yaw.slow_time_constant = SLIPWISE_SLOW_LAG_OMEGA;
   model.delay_v = SLIPWISE_DELAY_V;
   model.delay_omega = SLIPWISE_DELAY_OMEGA;
   model.clock_offset = SLIPWISE_CLOCK_OFFSET;
@@ -180,31 +180,31 @@ typedef struct {
   slipwise_real fast, slow;
 } slipwise_channel;
 
-static inline slipwise_real slipwise_fast_share(const slipwise_response *response) {
-  return response->slow_lag > 0 ? 1 - response->slow_share : SLIPWISE_R(1);
+static inline slipwise_real slipwise_fast_fraction(const slipwise_response *response) {
+  return response->slow_time_constant > 0 ? 1 - response->slow_fraction : SLIPWISE_R(1);
 }
 
 static inline slipwise_channel slipwise_settled(const slipwise_response *response, slipwise_real input) {
   slipwise_channel channel;
-  channel.fast = slipwise_fast_share(response) * response->gain * input;
-  channel.slow = (1 - slipwise_fast_share(response)) * response->gain * input;
+  channel.fast = slipwise_fast_fraction(response) * response->gain * input;
+  channel.slow = (1 - slipwise_fast_fraction(response)) * response->gain * input;
   return channel;
 }
 
 static inline slipwise_real slipwise_lesser(slipwise_real a, slipwise_real b) { return a < b ? a : b; }
 static inline slipwise_real slipwise_greater(slipwise_real a, slipwise_real b) { return a > b ? a : b; }
 
-/* The whole was measured while `input` acts, or before any does: then the channel is settled. The slow part is what the
+/* The whole was measured while `input` acts, or before any does: then the channel is settled. The slow mode is what the
  * fast one does not explain, within the range of what it would be by the inputs alone, where it settles, and the value
  * without what the fast one settles at: so a constant input carries the drive to its own speed, and not beyond. */
 static inline void slipwise_measured(slipwise_channel *channel, const slipwise_response *response,
                                      slipwise_real value, slipwise_real input, int acts) {
-  const slipwise_real fast_share = slipwise_fast_share(response);
-  if (!(response->slow_lag > 0)) {
+  const slipwise_real fast_fraction = slipwise_fast_fraction(response);
+  if (!(response->slow_time_constant > 0)) {
     channel->fast = value;
   } else if (!acts) {
-    channel->fast = fast_share * value;
-    channel->slow = (1 - fast_share) * value;
+    channel->fast = fast_fraction * value;
+    channel->slow = (1 - fast_fraction) * value;
   } else {
     const slipwise_channel settled = slipwise_settled(response, input);
     const slipwise_real left = value - channel->fast, carried = value - settled.fast;
@@ -225,8 +225,8 @@ static inline slipwise_real slipwise_channel_step(slipwise_channel *channel, con
                                                   slipwise_real input, slipwise_real duration) {
   const slipwise_channel target = slipwise_settled(response, input);
   slipwise_real integral = slipwise_lag_step(&channel->fast, target.fast, response->lag, duration);
-  if (response->slow_lag > 0) {
-    integral += slipwise_lag_step(&channel->slow, target.slow, response->slow_lag, duration);
+  if (response->slow_time_constant > 0) {
+    integral += slipwise_lag_step(&channel->slow, target.slow, response->slow_time_constant, duration);
   }
   return integral;
 }
@@ -311,7 +311,7 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
 /* Steps from `now` to `until`, ending wherever a delayed command changes. */
 static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until, int moves) {
   const slipwise_response *const speed = &walk->model->speed, *const yaw = &walk->model->yaw;
-  const int lagging = speed->lag > 0 || yaw->lag > 0 || speed->slow_lag > 0 || yaw->slow_lag > 0;
+  const int lagging = speed->lag > 0 || yaw->lag > 0 || speed->slow_time_constant > 0 || yaw->slow_time_constant > 0;
   while (now < until) {
     slipwise_real next = slipwise_change(&walk->speed_input, until);
     const slipwise_real other = slipwise_change(&walk->yaw_input, until);
@@ -333,10 +333,10 @@ static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwi
 
 /* The time constant that a channel's drive at the start hangs on: where it was measured, only those of two lags. */
 static inline slipwise_real slipwise_start_lag(const slipwise_response *response, int measured) {
-  if (measured && !(response->slow_lag > 0)) {
+  if (measured && !(response->slow_time_constant > 0)) {
     return SLIPWISE_R(0);
   }
-  return response->slow_lag > response->lag ? response->slow_lag : response->lag;
+  return response->slow_time_constant > response->lag ? response->slow_time_constant : response->lag;
 }
 
 static inline slipwise_start slipwise_start_of(const slipwise_model *model, const slipwise_drive *drive,

@@ -30,12 +30,12 @@ def with_limits(
 ) -> list[Entry | Kept]:
     """Return one entry for each parameter, the strictest of its bounds and of the learned limits."""
     learned = {
-        "vx_max": (limits.top_v, 1.0),
-        "vx_min": (limits.top_v, -1.0),
-        "wz_max": (limits.top_omega, 1.0),
-        "ax_max": (limits.acceleration_v, 1.0),
-        "ax_min": (limits.braking_v, -1.0),
-        "az_max": (limits.acceleration_omega, 1.0),
+        "vx_max": (limits.saturation_v, 1.0),
+        "vx_min": (limits.saturation_v, -1.0),
+        "wz_max": (limits.saturation_omega, 1.0),
+        "ax_max": (limits.slew_rate_up_v, 1.0),
+        "ax_min": (limits.slew_rate_down_v, -1.0),
+        "az_max": (limits.slew_rate_up_omega, 1.0),
     }
     entries = []
     for name, (found, sign) in learned.items():

@@ -1,8 +1,8 @@
-/* Slip noise: power spectral densities [unit^2/s of the rate] and [unit^2 per motion], and the share of the motion that
+/* Slip noise: power spectral densities [unit^2/s of the rate] and [unit^2 per motion], and the fraction of the motion that
  * stays the same all along, of (forward, left, turn). */
 static const slipwise_real slipwise_noise_time[3] = {@NOISE_TIME@};
 static const slipwise_real slipwise_noise_motion[3] = {@NOISE_MOTION@};
-static const slipwise_real slipwise_noise_share[3] = {@NOISE_SHARE@};
+static const slipwise_real slipwise_noise_share[3] = {@NOISE_FRACTION@};
 @NOISE_SCALARS@
 
 /* How slip noise moves the pose, as it grows along the path. */

@@ -25,7 +25,7 @@ def origin_lines(model: Model, name: str) -> list[str]:
     learned, verdict, span = content.provenance, content.verdict, content.range
     digest = hashlib.sha256(model.to_yaml().encode()).hexdigest()
     logs = [f"log: {log.path} (sha256 {log.sha256[:16]})" for log in learned.logs] or ["log: none named"]
-    guessed = [p.name for p in content.parameters if not p.determined]
+    guessed = [p.name for p in content.parameters if not p.identifiable]
     lines = [
         (
             f"slipwise {version('slipwise')}, model {name} (sha256 {digest[:16]}),"
@@ -40,7 +40,7 @@ def origin_lines(model: Model, name: str) -> list[str]:
         ),
     ]
     if guessed:
-        lines.append(f"not determined by the log, so about as guessed before it: {', '.join(guessed)}")
+        lines.append(f"not identifiable from the log, so about as guessed before it: {', '.join(guessed)}")
     return [one_line(line) for line in lines]
 
 

@@ -13,11 +13,11 @@ from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.export.learned_number import LearnedNumber, LearnedNumbers
 from slipwise.models.model import Model
-from slipwise.prediction import tail_at
+from slipwise.prediction import student_at
 
 Floats = NDArray[np.float64]
 
-REFERENCE_SHARE = 0.5  # of the fastest speed and yaw rate that the log holds
+REFERENCE_FRACTION = 0.5  # of the fastest speed and yaw rate that the log holds
 _SETTLED = 16384.0  # s after a command; no actuator is slower
 _BRIEF = 2.0**-10  # s; the robot hardly turns in it
 _NO_NOISE = (0.0, 0.0, 0.0)
@@ -38,8 +38,8 @@ def reference_drive(model: Model) -> ReferenceDrive:
         ModelError: the robot never drove, or never turned.
     """
     span = model.content.range
-    speed = REFERENCE_SHARE * max(map(abs, span.speed))
-    yaw_rate = REFERENCE_SHARE * max(map(abs, span.yaw_rate))
+    speed = REFERENCE_FRACTION * max(map(abs, span.speed))
+    yaw_rate = REFERENCE_FRACTION * max(map(abs, span.yaw_rate))
     if not (speed > 0.0 and yaw_rate > 0.0):
         raise ModelError(
             "the range of validity has no speed or no yaw rate, so noise cannot be stated",
@@ -56,7 +56,7 @@ def motion_covariance(model: Model, drive: tuple[float, float], seconds: float) 
     model, noise = model.body, model.noise
     slip_only = _core.MotionNoise(noise.psd_time, noise.psd_motion, noise.fraction, 0.0, 0.0)
     covariance = _spread(model, _settled(model, drive, seconds), slip_only, model.covariance_over(seconds))
-    return np.asarray(covariance * tail_at(model, seconds).growth, dtype=np.float64)
+    return np.asarray(covariance * student_at(model, seconds).inflation, dtype=np.float64)
 
 
 def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Floats:
@@ -73,7 +73,7 @@ def slip_density(model: Model, drive: tuple[float, float], seconds: float) -> Fl
     density = (
         density + np.diag(_spread(model, at, lasting, model.covariance_over(seconds))) / _BRIEF**2 * seconds
     )
-    return np.asarray(density * tail_at(model, seconds).growth, dtype=np.float64)
+    return np.asarray(density * student_at(model, seconds).inflation, dtype=np.float64)
 
 
 def learned_variances(model: Model, of_model: Callable[[Model], Floats]) -> list[LearnedNumber]:
@@ -83,18 +83,20 @@ def learned_variances(model: Model, of_model: Callable[[Model], Floats]) -> list
     """
     numbers = LearnedNumbers(model)
     found = []
-    for value, learned in zip(of_model(model).tolist(), of_model(_determined(model)).tolist(), strict=True):
+    for value, learned in zip(of_model(model).tolist(), of_model(_identifiable(model)).tolist(), strict=True):
         guessed = 1.0 - learned / value if value > 0.0 else 0.0
         found.append(numbers.variance(value, guessed=guessed))
     return found
 
 
-def _determined(model: Model) -> Model:
+def _identifiable(model: Model) -> Model:
     """Return the model as if the parameters that the log does not determine were known exactly."""
-    known = np.array([parameter.determined for parameter in model.content.parameters], dtype=bool)
+    known = np.array([parameter.identifiable for parameter in model.content.parameters], dtype=bool)
     if known.all():
         return model
-    parameters = [p if p.determined else p.model_copy(update={"std": 0.0}) for p in model.content.parameters]
+    parameters = [
+        p if p.identifiable else p.model_copy(update={"std": 0.0}) for p in model.content.parameters
+    ]
     covariance = np.where(known[:, None] & known, model.covariance, 0.0).tolist()
     return Model(model.content.model_copy(update={"parameters": parameters, "covariance": covariance}))
 
@@ -102,13 +104,13 @@ def _determined(model: Model) -> Model:
 def _settled(model: Model, drive: tuple[float, float], seconds: float) -> _core.SegmentLinearization:
     """Return a stretch of a drive whose command was given long before."""
     v, omega = drive
-    track = _core.InputTrack(*(np.array([value]) for value in (0.0, v, 0.0, omega)))
+    history = _core.InputHistory(*(np.array([value]) for value in (0.0, v, 0.0, omega)))
     segment = _core.Segment(_SETTLED, _SETTLED + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    return _core.linearize_segment(model.motion, model.mean, track, segment)
+    return _core.linearize_segment(model.motion, model.mean, history, segment)
 
 
 def _spread(
     model: Model, at: _core.SegmentLinearization, noise: _core.MotionNoise, parameters: Floats
 ) -> Floats:
-    scale = np.array(model.content.noise.scale)
+    scale = np.array(model.content.noise.variance_scale)
     return np.asarray(_core.prediction_covariance(at, parameters, noise, scale), dtype=np.float64)

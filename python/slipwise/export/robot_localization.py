@@ -120,9 +120,12 @@ def _control(model: Model) -> list[Entry | Kept]:
     slip = slip_gains(numbers, body_twists(model))
     behind = (actuator.v.gain * slip[0], actuator.omega.gain * slip[1])
     limits = body_limits(model.content.limits, behind, numbers)
-    v = _axis(actuator.v.mean_lag, span.speed, (limits.acceleration_v, limits.braking_v), numbers)
+    v = _axis(actuator.v.mean_lag, span.speed, (limits.slew_rate_up_v, limits.slew_rate_down_v), numbers)
     omega = _axis(
-        actuator.omega.mean_lag, span.yaw_rate, (limits.acceleration_omega, limits.braking_omega), numbers
+        actuator.omega.mean_lag,
+        span.yaw_rate,
+        (limits.slew_rate_up_omega, limits.slew_rate_down_omega),
+        numbers,
     )
     if v.why and omega.why:
         return [Kept(("use_control",), f"the lag of the speed: {v.why};\nthat of the yaw rate: {omega.why}")]

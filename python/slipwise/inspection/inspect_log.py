@@ -77,6 +77,6 @@ def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
         learned=learned,
         timing=tuple(timing for item in learned for timing in timing_of(item)),
         maps={
-            name: coverage_map(inputs[name], unknown_after=settings.window.unknown_after) for name in present
+            name: coverage_map(inputs[name], unknown_after=settings.segment.unknown_after) for name in present
         },
     )

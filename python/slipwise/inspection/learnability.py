@@ -17,7 +17,7 @@ from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
-from slipwise.models.schema import UNDETERMINED_RATIO
+from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class LearnableParameter:
     variance_ratio: float  # posterior / prior variance: 0 all is known, 1 the log says nothing
 
     @property
-    def determined(self) -> bool:
+    def identifiable(self) -> bool:
         """Whether the log tells more than was assumed before."""
-        return self.variance_ratio <= UNDETERMINED_RATIO
+        return self.variance_ratio <= UNIDENTIFIABLE_RATIO
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,9 @@ class Learnability:
 
 def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnability:
     """Learn as `calibrate` does and say what is determined; nothing to learn is no error."""
-    found = contradictions(log, input_name, settings.window.unknown_after, sensor_yaw=settings.mount.yaw)
+    found = contradictions(
+        log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
+    )
     return replace(_learned(log, input_name, settings), contradictions=found)
 
 
@@ -71,7 +73,7 @@ def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     parameters = tuple(
         _parameter((info.name, info.unit), posterior, i) for i, info in enumerate(posterior.motion.parameters)
     )
-    unknown = tuple(parameter.name for parameter in parameters if not parameter.determined)
+    unknown = tuple(parameter.name for parameter in parameters if not parameter.identifiable)
     return Learnability(
         input=input_name,
         windows=len(windows),

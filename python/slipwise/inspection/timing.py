@@ -17,7 +17,7 @@ class Timing:
     name: str
     seconds: float  # s
     std: float  # s
-    determined: bool
+    identifiable: bool
     meaning: str
 
 
@@ -27,10 +27,10 @@ _MEANINGS = {
     "delay_omega": "from a yaw rate command to that yaw rate, which then is there at once",
     "log_delay_v": "from a speed command to the first effect",
     "log_delay_omega": "from a yaw rate command to the first effect",
-    "log_lag_v": "then the speed follows with this time constant",
-    "log_lag_omega": "then the yaw rate follows with this time constant",
-    "log_slow_lag_v": "a part of the speed follows with this time constant",
-    "log_slow_lag_omega": "a part of the yaw rate follows with this time constant",
+    "log_time_constant_v": "then the speed follows with this time constant",
+    "log_time_constant_omega": "then the yaw rate follows with this time constant",
+    "log_slow_time_constant_v": "a part of the speed follows with this time constant",
+    "log_slow_time_constant_omega": "a part of the yaw rate follows with this time constant",
 }
 
 
@@ -56,4 +56,4 @@ def _timing(input_name: str, parameter: LearnableParameter, meaning: str) -> Tim
     seconds, std = parameter.value, parameter.std
     if name != parameter.name:
         seconds, std = math.exp(seconds), math.exp(seconds) * std
-    return Timing(input_name, name, seconds, std, parameter.determined, meaning)
+    return Timing(input_name, name, seconds, std, parameter.identifiable, meaning)

@@ -13,7 +13,7 @@ from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
-from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_track
+from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_path
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
@@ -103,15 +103,15 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     if kind != JOINT_STATE:
         v, vy, omega = samples.values.T
         return context.stream("wheels", samples, {"v": v, "vy": vy, "omega": omega})
-    radius, track = context.options.wheel_radius, context.options.track
-    if radius is None or track is None:
+    radius, wheel_separation = context.options.wheel_radius, context.options.wheel_separation
+    if radius is None or wheel_separation is None:
         raise LogError(
             "wheel speeds need the wheels' radius and the distance between left and right wheels",
             where=samples.topic,
-            advice="give --wheel-radius and --track in metres",
+            advice="give --wheel-radius and --wheel-separation in metres",
         )
     left, right = _side_speeds(context, samples)
-    v, omega = twist_from_wheels(left, right, wheel_radius=radius, track=track)
+    v, omega = twist_from_wheels(left, right, wheel_radius=radius, wheel_separation=wheel_separation)
     return context.stream("wheels", samples, {"v": v, "omega": omega})
 
 
@@ -149,7 +149,7 @@ def fix_stream(
 ) -> RawStream:
     """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
 
-    The heading is the IMU's where there is one, else the direction of the track while the robot moves.
+    The heading is the IMU's where there is one, else the direction of the path while the robot moves.
     """
     values = samples.values
     position = np.isfinite(values[:, :2]).all(axis=1)
@@ -169,8 +169,8 @@ def fix_stream(
     if known.any():
         context.notes.append("headings are those of the IMU")
     else:
-        yaw[good], known[good] = heading_from_track(t[good], x[good], y[good], inputs)
-        context.notes.append(f"{samples.topic} has no headings: they are the direction of the track")
+        yaw[good], known[good] = heading_from_path(t[good], x[good], y[good], inputs)
+        context.notes.append(f"{samples.topic} has no headings: they are the direction of the path")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
     columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": _deviation(values[:, 4:6])}
     return context.stream("poses", samples, columns, good & known)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Sums of held inputs over time, for comparing what a robot was told with where it went."""
+"""Sums of held inputs over time, for comparing what a robot was commanded with where it went."""
 
 from __future__ import annotations
 

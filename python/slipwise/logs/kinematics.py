@@ -8,10 +8,10 @@ from slipwise.logs.log import Floats
 
 
 def twist_from_wheels(
-    left: Floats, right: Floats, *, wheel_radius: float, track: float
+    left: Floats, right: Floats, *, wheel_radius: float, wheel_separation: float
 ) -> tuple[Floats, Floats]:
     """Return (v [m/s], omega [rad/s]) of a differential drive from its wheel speeds [N] in rad/s."""
-    twists = _core.DifferentialDrive(wheel_radius, track).twists(left, right)
+    twists = _core.DifferentialDrive(wheel_radius, wheel_separation).twists(left, right)
     return twists[:, 0], twists[:, 1]
 
 

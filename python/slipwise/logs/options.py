@@ -32,7 +32,7 @@ class LogOptions:
     left_joints: tuple[str, ...] = ()  # JointState: wheels of the left side, by name
     right_joints: tuple[str, ...] = ()
     wheel_radius: float | None = None  # [m]
-    track: float | None = None  # [m] between the left and the right wheels
+    wheel_separation: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
     command_scale: tuple[float, float] = (1.0, 1.0)  # factors of the commanded speed and yaw rate
     wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
@@ -46,7 +46,7 @@ class LogOptions:
     unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
 
     def __post_init__(self) -> None:
-        for name in ("wheel_radius", "track", "wheelbase"):
+        for name in ("wheel_radius", "wheel_separation", "wheelbase"):
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
                 raise SettingsError(

@@ -26,7 +26,7 @@ USED = frozenset(
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
 POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
-_SIZES = "--wheel-radius and --track"
+_SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
@@ -106,17 +106,22 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
         vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
         return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
     if "wheel_left" in names and "wheel_right" in names:
-        if options.wheel_radius is not None and options.track is not None:
+        if options.wheel_radius is not None and options.wheel_separation is not None:
             left, right = table.numbers("wheel_left", tally), table.numbers("wheel_right", tally)
-            v, omega = twist_from_wheels(left, right, wheel_radius=options.wheel_radius, track=options.track)
+            v, omega = twist_from_wheels(
+                left, right, wheel_radius=options.wheel_radius, wheel_separation=options.wheel_separation
+            )
             notes.append(
-                f"{table.path.name}: odo from wheel radius {options.wheel_radius} m, track {options.track} m"
+                f"{table.path.name}: odo from wheel radius {options.wheel_radius} m,"
+                f" separation {options.wheel_separation} m"
             )
             return InputColumns(v, None, omega)
         if "cmd_v" not in names and "cmd_vx" not in names:
             advice = f"give {_SIZES}, or the columns odo_v and odo_omega"
             raise LogError(
-                "wheel speeds need the wheel radius and the track", where=str(table.path), advice=advice
+                "wheel speeds need the wheel radius and the wheel_separation",
+                where=str(table.path),
+                advice=advice,
             )
         notes.append(
             f"{table.path.name}: wheel_left and wheel_right have wheel speeds: give {_SIZES} to use them"
@@ -149,7 +154,7 @@ def use_of_column(name: str, names: Collection[str], options: LogOptions) -> tup
 
 
 def _unused_because(name: str, names: Collection[str], options: LogOptions) -> str:
-    sized = options.wheel_radius is not None and options.track is not None
+    sized = options.wheel_radius is not None and options.wheel_separation is not None
     beside = {"odo_v": "odo_omega", "odo_omega": "odo_v"}.get(name, name)
     if beside not in names:
         return f"there is no {beside} beside it"

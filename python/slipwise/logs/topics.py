@@ -39,7 +39,7 @@ _WHEEL = Role("wheel", WHEEL_TYPES, WHEEL_NAMES)
 _IMU = Role("imu", (IMU,), ((r"raw", -1, "its name says that it is raw, without an orientation"),))
 _MORE_POSES = 2  # TF is preferred where it has this many times the poses of the topic
 _RECORD = "record where the robot went by something other than its wheels (RTK, lidar, motion capture)"
-SIZES = "--wheel-radius and --track"
+SIZES = "--wheel-radius and --wheel-separation"
 
 
 @dataclass(frozen=True)
@@ -165,7 +165,7 @@ def _not_transforms(topic: Topic | None, transforms: TransformSource | None) -> 
 
 def _choose_wheel(live: Mapping[str, Topic], options: LogOptions, advice: dict[str, str]) -> RoleChoice:
     """Choose the wheels; joint states only where the sizes of the robot are given."""
-    sized = options.wheel_radius is not None and options.track is not None
+    sized = options.wheel_radius is not None and options.wheel_separation is not None
     if options.wheel_topic is not None or sized:
         return choose(live, _WHEEL, options.wheel_topic)
     joints = [topic for topic in live.values() if topic.type == JOINT_STATE]

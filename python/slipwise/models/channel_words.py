@@ -48,16 +48,16 @@ def _time_constants(found: Found, place: str) -> str:
     lag = found.get(f"lag_{place}")
     if lag is None or not lag.identified:
         return ""
-    slow, slow_lag = found.get(f"slow_share_{place}"), found.get(f"slow_lag_{place}")
+    slow, slow_time_constant = found.get(f"slow_fraction_{place}"), found.get(f"slow_time_constant_{place}")
     one = f"a time constant of {_seconds(lag)}"
-    if slow is None or slow_lag is None:
+    if slow is None or slow_time_constant is None:
         return one
     if abs(slow.value) <= SAME * slow.std:
         return one if slow.std <= LARGEST_HIDDEN else ""
-    if not (slow.identified and slow_lag.identified):
+    if not (slow.identified and slow_time_constant.identified):
         return ""
     percent = estimate_text(100.0 * slow.value, 100.0 * slow.std)
-    return f"{one} ({percent} % of it with a slower one of {_seconds(slow_lag)})"
+    return f"{one} ({percent} % of it with a slower one of {_seconds(slow_time_constant)})"
 
 
 def _seconds(parameter: PhysicalParameter) -> str:

@@ -36,7 +36,7 @@ class Difference:
 
     @property
     def different(self) -> bool:
-        """Whether both have it, and it differs beyond the stated uncertainty."""
+        """Whether both have it, and it differs beyond the reported uncertainty."""
         return abs(self.z) >= DIFFERENT
 
 

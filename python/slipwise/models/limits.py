@@ -9,7 +9,7 @@ from slipwise import _core
 from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
 
 AXES = ("speed", "yaw_rate", "side")
-KINDS = ("dead_band", "top", "acceleration", "braking")
+KINDS = ("dead_band", "saturation", "slew_rate_up", "slew_rate_down")
 _AXIS_UNITS = {"speed": "m/s", "yaw_rate": "rad/s", "side": "m/s"}
 _CORE_AXES = dict(
     zip(AXES, (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate, _core.LimitedAxis.Side), strict=True)
@@ -19,9 +19,9 @@ _CORE_KINDS = dict(
         KINDS,
         (
             _core.LimitKind.DeadBand,
-            _core.LimitKind.Top,
-            _core.LimitKind.Acceleration,
-            _core.LimitKind.Braking,
+            _core.LimitKind.Saturation,
+            _core.LimitKind.SlewRateUp,
+            _core.LimitKind.SlewRateDown,
         ),
         strict=True,
     )
@@ -40,8 +40,8 @@ def limits_section(search: _core.LimitSearch) -> LimitsSection:
     limits = search.limits
     return LimitsSection(
         **axes,
-        track=limits.track,
-        track_std=search.track_std,
+        wheel_separation=limits.wheel_separation,
+        wheel_separation_std=search.wheel_separation_std,
         gain_v=limits.gain_v,
         gain_omega=limits.gain_omega,
     )
@@ -59,7 +59,12 @@ def core_limits(section: LimitsSection) -> _core.CommandLimits:
         )
 
     return _core.CommandLimits(
-        axis("speed"), axis("yaw_rate"), axis("side"), section.track, section.gain_v, section.gain_omega
+        axis("speed"),
+        axis("yaw_rate"),
+        axis("side"),
+        section.wheel_separation,
+        section.gain_v,
+        section.gain_omega,
     )
 
 
@@ -70,8 +75,8 @@ def limit_rows(section: LimitsSection) -> list[tuple[str, float, float, str]]:
         for kind in KINDS:
             limit: LearnedLimit | None = getattr(getattr(section, axis), kind)
             if limit is not None:
-                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("acceleration", "braking") else "")
+                unit = _AXIS_UNITS[axis] + ("^2" if kind in ("slew_rate_up", "slew_rate_down") else "")
                 rows.append((f"limits.{axis}.{kind}", limit.value, limit.std, unit))
     if any(name.startswith("limits.side") for name, *_ in rows):
-        rows.append(("limits.track", section.track, section.track_std, "m"))
+        rows.append(("limits.wheel_separation", section.wheel_separation, section.wheel_separation_std, "m"))
     return rows

@@ -19,7 +19,8 @@ from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
 from slipwise.models.limits import core_limits
-from slipwise.models.schema import READ_VERSIONS, RETIRED, SCHEMA_VERSION, ModelFile
+from slipwise.models.schema import SCHEMA_VERSION, ModelFile
+from slipwise.models.upgrade import READ_VERSIONS, upgraded
 from slipwise.models.yaml_file import read_yaml
 from slipwise.validation_text import first_problem
 
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
     from slipwise.models.parameter_table import PhysicalParameter
 
-MOUNT_PARAMETERS = 3  # the last ones, where there are any
+EXTRINSICS_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
 
 
@@ -143,16 +144,16 @@ class Model:
             motion = _core.MotionModel.with_delays(basis)
         else:
             motion = _core.MotionModel(basis, content.dynamics, content.clock_offset)
-        return motion.with_mount(content.mount)
+        return motion.with_extrinsics(content.sensor_extrinsics)
 
     @cached_property
     def body(self) -> Model:
         """The model of base_link: without the rows that say where the pose sensor sits on it."""
-        if not self.content.mount:
+        if not self.content.sensor_extrinsics:
             return self
-        kept = len(self.content.parameters) - MOUNT_PARAMETERS
+        kept = len(self.content.parameters) - EXTRINSICS_PARAMETERS
         rows = {
-            "mount": False,
+            "sensor_extrinsics": False,
             "parameters": self.content.parameters[:kept],
             "covariance": [row[:kept] for row in self.content.covariance[:kept]],
         }
@@ -164,20 +165,20 @@ class Model:
         section = self.content.limits
         return None if section is None else core_limits(section)
 
-    def driven(self, inputs: _core.InputTrack) -> _core.InputTrack:
+    def driven(self, inputs: _core.InputHistory) -> _core.InputHistory:
         """Return what reaches the actuator of these inputs: what the drive's limits leave of them."""
         if self.limits is None:
             return inputs
-        return _core.limited_track(inputs, self.limits, _core.RAMP_PIECE)
+        return _core.limited_inputs(inputs, self.limits, _core.RAMP_PIECE)
 
     def driven_from(
-        self, inputs: _core.InputTrack, time: float, measured: _core.BodyTwist
-    ) -> _core.InputTrack:
+        self, inputs: _core.InputHistory, time: float, measured: _core.BodyTwist
+    ) -> _core.InputHistory:
         """Return the same where the drive did `measured` at `time` [s], in the stamps of the inputs."""
         if self.limits is None:
             return inputs
         actuator = self.motion.actuator(self.mean)
-        return _core.limited_track_from(inputs, self.limits, actuator, time, measured)
+        return _core.limited_inputs_from(inputs, self.limits, actuator, time, measured)
 
     @property
     def mean(self) -> NDArray[np.float64]:
@@ -207,16 +208,16 @@ class Model:
     def posterior(self) -> _core.MotionPosterior:
         """What the core predicts from: parameters, how sure they are, and the noise."""
         estimate = _core.Estimate(self.mean, self.covariance)
-        scale = np.array(self.content.noise.scale)
+        scale = np.array(self.content.noise.variance_scale)
         return _core.MotionPosterior(self.motion, estimate, self.prior_std, self.noise, scale)
 
     @cached_property
     def disturbance(self) -> _core.DisturbanceModel:
         """The slip disturbance about the parameters; without any candidate where that was not learned."""
-        coloured = self.content.coloured
-        candidates = [] if coloured is None else coloured.candidates
+        disturbance = self.content.slip_disturbance
+        candidates = [] if disturbance is None else disturbance.candidates
         return _core.DisturbanceModel(
-            [_core.SlipDisturbance(each.drift, each.turn, each.time_constant) for each in candidates],
+            [_core.SlipDisturbance(each.linear, each.angular, each.time_constant) for each in candidates],
             np.array([each.weight for each in candidates], dtype=np.float64),
         )
 
@@ -285,9 +286,8 @@ def load_model(path: str | Path) -> Model:
             advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
         )
     try:
-        retired = RETIRED if version < SCHEMA_VERSION else ()
-        read = {key: value for key, value in content.items() if key not in retired}
-        return Model(ModelFile.model_validate(read | {"slipwise_model": SCHEMA_VERSION}))
+        read = content if version == SCHEMA_VERSION else upgraded(content)
+        return Model(ModelFile.model_validate(read))
     except ValidationError as problem:
         raise ModelError(
             first_problem(problem), where=str(source), advice="calibrate again, or restore the file"

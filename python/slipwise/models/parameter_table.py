@@ -85,5 +85,5 @@ def _effects(model: Model) -> NDArray[np.float64]:
 
 def _may_be_zero(name: str) -> bool:
     return name == "clock_offset" or name.startswith(
-        ("log_lag", "log_delay", "delay_", "slow_share", "sensor_")
+        ("log_time_constant", "log_delay", "delay_", "slow_fraction", "sensor_")
     )

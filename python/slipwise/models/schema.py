@@ -10,10 +10,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from slipwise.student import LEAST_DOF, MOST_DOF
 
 SCHEMA_VERSION = 4
-READ_VERSIONS = (2, 3, SCHEMA_VERSION)  # 2 lacks the slip disturbance; 3 may have where predictions start
-RETIRED = ("start",)  # sections of older versions that nothing reads any more
 
-UNDETERMINED_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not determined
+UNIDENTIFIABLE_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not identifiable
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
 
@@ -54,33 +52,33 @@ class Parameter(_Section):
     value: Finite
     std: NotNegative
     prior_std: NotNegative
-    determined: bool  # the log told more about it than the prior did
+    identifiable: bool  # the log says more about it than the prior does
 
 
-class Tail(_Section):
+class StudentT(_Section):
     """What held-out errors of one horizon say of the predicted distribution, a Student t."""
 
-    growth: Positive  # factor of the covariance [-]
+    inflation: Positive  # factor of the covariance [-]
     dof: Dof  # degrees of freedom; few are heavy tails [-]
 
 
 class Noise(_Section):
-    """Noise of the slip rates (lon, lat, ang) and the poses; `scale` multiplies variances of (x, y, yaw)."""
+    """Noise of the slip rates (lon, lat, ang) and poses; `variance_scale` multiplies that of (x, y, yaw)."""
 
     psd_time: Triple  # white, while moving [m^2/s, m^2/s, rad^2/s]
     psd_motion: Triple  # white, per unit of motion [m^2/m, m^2/m, rad^2/rad]
     fraction: Triple  # constant over a prediction, as a fraction of motion [-]
     pose_std_xy: NotNegative  # [m]
     pose_std_yaw: NotNegative  # [rad]
-    scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
-    tails: dict[NotNegative, Tail] = {}  # by horizon [s]
+    variance_scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
+    student_t: dict[NotNegative, StudentT] = {}  # by horizon [s]
 
 
 class DisturbanceCandidate(_Section):
     """One guess of the slip disturbance: first-order Gauss-Markov processes of one time constant."""
 
-    drift: NotNegative  # of the forward and sideways terms, as a fraction of their prior std [-]
-    turn: NotNegative  # of the angular terms [-]
+    linear: NotNegative  # of the forward and sideways terms, as a fraction of their prior std [-]
+    angular: NotNegative  # of the angular terms [-]
     time_constant: Positive  # [s]
     weight: NotNegative  # how likely this guess is; all together 1
 
@@ -88,11 +86,11 @@ class DisturbanceCandidate(_Section):
 class SlipDisturbanceSection(_Section):
     """The slip disturbance about the parameters, beside the noise."""
 
-    window: Positive  # length of the windows that say how [s]
+    segment: Positive  # length of the segments that say how [s]
     candidates: Annotated[list[DisturbanceCandidate], Field(min_length=1)]
 
     @model_validator(mode="after")
-    def _weights_are_shares(self) -> SlipDisturbanceSection:
+    def _weights_sum_to_one(self) -> SlipDisturbanceSection:
         total = sum(candidate.weight for candidate in self.candidates)
         if abs(total - 1.0) > 1e-6:
             raise ValueError(f"the weights of the candidates must sum to 1, not {total:.6g}")
@@ -121,21 +119,21 @@ class Provenance(_Section):
     logs: list[LogReference]
     settings: dict[str, object]
     learned_seconds: NotNegative  # amount of driving learned from [s]
-    learned_windows: int
+    learned_segments: int
 
 
 class HeldOut(_Section):
-    """Mean errors of predictions that the model had not learned from, beside the plain model's."""
+    """Mean errors of predictions that the model had not learned from, beside the kinematic baseline's."""
 
     horizon: NotNegative  # [s]
-    windows: int
+    segments: int
     position: NotNegative  # [m]
     heading: NotNegative  # [rad]
-    plain_position: NotNegative  # [m]
-    plain_heading: NotNegative  # [rad]
+    baseline_position: NotNegative  # [m]
+    baseline_heading: NotNegative  # [rad]
 
 
-class LookAlike(_Section):
+class Confounded(_Section):
     """Two parameters that the log can hardly tell apart."""
 
     first: str
@@ -148,9 +146,9 @@ class VerdictSection(_Section):
 
     good: bool
     sentence: str
-    undetermined: list[str] = []
+    not_identifiable: list[str] = []
     advice: list[str] = []
-    look_alikes: list[LookAlike] = []
+    confounded: list[Confounded] = []
     timing: str = ""  # which delay and which clock offset is which
     reservations: list[str] = []  # sentences that qualify a good verdict
     contradictions: list[str] = []  # between the poses and the inputs of the log: what was learned is no slip
@@ -168,19 +166,19 @@ class AxisLimitsSection(_Section):
     """Limits of one axis; what the log did not show is absent, and not limited."""
 
     dead_band: LearnedLimit | None = None  # what is slower gives zero, the rest passes as it is
-    top: LearnedLimit | None = None  # no faster
-    acceleration: LearnedLimit | None = None  # away from zero no quicker
-    braking: LearnedLimit | None = None  # towards zero no quicker
+    saturation: LearnedLimit | None = None  # no faster
+    slew_rate_up: LearnedLimit | None = None  # away from zero no quicker
+    slew_rate_down: LearnedLimit | None = None  # towards zero no quicker
 
 
 class LimitsSection(_Section):
-    """Limits in front of delay and lag: of the commands, and then of each side's speed, v -+ w track / 2."""
+    """Limits before delay and lag: of the commands, then of each side's speed, v -+ w separation / 2."""
 
     speed: AxisLimitsSection
     yaw_rate: AxisLimitsSection
     side: AxisLimitsSection
-    track: Positive  # between the sides [m]; without limits of the sides it has no effect, nor have the gains
-    track_std: NotNegative
+    wheel_separation: Positive  # [m]; without limits of the sides it has no effect, nor have the gains
+    wheel_separation_std: NotNegative
     gain_v: Positive  # of what is asked of the sides over the limited command [-]
     gain_omega: Positive  # [-]
 
@@ -191,17 +189,17 @@ class ModelFile(_Section):
     slipwise_model: Literal[4]
     input: InputName
     slip: Slip
-    dynamics: bool  # lag and delay are parameters
+    dynamics: bool  # time constants and delays are parameters
     delays: bool = False  # delays without lags, in seconds, are parameters: there is no actuator model
     clock_offset: bool  # the offset between inputs and poses is a parameter
-    response: bool = False  # gain and slow part of the drive are parameters, learned from wheel speeds
-    mount: bool = False  # the pose of the pose sensor in base_link is three parameters
+    response: bool = False  # gain and slow mode of the drive are parameters, learned from wheel speeds
+    sensor_extrinsics: bool = False  # the pose of the pose sensor in base_link is three parameters
     limits: LimitsSection | None = None  # of the drive, in front of its delay and lag
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise
-    coloured: SlipDisturbanceSection | None = (
-        None  # the slip disturbance about the parameters; None: it was not looked for
+    slip_disturbance: SlipDisturbanceSection | None = (
+        None  # about the parameters; None: it was not looked for
     )
     range: Range
     weights: dict[str, NotNegative] = {}

@@ -17,9 +17,9 @@ BETTER = 1.05  # times; a smaller gain over the baseline is not given as a numbe
 SIGNIFICANT = 2.0  # standard deviations from zero from which on an offset is said
 _LIMITS = {
     "dead_band": "dead band below",
-    "top": "at most",
-    "acceleration": "acceleration at most",
-    "braking": "braking at most",
+    "saturation": "at most",
+    "slew_rate_up": "acceleration at most",
+    "slew_rate_down": "braking at most",
 }
 _AXES = {"speed": "speed", "yaw_rate": "yaw rate", "side": "each side"}
 _NO_SLIP = "What was learned is no slip: poses and inputs of the log contradict each other."
@@ -86,19 +86,19 @@ def _offset_sentences(parameters: tuple[PhysicalParameter, ...]) -> list[str]:
 
 def _prediction_sentences(model: Model) -> list[str]:
     held_out = model.content.verdict.held_out
-    if held_out is None or held_out.windows == 0:
+    if held_out is None or held_out.segments == 0:
         return []
     reached = f"Predicts {held_out.horizon:g} s ahead to {_errors(held_out.position, held_out.heading)}"
     times = _times_better(held_out)
     if model.content.verdict.good and times:
         return [f"{reached}, {times} better than the kinematic baseline."]
-    baseline = _errors(held_out.plain_position, held_out.plain_heading)
+    baseline = _errors(held_out.baseline_position, held_out.baseline_heading)
     return [f"{reached}, where the kinematic baseline misses by {baseline}."]
 
 
 def _times_better(held_out: HeldOut) -> str:
     """How many times better position and heading are; empty where one of them is not."""
-    pairs = ((held_out.plain_position, held_out.position), (held_out.plain_heading, held_out.heading))
+    pairs = ((held_out.baseline_position, held_out.position), (held_out.baseline_heading, held_out.heading))
     if any(learned <= 0.0 or plain < BETTER * learned for plain, learned in pairs):
         return ""
     position, heading = (

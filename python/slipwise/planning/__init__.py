@@ -11,15 +11,15 @@ from slipwise.planning.mppi import (
     Controller,
     Motion,
     MppiOptions,
+    baseline_motion,
     inflated,
     learned_motions,
-    plain_motion,
     vendor_motion,
 )
+from slipwise.planning.reference_path import ReferencePath
 from slipwise.planning.rollout import Rollouts, command_buffer, rollout
 from slipwise.planning.route import Route, RouteOptions, RoutePlanner
 from slipwise.planning.start import Start
-from slipwise.planning.track import Track
 from slipwise.planning.trajectory import (
     Planner,
     Trajectory,
@@ -40,14 +40,15 @@ __all__ = [
     "MppiOptions",
     "Planner",
     "Primitive",
+    "ReferencePath",
     "Rollouts",
     "Route",
     "RouteOptions",
     "RoutePlanner",
     "Start",
-    "Track",
     "Trajectory",
     "TrajectoryOptions",
+    "baseline_motion",
     "command_buffer",
     "curvature_map",
     "inflated",
@@ -55,7 +56,6 @@ __all__ = [
     "learned_motions",
     "limits_of",
     "load_map",
-    "plain_motion",
     "rollout",
     "sample_futures",
     "trajectory_to",

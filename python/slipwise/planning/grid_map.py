@@ -86,8 +86,8 @@ def load_map(path: str | Path, *, most_cells: int = MOST_PIXELS) -> GridMap:
     content = read_yaml(source, error=PlanningError)
     levels, white = read_levels(_image(source, content), most_pixels=most_cells)
     grey = np.arange(white + 1) / white
-    share = grey if _number(content, "negate", source, default=0.0) else 1.0 - grey
-    free = (share < _number(content, "free_thresh", source, default=0.196))[levels]
+    fraction = grey if _number(content, "negate", source, default=0.0) else 1.0 - grey
+    free = (fraction < _number(content, "free_thresh", source, default=0.196))[levels]
     origin = content.get("origin")
     if not isinstance(origin, list) or len(origin) < 2 or not all(_is_number(value) for value in origin):
         raise _fault(source, "origin", "is no list of x, y, yaw", "such as [-10.0, -10.0, 0.0]")

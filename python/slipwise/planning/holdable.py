@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which curvature a robot really holds: what it is told against what slip leaves of it, over speeds."""
+"""Which curvature a robot really holds: what it is commanded against what slip leaves of it, over speeds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class CurvatureMap:
-    """Steady driving under held commands on flat ground, [S, C] over speeds and commanded curvatures.
+    """Steady driving under held commands on flat terrain, [S, C] over speeds and commanded curvatures.
 
     Dead-band and top speeds of the drive, where learned, are in it.
 
@@ -26,7 +26,7 @@ class CurvatureMap:
     """
 
     speed: Floats  # [S] m/s, commanded
-    told: Floats  # [C] 1/m, commanded curvature
+    commanded: Floats  # [C] 1/m, commanded curvature
     held: Floats  # [S, C] 1/m, curvature of the path that is driven
     achieved_speed: Floats  # [S, C] m/s along that path
     sideslip: Floats  # [S, C] rad, between the heading and the path
@@ -59,12 +59,12 @@ def curvature_map(
     within = limits_of(model) if limits is None else limits
     seen = model.content.range
     speed = np.linspace(0.0, min(within.speed, max(seen.speed)), speeds + 1)[1:]
-    told = np.linspace(-within.curvature, within.curvature, curvatures)
+    commanded = np.linspace(-within.curvature, within.curvature, curvatures)
     fastest = min(within.yaw_rate, max(map(abs, seen.yaw_rate)))
     alpha = model.mean[: model.motion.slip_size]
     result = np.full((3, speeds, curvatures), np.nan)
     for i, v in enumerate(speed.tolist()):
-        for j, omega in enumerate((told * v).tolist()):
+        for j, omega in enumerate((commanded * v).tolist()):
             if abs(omega) <= fastest + 1e-12:
                 drive = _core.BodyTwist(v, 0.0, omega)
                 drive = drive if model.limits is None else model.limits.settled(drive)
@@ -73,4 +73,4 @@ def curvature_map(
                 along, across, turn = drive.v + slip[0], slip[1], drive.omega + slip[2]
                 path = float(np.hypot(along, across))
                 result[:, i, j] = (turn / path if path > 0.0 else np.nan, path, np.arctan2(across, along))
-    return CurvatureMap(speed, told, *result)
+    return CurvatureMap(speed, commanded, *result)

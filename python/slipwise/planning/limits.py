@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot may be told to do, and what it is doing when a plan begins."""
+"""What a robot may be commanded to do, and what it is doing when a plan begins."""
 
 from __future__ import annotations
 
@@ -54,11 +54,11 @@ def limits_of(model: Model) -> Limits:
     learned = model.limits
     if learned is not None:
         sides = learned.side
-        speed = min(speed, learned.speed.top, sides.top / learned.gain_v)
-        yaw_rate = min(yaw_rate, learned.yaw_rate.top)
-        own = (learned.speed.acceleration, learned.speed.braking)
+        speed = min(speed, learned.speed.saturation, sides.saturation / learned.gain_v)
+        yaw_rate = min(yaw_rate, learned.yaw_rate.saturation)
+        own = (learned.speed.slew_rate_up, learned.speed.slew_rate_down)
         acceleration = min(
-            acceleration, *own, sides.acceleration / learned.gain_v, sides.braking / learned.gain_v
+            acceleration, *own, sides.slew_rate_up / learned.gain_v, sides.slew_rate_down / learned.gain_v
         )
     if speed <= 0.0 or yaw_rate <= 0.0:
         raise SettingsError(
@@ -71,27 +71,27 @@ def limits_of(model: Model) -> Limits:
 
 @dataclass(frozen=True)
 class DriveState:
-    """What the drive does (behind its lag) and what it was told last; all forward [m/s] and turning [rad/s].
+    """What the drive does (behind its lag) and its last command; all forward [m/s] and turning [rad/s].
 
-    Where the model has a slow part, `fast` is what of the drive is not the slow part's; without it, the drive
-    is taken to have followed what it was told for long.
+    Where the model has a slow mode, `fast` is what of the drive is not the slow mode's; without it, the drive
+    is taken to have followed what it was commanded for long.
 
     Raises:
         SettingsError: a value is not finite.
     """
 
     drive: tuple[float, float] = (0.0, 0.0)
-    told: tuple[float, float] = (0.0, 0.0)
+    commanded: tuple[float, float] = (0.0, 0.0)
     fast: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        if not all(map(math.isfinite, (*self.drive, *self.told, *(self.fast or ())))):
+        if not all(map(math.isfinite, (*self.drive, *self.commanded, *(self.fast or ())))):
             raise SettingsError("the speeds at the start are not finite", advice="such as drive=(0.5, 0.0)")
 
     def to_core(self) -> _core.ActuatorState:
         """Return the state as the core takes it."""
         fast = None if self.fast is None else _twist(self.fast)
-        return _core.ActuatorState(_twist(self.drive), _twist(self.told), fast)
+        return _core.ActuatorState(_twist(self.drive), _twist(self.commanded), fast)
 
 
 def _twist(values: tuple[float, float]) -> _core.BodyTwist:

@@ -13,7 +13,7 @@ from slipwise.errors import PlanningError, SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
-from slipwise.planning.track import Track
+from slipwise.planning.reference_path import ReferencePath
 from slipwise.planning.trajectory import Pose, to_core_pose
 
 Floats = NDArray[np.float64]
@@ -31,13 +31,13 @@ class Motion:
     limits: _core.CommandLimits | None = None  # of the drive, in front of its delay and lag
 
 
-def plain_motion() -> Motion:
-    """Return the motion of a robot that does at once and exactly what it is told."""
+def baseline_motion() -> Motion:
+    """Return the motion of a robot that does at once and exactly what it is commanded."""
     return Motion(_core.MotionModel(_core.Basis("none", [], [], []), False, False), np.zeros(0))
 
 
 def vendor_motion(multiplier: float) -> Motion:
-    """Return the motion of a robot that turns `multiplier` times less than it is told."""
+    """Return the motion of a robot that turns `multiplier` times less than it is commanded."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     return Motion(model, np.array([0.0, 1.0 / multiplier - 1.0]))
 
@@ -70,10 +70,10 @@ class MppiOptions:
     colour: float = 0.3  # s over which the noise changes
     temperature: float = 0.3  # of the excess cost of the best quarter, where a rollout weighs e^-1
     risk: float = 0.0  # 0 counts the mean cost over the motions, 1 the worst
-    across: float = 20.0  # cost per squared metre beside the track and second
+    across: float = 20.0  # cost per squared metre beside the reference and second
     along: float = 2.0  # per squared metre ahead or behind and second
     heading: float = 1.0  # per squared radian and second
-    smoothness: float = 0.05  # per squared share of the largest change of a command
+    smoothness: float = 0.05  # per squared fraction of the largest change of a command
     obstacle: float = 1.0  # per cost of the map and second
     seed: int = 1
 
@@ -92,7 +92,7 @@ class MppiOptions:
         return settings
 
 
-USUAL = MppiOptions()
+NOMINAL = MppiOptions()
 
 
 def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap:
@@ -121,11 +121,11 @@ def _sent(command: tuple[float, float]) -> Floats:
 
 
 class Controller:
-    """Follows a track, one command per period.
+    """Follows a reference, one command per period.
 
     Args:
         motions: through which sampled commands are driven; several where risk counts.
-        track: what to follow.
+        reference: what to follow.
         options: settings.
         obstacles: costs of places, `LETHAL` where a collision is; see `inflated`.
 
@@ -136,12 +136,12 @@ class Controller:
     def __init__(
         self,
         motions: list[Motion],
-        track: Track,
+        reference: ReferencePath,
         *,
-        options: MppiOptions = USUAL,
+        options: MppiOptions = NOMINAL,
         obstacles: Costmap | None = None,
     ) -> None:
-        self.track, self.options = track, options
+        self.reference, self.options = reference, options
         self._obstacles = obstacles  # keeps the cells
         try:
             models = [(motion.model, motion.parameters, motion.limits) for motion in motions]
@@ -156,7 +156,7 @@ class Controller:
         """Return the next command (v [m/s], omega [rad/s]); call it once per period.
 
         Args:
-            pose: of the robot now, in the frame of the track.
+            pose: of the robot now, in the frame of the reference.
             drive: what the drive does now (v, omega), as wheels show it.
             last: the command that was sent last, where it is not what this controller returned. At the first
                 call, without it, the drive is taken to have been commanded what it does: a robot that moves
@@ -170,7 +170,7 @@ class Controller:
         if last is not None:
             self._past = np.vstack((self._past[:-1], _sent(last)))
         obstacles = None if self._obstacles is None else self._obstacles.in_core
-        wanted = self.track.ahead(pose, self.options.periods, self.options.period)
+        wanted = self.reference.ahead(pose, self.options.periods, self.options.period)
         try:
             result = self._core.step(at, drive, self._past, wanted, obstacles)
         except ValueError as problem:

@@ -16,7 +16,7 @@ from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
-from slipwise.prediction import tail_at
+from slipwise.prediction import student_at
 
 Numbers = NDArray[Any]  # float32 or float64
 Output = Literal["path", "end", "costs"]
@@ -146,9 +146,9 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
-    scale = np.array(model.content.noise.scale)
-    growth = tail_at(model, horizon).growth
-    spread = (model.covariance, model.noise, scale, growth, model.disturbance, model.prior_std)
+    scale = np.array(model.content.noise.variance_scale)
+    inflation = student_at(model, horizon).inflation
+    spread = (model.covariance, model.noise, scale, inflation, model.disturbance, model.prior_std)
     return _core.UncertainModel(model.motion, model.mean, *spread, dt, *gravity, model.limits)
 
 
@@ -159,9 +159,9 @@ def _covariance(
     result = np.empty((6, periods, rollouts))
     unit = uncertain(model, dt, start.gravity, dt)
     _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
-    at_one_period = tail_at(model, dt).growth
-    growth = np.array([tail_at(model, dt * (k + 1)).growth / at_one_period for k in range(periods)])
-    result *= growth[:, None]
+    at_one_period = student_at(model, dt).inflation
+    inflation = np.array([student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)])
+    result *= inflation[:, None]
     return result
 
 

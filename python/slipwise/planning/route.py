@@ -16,7 +16,7 @@ from slipwise.planning.grid_map import GridMap
 from slipwise.planning.limits import AT_REST, DriveState, Limits
 from slipwise.planning.position_ellipse import first_crossing
 from slipwise.planning.trajectory import (
-    USUAL,
+    NOMINAL,
     Planner,
     Pose,
     Trajectory,
@@ -86,7 +86,7 @@ class RoutePlanner:
         grid: GridMap,
         *,
         limits: Limits | None = None,
-        options: TrajectoryOptions = USUAL,
+        options: TrajectoryOptions = NOMINAL,
         search: RouteOptions = RouteOptions(),
     ) -> None:
         if not (math.isfinite(search.radius) and search.radius > 0.0):

@@ -17,15 +17,15 @@ from slipwise.prediction import Path, predict
 Floats = NDArray[np.float64]
 Pose = tuple[float, float, float]  # x, y [m], yaw [rad]
 
-CRUISE_SHARE = 0.7  # of the limit of speed, where the user says nothing
-LONG_AGO = 1e4  # s before a plan, when what was told last is taken to have been told
+CRUISE_FRACTION = 0.7  # of the limit of speed, where the user says nothing
+LONG_AGO = 1e4  # s before a plan, when what was commanded last is taken to have been commanded
 
 
 @dataclass(frozen=True)
 class TrajectoryOptions:
     """How trajectories are shaped."""
 
-    cruise: float | None = None  # m/s between the ramps; by default `CRUISE_SHARE` of the limit
+    cruise: float | None = None  # m/s between the ramps; by default `CRUISE_FRACTION` of the limit
     end_speed: float = 0.0  # m/s commanded at the goal; 0 waits until the robot has come to rest
     rest_speed: float = 0.02  # m/s; no faster counts as rest
     rest_yaw_rate: float = 0.02  # rad/s; no faster counts as rest
@@ -39,7 +39,7 @@ class TrajectoryOptions:
     def to_core(self, limits: Limits) -> _core.TrajectorySettings:
         """Return the options as the core takes them."""
         settings = _core.TrajectorySettings()
-        settings.cruise = CRUISE_SHARE * limits.speed if self.cruise is None else self.cruise
+        settings.cruise = CRUISE_FRACTION * limits.speed if self.cruise is None else self.cruise
         settings.end_speed = self.end_speed
         settings.rest_speed, settings.rest_yaw_rate = self.rest_speed, self.rest_yaw_rate
         settings.longest = self.longest
@@ -51,7 +51,7 @@ class TrajectoryOptions:
         return settings
 
 
-USUAL = TrajectoryOptions()
+NOMINAL = TrajectoryOptions()
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ class Planner:
         model: Model,
         *,
         limits: Limits | None = None,
-        options: TrajectoryOptions = USUAL,
+        options: TrajectoryOptions = NOMINAL,
         state: DriveState = AT_REST,
     ) -> None:
         self.limits = limits_of(model) if limits is None else limits
@@ -137,7 +137,7 @@ def trajectory_to(  # noqa: PLR0913 - what a Planner takes, and what its `to` ta
     *,
     start: Pose = (0.0, 0.0, 0.0),
     limits: Limits | None = None,
-    options: TrajectoryOptions = USUAL,
+    options: TrajectoryOptions = NOMINAL,
     state: DriveState = AT_REST,
 ) -> Trajectory:
     """Plan once; whoever plans often keeps a `Planner`, whose table is made once. See `Planner.to`."""
@@ -146,7 +146,7 @@ def trajectory_to(  # noqa: PLR0913 - what a Planner takes, and what its `to` ta
 
 def uncertain_path(model: Model, trajectory: Trajectory, *, state: DriveState = AT_REST) -> Path:
     """Return the path of a trajectory with its covariance, from the origin; see `predict`."""
-    before = np.array([[-LONG_AGO, *state.told]])
+    before = np.array([[-LONG_AGO, *state.commanded]])
     commands = np.vstack((before, trajectory.commands))
     return predict(model, commands, horizon=trajectory.duration, start=0.0, initial=state.drive)
 
@@ -186,7 +186,7 @@ def _trajectory(plan: _core.Trajectory, start: Pose) -> Trajectory:
         poses=placed(np.asarray(plan.path), start),
         at_end=DriveState(
             drive=(drive.v, drive.omega),
-            told=(float(plan.v[-1]), float(plan.omega[-1])),
+            commanded=(float(plan.v[-1]), float(plan.omega[-1])),
             fast=(plan.fast.v, plan.fast.omega),
         ),
     )

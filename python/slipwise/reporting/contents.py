@@ -37,7 +37,7 @@ class Contents:
     @property
     def unknown_after(self) -> float:
         """How old an input may become until it is unknown [s], as it was while learning."""
-        window = self.calibration.model.content.provenance.settings.get("window")
+        window = self.calibration.model.content.provenance.settings.get("segment")
         chosen = window.get("unknown_after") if isinstance(window, dict) else None
         return float(chosen) if chosen is not None else UNKNOWN_AFTER
 

@@ -23,9 +23,9 @@ def write_curvature_picture(path: Path, held: CurvatureMap, title: str) -> Path:
     """
     figure = drawing_part("figure").Figure(figsize=SIZE, layout="constrained")
     axes: Any = figure.add_subplot()
-    widest = abs(held.told).max()
-    drawn = axes.pcolormesh(held.told, held.speed, held.held, cmap="RdBu", vmin=-widest, vmax=widest)
-    lines = axes.contour(held.told, held.speed, held.held, levels=9, colors="black", linewidths=0.7)
+    widest = abs(held.commanded).max()
+    drawn = axes.pcolormesh(held.commanded, held.speed, held.held, cmap="RdBu", vmin=-widest, vmax=widest)
+    lines = axes.contour(held.commanded, held.speed, held.held, levels=9, colors="black", linewidths=0.7)
     axes.clabel(lines, fmt="%.2g")
     figure.colorbar(drawn, ax=axes, label="curvature that is held [1/m]")
     axes.set(xlabel="commanded curvature [1/m]", ylabel="commanded speed [m/s]", title=title)

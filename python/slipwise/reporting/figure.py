@@ -105,7 +105,7 @@ def top_colour_bar(**options: object) -> dict[str, Any]:
     }
 
 
-def plain_label(text: str) -> str:
+def baseline_label(text: str) -> str:
     """Return text that came from a user so that Plotly shows it as it is, no markup and no format in it."""
     shown = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
     return shown.replace("%{", "% {").replace("$", "＄")

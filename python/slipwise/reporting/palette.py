@@ -11,7 +11,7 @@ from slipwise.reporting.dark_colours import css_colour
 
 MEASURED = "#1b2430"
 BAND = "#c3cad3"
-ALARM_COLOUR = "#e69f00"  # a change of ground
+ALARM_COLOUR = "#e69f00"  # a change of terrain
 # Slip: red negative, white none, blue positive (ColorBrewer RdBu without its dark ends: labels stay legible).
 DIVERGING: list[tuple[float, str]] = [
     (0.0, "#d6604d"),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from slipwise.models.parameter_table import physical_parameters
 from slipwise.models.schema import Parameter
 from slipwise.reporting.contents import Contents
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import details, legend, number, paragraph
 from slipwise.reporting.palette import LEARNED_STROKE, transparent
 from slipwise.reporting.thinning import CURVE_POINTS, thinned, thinning_note
@@ -94,9 +94,9 @@ def _grid(figures: Sequence[str]) -> str:
 
 
 def _order(parameter: Parameter) -> tuple[bool, float]:
-    """Determined slip first, by value over prior: the prior is a share of the motion."""
-    share = abs(parameter.value) / parameter.prior_std if parameter.prior_std > 0.0 else 0.0
-    return not parameter.determined, -share
+    """Determined slip first, by value over prior: the prior is a fraction of the motion."""
+    fraction = abs(parameter.value) / parameter.prior_std if parameter.prior_std > 0.0 else 0.0
+    return not parameter.identifiable, -fraction
 
 
 def _chosen(known: dict[str, Parameter], names: tuple[str, ...], slip: list[str]) -> list[str]:
@@ -131,7 +131,7 @@ def _figure(
         traces=[_band(x, shown.values(mean - std), shown.values(mean + std)), value],
         layout={
             "xaxis": axis(timeline.title, nticks=6, small=True),
-            "yaxis": axis(f"[{plain_label(shown.unit)}]", nticks=5, small=True),
+            "yaxis": axis(f"[{baseline_label(shown.unit)}]", nticks=5, small=True),
             "shapes": timeline.shapes() + marks,
         },
         height=142,

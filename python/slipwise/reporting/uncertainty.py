@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the stated uncertainty is true, in a sentence."""
+"""Whether the reported uncertainty is true, in a sentence."""
 
 from __future__ import annotations
 

@@ -36,14 +36,14 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         inputs = contents.inputs(run)
         if inputs is None:
             continue
-        track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
-        limited = contents.calibration.model.driven(track)
+        history = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        limited = contents.calibration.model.driven(history)
         segments = _segments(contents, run)
         for window in (window for window in chosen if window.run == place):
             measured = _measured(run.poses, window)
             if measured is not None:
                 segment = segments.get(_stamp(window.t_start)) or _level_segment(window, _sensor(contents))
-                paths[window] = _paths(contents, window, _Drive(track, limited, segment, measured))
+                paths[window] = _paths(contents, window, _Drive(history, limited, segment, measured))
     return paths
 
 
@@ -51,31 +51,31 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
 class _Drive:
     """What is known of one window."""
 
-    track: _core.InputTrack
-    limited: _core.InputTrack  # what the model's limits leave of it
+    history: _core.InputHistory
+    limited: _core.InputHistory  # what the model's limits leave of it
     segment: _core.Segment
     measured: Floats
 
 
 def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPaths:
     model = contents.calibration.model
-    plain_model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
+    baseline_model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
     known = _known_parameters(contents, window)
     parameters = model.mean if known is None else known
     return WindowPaths(
         measured=drive.measured,
-        plain=_sensor_path(plain_model, np.empty(0), drive.track, drive.segment),
+        plain=_sensor_path(baseline_model, np.empty(0), drive.history, drive.segment),
         predicted=_sensor_path(model.motion, parameters, drive.limited, drive.segment),
         causal=known is not None,
     )
 
 
 def _sensor_path(
-    motion: _core.MotionModel, parameters: Floats, track: _core.InputTrack, segment: _core.Segment
+    motion: _core.MotionModel, parameters: Floats, history: _core.InputHistory, segment: _core.Segment
 ) -> Floats:
     """Return the path of what measures it, [N, 3]."""
     exact = _core.Integrator.Exact
-    return _core.integrate_segment(motion, parameters, track, segment, exact).sensor_poses
+    return _core.integrate_segment(motion, parameters, history, segment, exact).sensor_poses
 
 
 def _measured(poses: Poses, window: ChosenWindow) -> Floats | None:
@@ -117,7 +117,7 @@ def _level_segment(window: ChosenWindow, sensor: tuple[float, float, float]) -> 
 def _sensor(contents: Contents) -> tuple[float, float, float]:
     """Return where the settings say that the pose sensor sits."""
     given = dict(contents.calibration.model.content.provenance.settings)
-    return make_settings({"mount": given.get("mount", {})}).mount.pose
+    return make_settings({"sensor_extrinsics": given.get("sensor_extrinsics", {})}).sensor_extrinsics.pose
 
 
 def _known_parameters(contents: Contents, window: ChosenWindow) -> Floats | None:

@@ -52,7 +52,7 @@ class Windows:
     end: Floats  # s, stamp of the second pose
     measured: Floats  # [N, 3] T_start_end: x, y [m], yaw [rad], heading unwrapped
     segments: tuple[_core.Segment, ...]
-    tracks: tuple[_core.InputTrack, ...]  # the inputs that act in each segment, or before it
+    histories: tuple[_core.InputHistory, ...]  # the inputs that act in each segment, or before it
     left_out: tuple[LeftOut, ...]
 
     def __len__(self) -> int:
@@ -110,7 +110,7 @@ def cut_windows(runs: Sequence[Run], settings: _core.StreamSettings) -> Windows:
         end=np.array([segment.end for segment in segments]),
         measured=np.array(measured).reshape(-1, 3),
         segments=segments,
-        tracks=tuple(driven.inputs for driven in cut.segments),
+        histories=tuple(driven.inputs for driven in cut.segments),
         left_out=rejections(runs, cut.rejected, cut.rejected_run),
     )
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated robot to learn from: physics, a ground with known slip, and drives that excite it."""
+"""A simulated robot to learn from: physics, a terrain with known slip, and drives that excite it."""
 
 from slipwise.simulation.drive import DRIVES, dull_drive, hold, steps_drive, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.live_robot import LiveRobot, LiveState
 from slipwise.simulation.perturbation import Perturbation
-from slipwise.simulation.physics import GroundChange, World
+from slipwise.simulation.physics import TerrainChange, World
 from slipwise.simulation.simulate import Scenario, Simulation, simulate
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
@@ -13,13 +13,13 @@ from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 
 __all__ = [
     "DRIVES",
-    "GroundChange",
     "LandTamer",
     "LiveRobot",
     "LiveState",
     "Perturbation",
     "Scenario",
     "Simulation",
+    "TerrainChange",
     "TractionLaw",
     "Truth",
     "TyreLaw",

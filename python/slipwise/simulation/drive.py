@@ -16,7 +16,7 @@ from slipwise.logs.log import Inputs
 COMMAND_RATE = 20.0  # [Hz]
 CIRCLE_SPEEDS = (0.5, 1.0, 2.0)  # [m/s]
 CIRCLE_CURVATURES = (0.1, 0.25, 0.5)  # [1/m], driven to both sides
-CIRCLE_SHARE = 0.6  # [1] part of the duration spent on circles
+CIRCLE_FRACTION = 0.6  # [1] part of the duration spent on circles
 CIRCLE_TIME = 10.0  # [s] the longest stay on one circle
 SHORTEST_CIRCLE = 5.0  # [s] a short drive leaves circles out rather than stay shorter
 BLEND_TIME = 1.5  # [s] from one random manoeuvre to the next
@@ -25,7 +25,7 @@ TOP_REVERSE = 1.0  # [m/s]
 TOP_YAW_RATE = 1.0  # [rad/s]
 TOP_CURVATURE = 0.6  # [1/m]
 STEP_TIME = (0.8, 3.0)  # [s] between steps
-CREEP_SHARE = 0.25  # [1] of the steps that creep
+CREEP_FRACTION = 0.25  # [1] of the steps that creep
 CREEP = 0.15  # [1] how fast these are at most, of the top
 
 Drive = Callable[[int, float], Inputs]
@@ -51,9 +51,9 @@ def thesis_drive(seed: int, duration: float) -> Inputs:
         for speed, curvature, side in itertools.product(CIRCLE_SPEEDS, CIRCLE_CURVATURES, (1, -1))
     ]
     targets = np.array(circles)[rng.permutation(len(circles))]
-    stay = np.clip(CIRCLE_SHARE * duration / len(circles), SHORTEST_CIRCLE, CIRCLE_TIME)
+    stay = np.clip(CIRCLE_FRACTION * duration / len(circles), SHORTEST_CIRCLE, CIRCLE_TIME)
     place = (t / stay).astype(np.int64)
-    on_circles = (t < CIRCLE_SHARE * duration) & (place < len(circles))
+    on_circles = (t < CIRCLE_FRACTION * duration) & (place < len(circles))
     last = targets[place[on_circles]][-1:]
     commands = _random_driving(rng, t - on_circles.sum() / COMMAND_RATE, last)
     commands[on_circles] = targets[place[on_circles]]
@@ -79,7 +79,7 @@ def steps_drive(seed: int, duration: float) -> Inputs:
     t = _stamps(duration)
     rng = np.random.Generator(np.random.PCG64(seed))
     ends = np.cumsum(rng.uniform(*STEP_TIME, int(duration / STEP_TIME[0]) + 1))
-    scale = np.where(rng.random((len(ends), 2)) < CREEP_SHARE, CREEP, 1.0)
+    scale = np.where(rng.random((len(ends), 2)) < CREEP_FRACTION, CREEP, 1.0)
     targets = scale * rng.uniform(-1.0, 1.0, (len(ends), 2)) * (TOP_SPEED, 1.5 * TOP_YAW_RATE)
     return _inputs(t, targets[np.searchsorted(ends, t, side="right")])
 
@@ -124,9 +124,9 @@ def _random_driving(
         starts.append(starts[-1] + stay)
     current = np.searchsorted(starts[1:], t, side="right").clip(max=len(targets) - 1)
     ramp = np.clip((t - np.array(starts)[current]) / BLEND_TIME, 0.0, 1.0)
-    share = (ramp * ramp * (3 - 2 * ramp))[:, None]
+    fraction = (ramp * ramp * (3 - 2 * ramp))[:, None]
     points = np.concatenate([before, np.array(targets).reshape(-1, 2)])
-    blended: NDArray[np.float64] = (1 - share) * points[current] + share * points[current + 1]
+    blended: NDArray[np.float64] = (1 - fraction) * points[current] + fraction * points[current + 1]
     return blended
 
 

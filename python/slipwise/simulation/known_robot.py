@@ -27,8 +27,8 @@ class KnownRobot:
     lag: Pair = (0.3, 0.3)  # s
     delay: Pair = (0.1, 0.1)  # s
     gain: Pair = (1.0, 1.0)  # drive over command
-    slow_share: Pair = (0.0, 0.0)  # of the drive, that follows by the slow lag
-    slow_lag: Pair = (2.0, 2.0)  # s
+    slow_fraction: Pair = (0.0, 0.0)  # of the drive, that follows by the slow lag
+    slow_time_constant: Pair = (2.0, 2.0)  # s
     basis: _core.Basis = NONE
     slip: tuple[float, ...] = ()  # parameters of the basis
     sensor: Triple = (0.0, 0.0, 0.0)  # x, y [m], yaw [rad] of the pose sensor in base_link
@@ -76,12 +76,12 @@ def _drive(robot: KnownRobot, commands: Inputs, seen: Floats) -> _Drive:
     knots = np.concatenate((np.arange(begin, end, FINEST), seen, *changes))
     knots = np.unique(np.round(knots[(knots >= begin) & (knots <= end)], 9))
     mean = np.empty((len(knots) - 1, 2))
-    for channel, told in enumerate((commands.v, commands.omega)):
+    for channel, commanded in enumerate((commands.v, commands.omega)):
         place = np.searchsorted(changes[channel], knots[:-1] + 1e-9) - 1
-        u = robot.gain[channel] * np.where(place >= 0, told[np.maximum(place, 0)], 0.0)
-        share = robot.slow_share[channel]
-        fast = _lagged((1.0 - share) * u, np.diff(knots), robot.lag[channel])
-        mean[:, channel] = fast + _lagged(share * u, np.diff(knots), robot.slow_lag[channel])
+        u = robot.gain[channel] * np.where(place >= 0, commanded[np.maximum(place, 0)], 0.0)
+        fraction = robot.slow_fraction[channel]
+        fast = _lagged((1.0 - fraction) * u, np.diff(knots), robot.lag[channel])
+        mean[:, channel] = fast + _lagged(fraction * u, np.diff(knots), robot.slow_time_constant[channel])
     reached = np.vstack((np.zeros(2), np.cumsum(mean * np.diff(knots)[:, None], axis=0)))
     return _Drive(knots, mean, reached)
 
@@ -108,12 +108,12 @@ def _poses(robot: KnownRobot, drive: _Drive, seen: Floats, random: np.random.Gen
     moving = np.any(np.abs(drive.mean) > 1e-6, axis=1)[:, None]
     white = random.standard_normal(slip.shape) * np.sqrt(np.array(robot.slip_psd) / duration) * moving
     twist = np.column_stack((drive.mean[:, 0], np.zeros(len(slip)), drive.mean[:, 1])) + slip + white
-    track = _core.InputTrack(drive.knots[:-1], *(np.ascontiguousarray(column) for column in twist.T))
+    history = _core.InputHistory(drive.knots[:-1], *(np.ascontiguousarray(column) for column in twist.T))
     whole = _core.Segment(
         float(drive.knots[0]), float(drive.knots[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0
     )
     plain = _core.MotionModel(NONE, False, False)
-    path = _core.integrate_segment(plain, np.zeros(0), track, whole, _core.Integrator.Exact)
+    path = _core.integrate_segment(plain, np.zeros(0), history, whole, _core.Integrator.Exact)
     body = np.asarray(path.poses)[np.searchsorted(path.times, seen - 1e-9)]
     x, y, yaw = robot.sensor
     c, s = np.cos(body[:, 2]), np.sin(body[:, 2])

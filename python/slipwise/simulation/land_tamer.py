@@ -27,7 +27,7 @@ class LandTamer:
     wheel_radius: float = 0.30  # [m]
     wheel_width: float = 0.25  # [m]
     wheel_armature: float = 1.0  # [kg m^2] drive train inertia felt by one wheel
-    track: float = 1.30  # [m] between the contact patches of the two sides
+    wheel_separation: float = 1.30  # [m] between the contact patches of the two sides
     axles: tuple[float, ...] = (0.85, 0.0, -0.85)  # [m] forward of the vehicle's origin
     ground_clearance: float = 0.17  # [m] from hub height to the vehicle's origin
     hull_size: tuple[float, float, float] = (2.5, 0.9, 0.5)  # [m] length, width, height
@@ -43,11 +43,11 @@ class LandTamer:
     @property
     def wheel_places(self) -> NDArray[np.float64]:
         """Forward and leftward position of each wheel, [m], shape [wheels, 2]."""
-        side = (self.track / 2, -self.track / 2)
+        side = (self.wheel_separation / 2, -self.wheel_separation / 2)
         return np.array([(axle, y) for axle in self.axles for y in side])
 
     def side_rates(self, v: NDArray[np.float64], omega: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Wheel rates that a twist asks for on ideal ground.
+        """Wheel rates that a twist asks for on ideal terrain.
 
         Args:
             v: forward speed [m/s], shape [N].
@@ -56,14 +56,16 @@ class LandTamer:
         Returns:
             Left and right wheel rate [rad/s], shape [N, 2].
         """
-        half = omega * self.track / 2
+        half = omega * self.wheel_separation / 2
         return np.stack([v - half, v + half], axis=-1) / self.wheel_radius
 
     def odometry(
         self, left: NDArray[np.float64], right: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Forward speed [m/s] and yaw rate [rad/s] that wheel rates [rad/s] would give on ideal ground."""
-        return twist_from_wheels(left, right, wheel_radius=self.wheel_radius, track=self.track)
+        """Forward speed [m/s] and yaw rate [rad/s] that wheel rates [rad/s] would give on ideal terrain."""
+        return twist_from_wheels(
+            left, right, wheel_radius=self.wheel_radius, wheel_separation=self.wheel_separation
+        )
 
 
 def wheel_names(vehicle: LandTamer) -> tuple[str, ...]:
@@ -72,7 +74,7 @@ def wheel_names(vehicle: LandTamer) -> tuple[str, ...]:
 
 
 def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str:
-    """Return the vehicle on flat ground as MuJoCo XML.
+    """Return the vehicle on flat terrain as MuJoCo XML.
 
     Each wheel is an ellipsoid (one smooth contact) on a sprung slide, and turned by a velocity servo whose
     activation is the first-order lag of the side drive. Without a suspension three axles are hyperstatic, and
@@ -89,7 +91,7 @@ def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str
     names = wheel_names(vehicle)
     places = vehicle.wheel_places.tolist()
     wheels = "".join(_wheel(vehicle, name, x, y) for name, (x, y) in zip(names, places, strict=True))
-    pairs = "".join(f'<pair geom1="wheel_{name}" geom2="ground" {contact}/>' for name in names)
+    pairs = "".join(f'<pair geom1="wheel_{name}" geom2="terrain" {contact}/>' for name in names)
     drives = "".join(_drive(vehicle, name) for name in names)
     loads = "".join(f'<touch name="load_{name}" site="patch_{name}"/>' for name in names)
     length, width, height = (size / 2 for size in vehicle.hull_size)
@@ -99,14 +101,14 @@ def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str
           impratio="10" iterations="30"><flag autoreset="disable"/></option>
   <visual><global offwidth="1280" offheight="720"/></visual>
   <asset>
-    <texture name="ground" type="2d" builtin="checker" rgb1=".55 .5 .4" rgb2=".45 .4 .32"
+    <texture name="terrain" type="2d" builtin="checker" rgb1=".55 .5 .4" rgb2=".45 .4 .32"
              width="256" height="256"/>
-    <material name="ground" texture="ground" texrepeat=".5 .5" texuniform="true"/>
+    <material name="terrain" texture="terrain" texrepeat=".5 .5" texuniform="true"/>
     <texture type="skybox" builtin="gradient" rgb1=".6 .75 .95" rgb2="1 1 1" width="128" height="128"/>
   </asset>
   <worldbody>
     <light pos="0 0 20" dir="0 0 -1" diffuse=".8 .8 .8"/>
-    <geom name="ground" type="plane" size="0 0 .1" material="ground" contype="0" conaffinity="0"/>
+    <geom name="terrain" type="plane" size="0 0 .1" material="terrain" contype="0" conaffinity="0"/>
     <body name="hull" pos="0 0 {vehicle.wheel_radius + vehicle.ground_clearance}">
       <freejoint name="root"/>
       <geom name="hull" type="box" size="{length} {width} {height}" pos="0 0 .1" mass="{hull_mass}"

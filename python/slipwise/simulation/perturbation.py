@@ -23,7 +23,7 @@ _LEFT_OUT = 1e-9  # [s] of rounding between stamps that are meant to be the same
 
 @dataclass(frozen=True, eq=False)
 class Perturbation:
-    """Slip rates that a fitted surface gives, and white noise about them; a robot told to stand stands."""
+    """Slip rates that a fitted surface gives, and white noise about them; a robot that is to stand stands."""
 
     surface: SlipSurface
     segment: float = (
@@ -47,8 +47,8 @@ def perturbed_truth(
 
     Args:
         perturbation: the surfaces.
-        vehicle: turns commands into wheel rates, which do as they are told.
-        commands: nothing is told before the first.
+        vehicle: turns commands into wheel rates, which do as they are commanded.
+        commands: nothing is commanded before the first.
         times: of the true states [M] s, evenly from 0 on.
         random: gives the noise.
 
@@ -57,16 +57,16 @@ def perturbed_truth(
     """
     _check(perturbation)
     knots = np.unique(np.concatenate((times, commands.t[(commands.t > 0.0) & (commands.t < times[-1])])))
-    told = _held(commands, knots)
-    mean, std = _slip(perturbation.surface, told)
+    commanded = _held(commands, knots)
+    mean, std = _slip(perturbation.surface, commanded)
     rate = (len(times) - 1) / (times[-1] - times[0]) if len(times) > 1 else 1.0
     drawn = random.standard_normal((len(times), 3))
     interval = np.searchsorted(times, knots + _LEFT_OUT, side="right") - 1
     size = perturbation.spread * math.sqrt(perturbation.segment * rate)
-    twist = told + mean + size * std * drawn[interval]
+    twist = commanded + mean + size * std * drawn[interval]
     places = np.searchsorted(knots, times - _LEFT_OUT)
     poses = _integrated(knots, twist, times)
-    wheels = vehicle.side_rates(told[places, 0], told[places, 2])
+    wheels = vehicle.side_rates(commanded[places, 0], commanded[places, 2])
     x, y, yaw, vx, vy, omega, left, right = (
         np.ascontiguousarray(column) for column in np.hstack((poses, twist[places], wheels)).T
     )
@@ -80,9 +80,9 @@ def _held(commands: Inputs, knots: Floats) -> Floats:
     return np.where((at >= 0)[:, None], columns[np.maximum(at, 0)], 0.0)
 
 
-def _slip(surface: SlipSurface, told: Floats) -> tuple[Floats, Floats]:
-    """Mean and standard deviation [N, 3] of the slip rates; no slip where the robot is told to stand."""
-    distinct, place = np.unique(told, axis=0, return_inverse=True)
+def _slip(surface: SlipSurface, commanded: Floats) -> tuple[Floats, Floats]:
+    """Mean and standard deviation [N, 3] of the slip rates; no slip where the robot is commanded to stand."""
+    distinct, place = np.unique(commanded, axis=0, return_inverse=True)
     moving = np.any(distinct != 0.0, axis=1)
     mean, std = np.zeros((len(distinct), 3)), np.zeros((len(distinct), 3))
     if moving.any():
@@ -102,9 +102,9 @@ def _slip(surface: SlipSurface, told: Floats) -> tuple[Floats, Floats]:
 def _integrated(knots: Floats, twist: Floats, times: Floats) -> Floats:
     """Poses [M, 3] at the times of twists [N, 3], each held from its knot on."""
     model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
-    track = _core.InputTrack(knots, *(np.ascontiguousarray(column) for column in twist.T))
+    history = _core.InputHistory(knots, *(np.ascontiguousarray(column) for column in twist.T))
     segment = _core.Segment(float(times[0]), float(times[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    path = _core.integrate_segment(model, np.zeros(0), track, segment, _core.Integrator.Exact)
+    path = _core.integrate_segment(model, np.zeros(0), history, segment, _core.Integrator.Exact)
     return np.asarray(path.poses)[np.searchsorted(path.times, times - _LEFT_OUT)]
 
 

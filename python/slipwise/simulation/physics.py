@@ -18,9 +18,9 @@ from slipwise.simulation.engine import load_mujoco
 from slipwise.simulation.land_tamer import LandTamer, mjcf, wheel_names
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
-from slipwise.simulation.tyre_force import ForceLaw, TyreForceGround, TyreLaw, tyre_force
+from slipwise.simulation.tyre_force import ForceLaw, TyreForceTerrain, TyreLaw, tyre_force
 
-GROUNDS = ("tyre-force", "traction-law", "contact-friction")
+TERRAINS = ("tyre-force", "traction-law", "contact-friction")
 LONGEST_STEP = 0.002  # [s] short enough for smooth contact friction; tyre forces alone would allow 0.005
 SETTLING_TIME = 1.0  # [s] at rest before the log begins, for the suspension to find its balance
 
@@ -28,8 +28,8 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True)
-class GroundChange:
-    """A tyre-force ground that becomes another one while the vehicle drives."""
+class TerrainChange:
+    """A tyre-force terrain that becomes another one while the vehicle drives."""
 
     t: float  # [s]
     law: TyreLaw
@@ -40,17 +40,17 @@ class World:
     """The vehicle and what it stands on."""
 
     vehicle: LandTamer
-    ground: str  # one of GROUNDS
+    terrain: str  # one of TERRAINS
     law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
     traction: TractionLaw = TractionLaw()
-    change: GroundChange | None = None
+    change: TerrainChange | None = None
 
     @property
     def force_law(self) -> ForceLaw | None:
-        """The law of the ground's forces; None where MuJoCo's contacts give them."""
-        if self.ground == "contact-friction":
+        """The law of the terrain's forces; None where MuJoCo's contacts give them."""
+        if self.terrain == "contact-friction":
             return None
-        if self.ground == "traction-law":
+        if self.terrain == "traction-law":
             return partial(traction_force, self.traction)
         return partial(tyre_force, self.law)
 
@@ -97,12 +97,12 @@ def wheel_targets(vehicle: LandTamer, commands: Inputs, sampling: Sampling) -> N
 
 @dataclass(frozen=True)
 class Physics:
-    """A vehicle on its ground; `advance` takes one step under the wheel rates in `data.ctrl`."""
+    """A vehicle on its terrain; `advance` takes one step under the wheel rates in `data.ctrl`."""
 
     model: Any
     data: Any
     advance: Callable[[], None]
-    tyres: TyreForceGround | None  # None where MuJoCo's contacts give the forces
+    tyres: TyreForceTerrain | None  # None where MuJoCo's contacts give the forces
 
 
 def start_physics(world: World, time_step: float) -> Physics:
@@ -122,7 +122,7 @@ def start_physics(world: World, time_step: float) -> Physics:
         advice = "use values nearer the defaults"
         raise SettingsError("MuJoCo refuses the vehicle", where=str(error), advice=advice) from error
     data = mujoco.MjData(model)
-    tyres = None if force_law is None else TyreForceGround(force_law, world.vehicle, model)
+    tyres = None if force_law is None else TyreForceTerrain(force_law, world.vehicle, model)
     advance = _stepper(mujoco, model, data, tyres)
     for _ in range(math.ceil(SETTLING_TIME / time_step)):
         advance()
@@ -135,8 +135,8 @@ def run_physics(
     """Drive the vehicle from rest at the world's origin, facing along x.
 
     Args:
-        world: the vehicle and the ground.
-        commands: what the vehicle is told; nothing is told before the first.
+        world: the vehicle and the terrain.
+        commands: what the vehicle is commanded; nothing is commanded before the first.
         sampling: times of the states.
         progress: called now and then with the fraction done.
 
@@ -165,7 +165,7 @@ def run_physics(
     return planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
 
 
-def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceGround | None) -> Callable[[], None]:
+def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceTerrain | None) -> Callable[[], None]:
     """Return a function that advances the physics by one step."""
     if tyres is None:
         return lambda: mujoco.mj_step(model, data)

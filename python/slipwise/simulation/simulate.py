@@ -13,7 +13,7 @@ from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.perturbation import Perturbation, perturbed_truth
-from slipwise.simulation.physics import GROUNDS, GroundChange, Progress, Sampling, World, run_physics
+from slipwise.simulation.physics import TERRAINS, Progress, Sampling, TerrainChange, World, run_physics
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
@@ -34,13 +34,13 @@ class Scenario:
     duration: float = 300.0  # [s]
     drive: str = "thesis"  # name of a command script in DRIVES
     commands: Inputs | None = None  # drive by these instead of a script
-    ground: str = "tyre-force"  # or "traction-law", or "contact-friction", MuJoCo's own
+    terrain: str = "tyre-force"  # or "traction-law", or "contact-friction", MuJoCo's own
     vehicle: LandTamer = LandTamer()
     tyre: TyreLaw = TyreLaw()
     traction: TractionLaw = TractionLaw()
     limits: _core.CommandLimits | None = None  # what the drive does to commands before its delay and lag
-    change: GroundChange | None = None  # of a tyre-force ground, while driving
-    perturbation: Perturbation | None = None  # slip surfaces in place of ground and physics
+    change: TerrainChange | None = None  # of a tyre-force terrain, while driving
+    perturbation: Perturbation | None = None  # slip surfaces in place of terrain and physics
     pose_rate: float = 20.0  # [Hz] of poses and of wheel speeds
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
@@ -79,15 +79,15 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
         poses=_measure(scenario, truth, seed),
         extra={},
     )
-    ground = f"{scenario.ground} ground" if scenario.perturbation is None else "slip surfaces"
-    note = f"simulated: {ground}, {scenario.duration:g} s, seed {seed}"
+    terrain = f"{scenario.terrain} terrain" if scenario.perturbation is None else "slip surfaces"
+    note = f"simulated: {terrain}, {scenario.duration:g} s, seed {seed}"
     return Simulation(log=Log(runs=(run,), sources=(), left_out=(), notes=(note,)), truth=truth)
 
 
 def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress | None) -> Truth:
     sampling = Sampling.over(scenario.duration, scenario.pose_rate)
     if scenario.perturbation is None:
-        world = World(scenario.vehicle, scenario.ground, scenario.tyre, scenario.traction, scenario.change)
+        world = World(scenario.vehicle, scenario.terrain, scenario.tyre, scenario.traction, scenario.change)
         return run_physics(world, commands, sampling, progress=progress)
     times = np.arange(sampling.count) / sampling.rate
     stream = _stream(seed, 1)
@@ -97,8 +97,8 @@ def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress |
 def _limited(commands: Inputs, limits: _core.CommandLimits | None) -> Inputs:
     if limits is None:
         return commands
-    track = _core.InputTrack(commands.t, commands.v, commands.vy, commands.omega)
-    t, v, vy, omega = np.ascontiguousarray(_core.limited_track(track, limits, _core.RAMP_PIECE).rows().T)
+    history = _core.InputHistory(commands.t, commands.v, commands.vy, commands.omega)
+    t, v, vy, omega = np.ascontiguousarray(_core.limited_inputs(history, limits, _core.RAMP_PIECE).rows().T)
     return Inputs(t=t, v=v, vy=vy, omega=omega)
 
 
@@ -130,9 +130,9 @@ def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
 def _check(scenario: Scenario, seed: int) -> None:
     if seed < 0:
         raise SettingsError(f"the seed is {seed}", where="seed", advice="give a whole number from 0 up")
-    if scenario.ground not in GROUNDS:
-        advice = "choose one of " + ", ".join(GROUNDS)
-        raise SettingsError(f"unknown ground {scenario.ground!r}", where="ground", advice=advice)
+    if scenario.terrain not in TERRAINS:
+        advice = "choose one of " + ", ".join(TERRAINS)
+        raise SettingsError(f"unknown terrain {scenario.terrain!r}", where="terrain", advice=advice)
     if scenario.change is not None:
         _check_change(scenario, scenario.change)
     if scenario.commands is not None and len(scenario.commands) == 0:
@@ -147,13 +147,13 @@ def _check(scenario: Scenario, seed: int) -> None:
             raise SettingsError(f"{name} is {value}", where=name, advice=advice)
 
 
-def _check_change(scenario: Scenario, change: GroundChange) -> None:
+def _check_change(scenario: Scenario, change: TerrainChange) -> None:
     if scenario.perturbation is not None:
         advice = "leave out one of the two"
         raise SettingsError("slip surfaces cannot change while driving", where="change", advice=advice)
-    if scenario.ground != "tyre-force":
-        advice = 'use the ground "tyre-force"'
-        raise SettingsError(f"a {scenario.ground} ground cannot change", where="change", advice=advice)
+    if scenario.terrain != "tyre-force":
+        advice = 'use the terrain "tyre-force"'
+        raise SettingsError(f"a {scenario.terrain} terrain cannot change", where="change", advice=advice)
     if not 0.0 <= change.t < scenario.duration:
         advice = f"let it change within the {scenario.duration:g} s of the drive"
-        raise SettingsError(f"the ground changes at {change.t:g} s", where="change", advice=advice)
+        raise SettingsError(f"the terrain changes at {change.t:g} s", where="change", advice=advice)

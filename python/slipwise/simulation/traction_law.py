@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ground with the traction and rolling-resistance law of thesis (2.8) and (2.9)."""
+"""A terrain with the traction and rolling-resistance law of thesis (2.8) and (2.9)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SMALLEST_SPEED = (
 
 @dataclass(frozen=True)
 class TractionLaw:
-    """Constants of the ground, the same under every wheel; in brackets the thesis's names."""
+    """Constants of the terrain, the same under every wheel; in brackets the thesis's names."""
 
     traction: float = 0.65  # [1] force over load of a fast sliding wheel (C1)
     traction_rate: float = 12.0  # [s/m] how soon sliding brings it about (A_t)
@@ -31,14 +31,14 @@ def traction_force(
     patch_velocity: NDArray[np.float64],
     rim_speed: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Force of the ground on each wheel (Ward and Iagnemma 2008).
+    """Force of the terrain on each wheel (Ward and Iagnemma 2008).
 
     (2.8) is a law of the forward sliding speed alone. Here the vector of sliding takes the place of the
     number, so that a wheel that slides sideways is held too; without sideways sliding it is (2.8) as printed.
     Both laws have continuous first derivatives: sign(v) (1 - exp(-A |v|)) passes zero with slope A.
 
     Args:
-        law: the ground.
+        law: the terrain.
         load: normal load [N], shape [wheels].
         patch_velocity: forward and leftward velocity of the contact patches, carried by the hubs without
             their spin [m/s], shape [2, wheels].

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A ground whose slip law is known: combined-slip tyre forces on frictionless contacts."""
+"""A terrain whose slip law is known: combined-slip tyre forces on frictionless contacts."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ForceLaw = Callable[[NDArray[np.float64], NDArray[np.float64], NDArray[np.float6
 
 @dataclass(frozen=True)
 class TyreLaw:
-    """Constants of the ground, the same under every wheel."""
+    """Constants of the terrain, the same under every wheel."""
 
     friction: float = 0.7  # [1] largest tangential force over normal load
     slip_stiffness: float = 12.0  # [1] longitudinal: initial slope of force/(friction load) over slip ratio
@@ -34,10 +34,10 @@ def tyre_force(
     patch_velocity: NDArray[np.float64],
     rim_speed: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Force of the ground on each wheel: tanh saturation of the combined slip, and rolling resistance.
+    """Force of the terrain on each wheel: tanh saturation of the combined slip, and rolling resistance.
 
     Args:
-        law: the ground.
+        law: the terrain.
         load: normal load [N], shape [wheels].
         patch_velocity: forward and leftward velocity of the contact patches, carried by the hubs without
             their spin [m/s], shape [2, wheels].
@@ -58,19 +58,19 @@ def tyre_force(
     return force
 
 
-class TyreForceGround:
+class TyreForceTerrain:
     """Applies a law of force to a MuJoCo model of the vehicle; call `apply` between mj_step1 and mj_step2."""
 
     def __init__(self, law: ForceLaw, vehicle: LandTamer, model: Any) -> None:
         """Look up where the vehicle's parts are in the model's arrays.
 
         Args:
-            law: the force of the ground on each wheel.
+            law: the force of the terrain on each wheel.
             vehicle: the constants.
             model: the mujoco.MjModel made from `land_tamer.mjcf`, with frictionless contacts.
         """
         names = wheel_names(vehicle)
-        self.law = law  # may be replaced while driving: another ground
+        self.law = law  # may be replaced while driving: another terrain
         self._radius = vehicle.wheel_radius
         self._hull = model.body("hull").id
         bodies = [model.body(f"wheel_{name}").id for name in names]
@@ -79,7 +79,7 @@ class TyreForceGround:
         self._patch_jacobian = _patch_jacobian(vehicle)
 
     def apply(self, data: Any) -> None:
-        """Write the ground's forces on the wheels into `data.xfrc_applied`.
+        """Write the terrain's forces on the wheels into `data.xfrc_applied`.
 
         The loads are those of the previous step (the solver has not run in this one yet); all else is new.
         """

@@ -81,7 +81,7 @@ def as_basis_model(
             value=value,
             std=sigma,
             prior_std=before,
-            determined=bool((sigma / before) ** 2 < _DETERMINED),
+            identifiable=bool((sigma / before) ** 2 < _DETERMINED),
         )
         for info, value, sigma, before in zip(
             motion.parameters, slip.alpha.tolist(), std.tolist(), prior.tolist(), strict=True
@@ -166,7 +166,7 @@ def _noise(slip: BasisSlip, seconds: float) -> Noise:
         fraction=nothing,
         pose_std_xy=0.0,
         pose_std_yaw=0.0,
-        scale=[1.0, 1.0, 1.0],
+        variance_scale=[1.0, 1.0, 1.0],
     )
 
 
@@ -176,7 +176,7 @@ def _provenance(count: int, seconds: float) -> Provenance:
         logs=[],
         settings={"learned_from": "slip rates of segments"},
         learned_seconds=count * seconds,
-        learned_windows=count,
+        learned_segments=count,
     )
 
 

@@ -70,7 +70,7 @@ def scaled_svd(design: Floats, prior_std: Floats) -> tuple[Floats, Floats]:
     return known / size[:rank] @ u[:rows, :rank].T, rest @ rest.T
 
 
-def undetermined(basis: _core.Basis, examples: SlipExamples) -> list[str]:
+def not_identifiable(basis: _core.Basis, examples: SlipExamples) -> list[str]:
     """What the drives of the examples do not determine, such as 'lon: V and V^2 cannot be distinguished'."""
     said = []
     for name, design, terms in zip(

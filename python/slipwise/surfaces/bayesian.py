@@ -16,7 +16,7 @@ from slipwise.surfaces.basis_slip import (
     block_covariance,
     channel_designs,
     channel_slices,
-    undetermined,
+    not_identifiable,
 )
 from slipwise.surfaces.examples import SlipExamples
 from slipwise.surfaces.surface import SurfacePrediction, drive_arrays, not_fitted
@@ -45,7 +45,7 @@ class BayesianSurface:
         self.basis = basis
         self.options = options
         self._reference = options.reference
-        self._usual_std: Floats | None = None  # [3]
+        self._nominal_std: Floats | None = None  # [3]
         self._notes: tuple[str, ...] = ()
         self._plain: list[_core.BayesianRegression] = []
         self._sliding: list[_core.SlidingRegression] = []
@@ -60,10 +60,10 @@ class BayesianSurface:
     def fit(self, examples: SlipExamples) -> None:
         """Learn from these examples alone."""
         self._reference = self.options.reference or examples.reference
-        self._usual_std = None
+        self._nominal_std = None
         self._start(self._reference)
         self.update(examples)
-        self._notes = tuple(f"{said} but by the prior" for said in undetermined(self.basis, examples))
+        self._notes = tuple(f"{said} but by the prior" for said in not_identifiable(self.basis, examples))
 
     def update(self, example: SlipExamples) -> None:
         """Learn from more examples; the oldest are forgotten where there is a window.
@@ -101,7 +101,7 @@ class BayesianSurface:
         Raises:
             SettingsError: bases, priors or usual standard deviations differ, or there is a window.
         """
-        usual = (self._usual_std, other._usual_std)
+        usual = (self._nominal_std, other._nominal_std)
         same_std = usual[0] is usual[1] or (
             usual[0] is not None and usual[1] is not None and np.array_equal(usual[0], usual[1])
         )
@@ -111,7 +111,7 @@ class BayesianSurface:
                 advice="fit one surface to all examples",
             )
         whole = BayesianSurface(self.basis, options=self.options)
-        whole._reference, whole._usual_std = self._reference, self._usual_std
+        whole._reference, whole._nominal_std = self._reference, self._nominal_std
         try:
             pairs = zip(self._regressions(), other._regressions(), strict=True)
             whole._plain = [mine.merged(theirs) for mine, theirs in pairs]
@@ -181,11 +181,11 @@ class BayesianSurface:
 
     def _rows(self, examples: SlipExamples) -> list[list[_core.RegressionExample]]:
         """Examples of each channel for the core."""
-        if examples.std is not None and self._usual_std is None:
-            self._usual_std = np.median(examples.std, axis=0)
+        if examples.std is not None and self._nominal_std is None:
+            self._nominal_std = np.median(examples.std, axis=0)
         relative = np.ones((len(examples), 3))
-        if examples.std is not None and self._usual_std is not None:
-            relative = examples.std / self._usual_std
+        if examples.std is not None and self._nominal_std is not None:
+            relative = examples.std / self._nominal_std
         designs = channel_designs(self.basis, examples.v, examples.omega)
         return [
             [

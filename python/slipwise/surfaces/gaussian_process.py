@@ -45,7 +45,7 @@ class GaussianProcessSurface:
         self._notes: tuple[str, ...] = ()
         self._scale = np.ones(2)  # of V and omega
         self._size = np.ones(3)  # of the slip rates
-        self._usual_std = np.zeros(3)
+        self._nominal_std = np.zeros(3)
         self._kernels: list[Any] = []
         self._processes: list[Any] = []
 
@@ -98,7 +98,7 @@ class GaussianProcessSurface:
         pairs = [process.predict(inputs, return_std=True) for process in self._processes]
         mean = np.column_stack([pair[0] for pair in pairs]) * self._size
         std = np.column_stack([pair[1] for pair in pairs]) * self._size
-        return SurfacePrediction(mean, np.hypot(std, self._usual_std), np.full(3, np.inf))
+        return SurfacePrediction(mean, np.hypot(std, self._nominal_std), np.full(3, np.inf))
 
     def mean_covariance(self, v: ArrayLike, omega: ArrayLike) -> list[Floats]:
         """Joint covariance of the mean surface, without noise, per channel [M, M]."""
@@ -117,7 +117,7 @@ class GaussianProcessSurface:
     def noise_std(self) -> Floats:
         """Learned noise of one segment's slip rates (m/s, m/s, rad/s), [3]."""
         learned = np.sqrt([float(process.kernel_.k2.noise_level) for process in self._processes])
-        return np.hypot(learned * self._size, self._usual_std)
+        return np.hypot(learned * self._size, self._nominal_std)
 
     @property
     def range(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -147,7 +147,7 @@ class GaussianProcessSurface:
     def _learn(self, examples: SlipExamples, *, optimise: bool) -> None:
         regressor = _regressor_class()
         inputs = np.column_stack((examples.v, examples.omega)) / self._scale
-        self._usual_std = np.zeros(3) if examples.std is None else np.median(examples.std, axis=0)
+        self._nominal_std = np.zeros(3) if examples.std is None else np.median(examples.std, axis=0)
         self._processes = []
         for channel in range(3):
             known = 0.0 if examples.std is None else np.square(examples.std[:, channel] / self._size[channel])

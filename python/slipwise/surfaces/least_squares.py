@@ -15,8 +15,8 @@ from slipwise.surfaces.basis_slip import (
     block_covariance,
     channel_designs,
     channel_slices,
+    not_identifiable,
     scaled_svd,
-    undetermined,
 )
 from slipwise.surfaces.examples import CHANNELS, SlipExamples
 from slipwise.surfaces.surface import SurfacePrediction, drive_arrays, not_fitted
@@ -65,7 +65,7 @@ class LeastSquaresSurface:
                 )
             fits.append(fit)
         self._fits, self._examples = fits, examples
-        self._notes = tuple(undetermined(self.basis, examples))
+        self._notes = tuple(not_identifiable(self.basis, examples))
 
     def update(self, example: SlipExamples) -> None:
         """Learn from more examples by fitting all again, O(N d^2)."""

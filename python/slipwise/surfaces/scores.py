@@ -26,7 +26,7 @@ class SurfaceScore:
     examples: int
     error: Floats  # [3] mean absolute (m/s, m/s, rad/s)
     log_score: Floats  # [3] mean log of the predictive density at what was measured; higher is better
-    coverage: Floats  # [len(LEVELS), 3] share of examples inside the central intervals of LEVELS
+    coverage: Floats  # [len(LEVELS), 3] fraction of examples inside the central intervals of LEVELS
 
 
 def score_surface(surface: SlipSurface, held_out: SlipExamples) -> SurfaceScore:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chapter 2: related models compared, on a ground with the traction law that the thesis cites."""
+"""Chapter 2: related models compared, on a terrain with the traction law that the thesis cites."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import BASELINE, FITTED, Bars, Line, Panel
 from slipwise.thesis.thesis_figure import ThesisFigure
 
-GROUND = "traction-law"
+TERRAIN = "traction-law"
 HORIZONS = (2.0, 5.0)  # [s]
 METHODS = {
     "none": "kinematic baseline",
@@ -65,21 +65,21 @@ def traction_law() -> ThesisFigure:
         key="equation-2-8",
         thesis="Equations 2.8 and 2.9",
         title="The explicit traction and rolling-resistance law",
-        shows="Force of the ground on a wheel over its sliding speed, and its drag over its speed.",
+        shows="Force of the terrain on a wheel over its sliding speed, and its drag over its speed.",
         agrees="Along the wheel both laws are as printed, smooth at zero speed, and saturate.",
         differs="(2.8) is a law of the forward sliding speed alone, so that a skid-steered vehicle would "
         f"not be held sideways. The vector of sliding takes its place: at 0.2 m/s sideways, {left:.0f} % of "
-        f"the forward force at {sliding[-1]:g} m/s are left. The constants are those of a plausible ground.",
+        f"the forward force at {sliding[-1]:g} m/s are left. The constants are those of a plausible terrain.",
         source="slipwise.simulation.traction_force with its default constants",
         parts=(traction, resistance),
     )
 
 
 def related_models(fixture: Fixture) -> ThesisFigure:
-    """Compare the models of section 2.3 where the ground follows (2.8) and (2.9)."""
-    settings = Settings.model_validate({"vehicle": {"track": LandTamer().track}})
+    """Compare the models of section 2.3 where the terrain follows (2.8) and (2.9)."""
+    settings = Settings.model_validate({"vehicle": {"wheel_separation": LandTamer().wheel_separation}})
     options = EvaluationOptions(HORIZONS, tuple(METHODS))
-    result = evaluate(fixture.long_drive(GROUND).log, input="wheel", settings=settings, options=options)
+    result = evaluate(fixture.long_drive(TERRAIN).log, input="wheel", settings=settings, options=options)
     last = result.horizons[-1]
     names = tuple(METHODS.values())
     panels = [
@@ -111,7 +111,7 @@ def related_models(fixture: Fixture) -> ThesisFigure:
         f"and {ratios['slip-ratio-smo']} (sliding-mode observer) the error: one ratio per side stands for "
         "the loss of speed and of turning, and a skid-steered robot loses half its turning and none of its "
         "speed.",
-        source=f"simulated Land Tamer on {GROUND} ground, {fixture.size.long_time:g} s of circles and random "
+        source=f"simulated Land Tamer on {TERRAIN} terrain, {fixture.size.long_time:g} s of circles, random "
         "driving",
         parts=(*panels, _scores(result)),
     )
@@ -127,5 +127,5 @@ def _scores(result: Evaluation) -> Grid:
         scores = [result.score(method, horizon) for horizon in result.horizons]
         cells = [c for s in scores for c in (s.position.mean, s.heading.mean, s.nis)]
         rows.append((name, *(number_text(cell) for cell in cells)))
-    note = "NIS is 3 where the stated covariance is true; that of the observer is the noise shape alone."
+    note = "NIS is 3 where the reported covariance is true; that of the observer is the noise shape alone."
     return Grid("Mean errors", tuple(columns), tuple(rows), note)

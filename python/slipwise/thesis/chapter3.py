@@ -17,7 +17,7 @@ TIME = 5.0  # [s] of the segments of chapter 6
 TWIST = (2.0, 1.0)  # [m/s], [rad/s]: the fastest and tightest of the simulated circles
 STEPS = np.array([2.5, 1.25, 1.0, 0.5, 0.25, 0.125, 0.1, 0.05])  # [s]
 CONSTANT_TWIST = 2880.0  # Simpson's rule: relative error f^4 / 2880 of a step that turns by f
-SHARES = np.linspace(0.0, 0.6, 25)  # of the commanded turn that is lost
+FRACTIONS = np.linspace(0.0, 0.6, 25)  # of the commanded turn that is lost
 
 
 def chapter3_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
@@ -31,16 +31,16 @@ def _segment() -> _core.Segment:
     return _core.Segment(0.0, TIME, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
 
 
-def _track(step: float) -> _core.InputTrack:
+def _inputs(step: float) -> _core.InputHistory:
     """Return the held twist as commands that come every `step` seconds."""
     t = np.arange(0.0, TIME, step)
-    return _core.InputTrack(t, np.full(len(t), TWIST[0]), np.zeros(len(t)), np.full(len(t), TWIST[1]))
+    return _core.InputHistory(t, np.full(len(t), TWIST[0]), np.zeros(len(t)), np.full(len(t), TWIST[1]))
 
 
 def _miss(step: float, integrator: _core.Integrator) -> float:
     """Distance [m] of the last position from that of the closed form."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
-    path = _core.integrate_segment(model, np.zeros(2), _track(step), _segment(), integrator)
+    path = _core.integrate_segment(model, np.zeros(2), _inputs(step), _segment(), integrator)
     true = np.array(_core.steady_path(_core.BodyTwist(TWIST[0], 0.0, TWIST[1]), np.array([TIME])))
     return float(np.hypot(*(path.poses[-1] - true[-1])[:2]))
 
@@ -83,16 +83,16 @@ def integration() -> ThesisFigure:
 def linearisation() -> ThesisFigure:
     """Compare linearised (3.8) with nonlinear (3.9) perturbation dynamics."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
-    plain = _core.linearize_segment(model, np.zeros(2), _track(TIME), _segment())
+    plain = _core.linearize_segment(model, np.zeros(2), _inputs(TIME), _segment())
     slope = np.array(plain.by_parameter)[:, 1]  # by the part of the turn that slip adds
     ends: list[Floats] = []
-    for share in SHARES:
+    for fraction in FRACTIONS:
         path = _core.integrate_segment(
-            model, np.array([0.0, -share]), _track(TIME), _segment(), _core.Integrator.Exact
+            model, np.array([0.0, -fraction]), _inputs(TIME), _segment(), _core.Integrator.Exact
         )
         ends.append(np.array(path.poses[-1]))
     moved = np.array(ends) - ends[0]
-    linear = -SHARES[:, None] * slope
+    linear = -FRACTIONS[:, None] * slope
     size = np.hypot(moved[:, 0], moved[:, 1])
     off = np.hypot(*(moved - linear)[:, :2].T)
     panel = Panel(
@@ -100,21 +100,21 @@ def linearisation() -> ThesisFigure:
         "lost part of the commanded turn [1]",
         "position [m]",
         (
-            Line(SHARES, size, "how far slip moves the end", FITTED),
-            Line(SHARES, off, "error of the linearised displacement", BASELINE, "dash"),
+            Line(FRACTIONS, size, "how far slip moves the end", FITTED),
+            Line(FRACTIONS, off, "error of the linearised displacement", BASELINE, "dash"),
         ),
     )
-    small, half = (int(np.argmin(np.abs(SHARES - share))) for share in (0.05, 0.5))
+    small, half = (int(np.argmin(np.abs(FRACTIONS - fraction))) for fraction in (0.05, 0.5))
     return ThesisFigure(
         key="equation-3-8",
         thesis="Equations 3.4 to 3.11",
         title="Linearised against nonlinear perturbation dynamics",
         shows="How far a constant angular slip moves the end of a segment, and how wrong the linearised "
         "displacement is.",
-        agrees=f"For small slip the linear equation does: where {100 * SHARES[small]:.0f} % of the turn are "
+        agrees=f"With small slip the linear one does: where {100 * FRACTIONS[small]:.0f} % of the turn are "
         f"lost it misses by {100 * off[small] / size[small]:.0f} % of the displacement. The thesis calls "
         "the nonlinear form easier for prediction.",
-        differs=f"At the slip of a skid-steered robot, {100 * SHARES[half]:.0f} % of the turn, it misses by "
+        differs=f"At a skid-steered robot's slip, {100 * FRACTIONS[half]:.0f} % of the turn, it misses by "
         f"{100 * off[half] / size[half]:.0f} %, {number_text(float(off[half]))} m. So slipwise predicts "
         "with the nonlinear form, and linearises around the current slip, for covariances and for "
         "learning. (3.8) is used with Φ(n, k+1) in place of Φ(n, k), with k = 0 to n - 1.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
+from slipwise.thesis.chapter4_paths import TERRAINS, circle_group, circle_source, curve_line
 from slipwise.thesis.chapter4_scatter import (
     RULES,
     THESIS,
@@ -42,17 +42,17 @@ KINDS = (
 
 def drawn_paths(fixture: Fixture) -> list[ThesisFigure]:
     """Make figures 4.4 to 4.6."""
-    groups = {name: circle_group(fixture, ground) for ground, name in GROUNDS.items()}
+    groups = {name: circle_group(fixture, terrain) for terrain, name in TERRAINS.items()}
     noises = {name: learned_noise(group, RULES[THESIS]) for name, group in groups.items()}
-    shares: dict[str, dict[str, Floats]] = {}
+    fractions: dict[str, dict[str, Floats]] = {}
     panels: dict[str, list[Panel]] = {}
     for key, _, _, _, rules in KINDS:
         for name, group in groups.items():
             drawn = _draw(fixture, group, noises[name], rules)
             panels.setdefault(key, []).append(_panel(name, group, drawn))
-            share = np.var(drawn.poses[:, -1], axis=0, ddof=1) / np.diag(measured_scatter(group)[-1])
-            shares.setdefault(key, {})[name] = share
-    return [_figure(fixture, kind, tuple(panels[kind[0]]), shares) for kind in KINDS]
+            fraction = np.var(drawn.poses[:, -1], axis=0, ddof=1) / np.diag(measured_scatter(group)[-1])
+            fractions.setdefault(key, {})[name] = fraction
+    return [_figure(fixture, kind, tuple(panels[kind[0]]), fractions) for kind in KINDS]
 
 
 def _draw(fixture: Fixture, group: SteadyGroup, learned: LearnedNoise, rules: DrawRules) -> DrawnPaths:
@@ -74,10 +74,11 @@ def _panel(name: str, group: SteadyGroup, drawn: DrawnPaths) -> Panel:
     return Panel(f"{name}: {len(drawn.poses)} drawn", "x, forward [m]", "y, left [m]", lines)
 
 
-def _text(shares: dict[str, Floats]) -> str:
-    """Say the shares of the measured variance at the end, per ground."""
+def _text(fractions: dict[str, Floats]) -> str:
+    """Say the fractions of the measured variance at the end, per terrain."""
     return "; ".join(
-        f"{' / '.join(f'{100 * value:.0f}' for value in share)} % on {name}" for name, share in shares.items()
+        f"{' / '.join(f'{100 * value:.0f}' for value in fraction)} % on {name}"
+        for name, fraction in fractions.items()
     )
 
 
@@ -85,17 +86,17 @@ def _figure(
     fixture: Fixture,
     kind: tuple[str, str, str, str, DrawRules],
     panels: tuple[Panel, ...],
-    shares: dict[str, dict[str, Floats]],
+    fractions: dict[str, dict[str, Floats]],
 ) -> ThesisFigure:
     key, number, title, what, _ = kind
     agrees = {
         "4-4": "New segments look like the measured ones, smoother by the noise of single poses. Their "
-        f"variances at the end in x / y / θ are {_text(shares['4-4'])} of the measured.",
+        f"variances at the end in x / y / θ are {_text(fractions['4-4'])} of the measured.",
         "4-5": "A start that is off in heading fans the segments out: the spread across the path grows "
-        f"with the distance, that along it and in heading stays. It is {_text(shares['4-5'])} of the "
+        f"with the distance, that along it and in heading stays. It is {_text(fractions['4-5'])} of the "
         "measured variances at the end in x / y / θ.",
         "4-6": "Slip noise alone starts from a point and spreads in all directions, most in the distance "
-        f"and the heading. It is {_text(shares['4-6'])} of the measured variances at the end in x / y / θ.",
+        f"and heading. It is {_text(fractions['4-6'])} of the measured variances at the end in x / y / θ.",
     }[key]
     return ThesisFigure(
         key=f"figure-{key}",
@@ -106,7 +107,7 @@ def _figure(
         agrees=agrees,
         differs="The thesis shows no measured spread beside the drawn one. Here the start's part is the "
         "known noise of the first pose, to which segments are moved, and the process noise is the "
-        "disturbance of the commands; on the thesis's gravel the ground is in it too. Slip rates are drawn "
+        "disturbance of the commands; on the thesis's gravel the terrain is in it too. Slip rates are drawn "
         "again every 0.05 s and integrated exactly.",
         source=circle_source(fixture),
         parts=panels,

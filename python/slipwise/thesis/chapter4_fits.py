@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from slipwise.number_text import number_text
-from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
+from slipwise.thesis.chapter4_paths import TERRAINS, circle_group, circle_source, curve_line
 from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import BASELINE, FITTED, IDEAL, INK, Panel, paths_line
@@ -18,7 +18,7 @@ NAMES = {
     "polynomial": "second-order polynomial",
 }
 COLUMNS = (
-    "ground",
+    "terrain",
     "curve",
     "cost (4.1) [m²]",
     "rms position [m]",
@@ -44,12 +44,12 @@ def fit_panel(title: str, group: SteadyGroup, fits: FitComparison) -> Panel:
     )
 
 
-def fit_rows(ground: str, fits: FitComparison) -> list[tuple[str, ...]]:
+def fit_rows(terrain: str, fits: FitComparison) -> list[tuple[str, ...]]:
     """Return a row of numbers per curve."""
     apart = {"translation": fits.translation_to_polynomial, "three channels": fits.to_polynomial}
     return [
         (
-            ground,
+            terrain,
             NAMES[curve.name],
             number_text(curve.cost),
             number_text(curve.rms_position),
@@ -63,8 +63,8 @@ def fit_rows(ground: str, fits: FitComparison) -> list[tuple[str, ...]]:
 def fitted_curves(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.2."""
     panels, rows, sentences = [], [], []
-    for ground, name in GROUNDS.items():
-        group = circle_group(fixture, ground)
+    for terrain, name in TERRAINS.items():
+        group = circle_group(fixture, terrain)
         fits = compare_fits(group)
         panels.append(fit_panel(name, group, fits))
         rows += fit_rows(name, fits)

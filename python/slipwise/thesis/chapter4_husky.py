@@ -97,7 +97,7 @@ def husky_rates(fixture: Fixture) -> ThesisFigure:
     rows = slip_table(single, SlipFitRules(noise=noise))
     v, omega = np.array([row.v for row in rows]), np.array([row.omega for row in rows])
     slip, bar = np.array([row.slip for row in rows]), np.array([row.bar or (0, 0, 0) for row in rows])
-    panels, share = [], []
+    panels, fraction = [], []
     for channel, (x, label) in enumerate(
         (
             (v, "commanded speed [m/s]"),
@@ -106,7 +106,7 @@ def husky_rates(fixture: Fixture) -> ThesisFigure:
         )
     ):
         slope = float(x @ slip[:, channel] / (x @ x))
-        share.append(
+        fraction.append(
             (slope, 1.0 - float(np.sum((slip[:, channel] - slope * x) ** 2) / np.sum(slip[:, channel] ** 2)))
         )
         ends = np.array([x.min(), x.max()])
@@ -120,15 +120,15 @@ def husky_rates(fixture: Fixture) -> ThesisFigure:
         shows=f"Slip rates of {len(rows)} single segments by the inverse covariance, with 1-sigma bars from "
         "the scatter of similar commands, and the best lines through the origin.",
         agrees="Angular slip is linear in the yaw rate and dominant: the robot loses "
-        f"{-100 * share[2][0]:.0f} % of the commanded turn, and the line explains {100 * share[2][1]:.0f} % "
+        f"{-100 * fraction[2][0]:.0f} % of the turn, and the line explains {100 * fraction[2][1]:.0f} % "
         f"of the squares. Of the forward slip rates, at most {number_text(float(np.abs(slip[:, 0]).max()))} "
-        f"m/s, a line in the speed explains {100 * share[0][1]:.0f} %.",
+        f"m/s, a line in the speed explains {100 * fraction[0][1]:.0f} %.",
         differs="Commands are spread over speeds and yaw rates, not a few circles, so each segment is a "
         "point, and the horizontal axes are the speed and the yaw rate. Side slip is no constant: it "
         f"reaches {number_text(float(np.abs(slip[:, 1]).max()))} m/s, and a line in the yaw rate, which is "
-        f"a centre of turning {number_text(abs(share[1][0]))} m "
-        f"{'behind' if share[1][0] > 0 else 'ahead of'} the origin of the poses, explains "
-        f"{100 * share[1][1]:.0f} % of its squares.",
+        f"a centre of turning {number_text(abs(fraction[1][0]))} m "
+        f"{'behind' if fraction[1][0] > 0 else 'ahead of'} the origin of the poses, explains "
+        f"{100 * fraction[1][1]:.0f} % of its squares.",
         source=SOURCE,
         parts=tuple(panels),
     )

@@ -14,7 +14,7 @@ from slipwise.thesis.thesis_figure import ThesisFigure
 
 SETTLE = 3.0  # [s] left out after a change of command: nearly four of the drive's time constants
 RULES = PathRules(length=3.0, least_distance=0.0, settle=SETTLE)
-GROUNDS = {"tyre-force": "tyre-force ground", "contact-friction": "contact-friction ground"}
+TERRAINS = {"tyre-force": "tyre-force terrain", "contact-friction": "contact-friction terrain"}
 
 
 def held_paths(log: Log, rules: PathRules = RULES) -> tuple[SteadyPath, ...]:
@@ -23,9 +23,9 @@ def held_paths(log: Log, rules: PathRules = RULES) -> tuple[SteadyPath, ...]:
     return tuple(path for run, commands in runs for path in cut_paths(run, commands, rules).paths)
 
 
-def circle_group(fixture: Fixture, ground: str = "tyre-force") -> SteadyGroup:
+def circle_group(fixture: Fixture, terrain: str = "tyre-force") -> SteadyGroup:
     """Return the segments of the command of figure 4.1."""
-    (group,) = group_paths(held_paths(fixture.one_circle(ground).log))
+    (group,) = group_paths(held_paths(fixture.one_circle(terrain).log))
     return group
 
 
@@ -34,7 +34,7 @@ def circle_source(fixture: Fixture) -> str:
     v, curvature = CIRCLE
     return (
         f"simulated Land Tamer (MuJoCo), {v:g} m/s and {curvature:g} 1/m held for "
-        f"{fixture.size.one_circle_time:g} s on each ground; the command is disturbed by "
+        f"{fixture.size.one_circle_time:g} s on each terrain; the command is disturbed by "
         f"{DISTURBANCE[0]:g} m/s and {DISTURBANCE[1]:g} rad/s, drawn again every 0.05 s; poses at 20 Hz with "
         f"{STD_XY:g} m and {STD_YAW:g} rad of noise"
     )
@@ -48,8 +48,8 @@ def curve_line(path: Floats, label: str, colour: str, dash: Dash = "dash") -> Li
 def collected_paths(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.1."""
     panels, sentences = [], []
-    for ground, name in GROUNDS.items():
-        group = circle_group(fixture, ground)
+    for terrain, name in TERRAINS.items():
+        group = circle_group(fixture, terrain)
         fits = compare_fits(group)
         ideal, polynomial = fits.curve("no slip"), fits.curve("polynomial")
         lines = (
@@ -74,7 +74,7 @@ def collected_paths(fixture: Fixture) -> ThesisFigure:
         "give; the best polynomial of second order in time.",
         agrees="The segments bundle around a curve that the command misses to the outside: "
         f"{'; '.join(sentences)}. The polynomial fits, and tells nothing of slip.",
-        differs="The grounds are even and the same everywhere, so the bundle is as wide as the disturbance "
+        differs="The terrains are even and the same everywhere, so the bundle is as wide as the disturbance "
         "of the commands and the noise of the first pose make it. The thesis's loose gravel adds its own, "
         "and its poses were smoothed by an inertial unit, so that its single segments look smoother.",
         source=circle_source(fixture),

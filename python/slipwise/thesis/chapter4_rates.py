@@ -9,7 +9,7 @@ import numpy as np
 
 from slipwise.number_text import number_text
 from slipwise.simulation import Simulation
-from slipwise.thesis.chapter4_paths import GROUNDS, SETTLE, held_paths
+from slipwise.thesis.chapter4_paths import SETTLE, TERRAINS, held_paths
 from slipwise.thesis.fixture import CURVATURES, Fixture
 from slipwise.thesis.panel import COLOURS, INK, ErrorBars, Floats, Panel, Points, Series
 from slipwise.thesis.steady import SlipRow, find_holds, group_paths, slip_table
@@ -22,7 +22,7 @@ ANGULAR = 2
 
 @dataclass(frozen=True, eq=False)
 class Rates:
-    """Slip rates of the circles driven to the left on one ground, in order of curvature and speed."""
+    """Slip rates of the circles driven to the left on one terrain, in order of curvature and speed."""
 
     rows: tuple[SlipRow, ...]
     truth: Floats  # [rows, 3] mean true slip rates while the command was held
@@ -39,9 +39,9 @@ class Rates:
         )
 
 
-def circle_rates(fixture: Fixture, ground: str) -> Rates:
+def circle_rates(fixture: Fixture, terrain: str) -> Rates:
     """Return the slip rates of all commands with positive curvature, as in the thesis."""
-    simulation = fixture.circles(ground)
+    simulation = fixture.circles(terrain)
     table = slip_table(group_paths(held_paths(simulation.log)))
     rows = tuple(row for row in table if (row.curvature or 0.0) > 0.0)
     true = _true_slip(simulation)
@@ -74,14 +74,14 @@ def rate_panel(name: str, rates: Rates, channel: int) -> Panel:
 
 def angular_rates(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.9."""
-    panels, linear, shares = [], [], []
-    for ground, name in GROUNDS.items():
-        rates = circle_rates(fixture, ground)
+    panels, linear, fractions = [], [], []
+    for terrain, name in TERRAINS.items():
+        rates = circle_rates(fixture, terrain)
         panels.append(rate_panel(name, rates, ANGULAR))
         linear.append(f"{_least_linear(rates, ANGULAR):.3f} on {name}")
-        share = np.array([-row.slip[ANGULAR] / row.omega for row in rates.rows])
-        shares.append(
-            f"{100 * share.min():.0f} to {100 * share.max():.0f} % of the commanded yaw rate on {name}"
+        fraction = np.array([-row.slip[ANGULAR] / row.omega for row in rates.rows])
+        fractions.append(
+            f"{100 * fraction.min():.0f} to {100 * fraction.max():.0f} % of the commanded yaw rate on {name}"
         )
     return ThesisFigure(
         key="figure-4-9",
@@ -90,9 +90,9 @@ def angular_rates(fixture: Fixture) -> ThesisFigure:
         shows="The fitted angular slip rate against speed, per curvature, with 1-sigma bars of one "
         "segment's mean slip from the scatter; rings: what the simulated robot truly did.",
         agrees="For a constant curvature the angular slip rate is close to a line in the speed; the least "
-        f"share of its squares that a line through the origin explains is {' and '.join(linear)}. Angular "
-        f"slip is large: {' and '.join(shares)}.",
-        differs="Curvatures and speeds are not the thesis's, and the ground is not its gravel, so only the "
+        f"fraction of its squares that a line through the origin explains is {' and '.join(linear)}. Angular "
+        f"slip is large: {' and '.join(fractions)}.",
+        differs="Curvatures and speeds are not the thesis's, and the terrain is not its gravel, so only the "
         "shape can be compared. The bars are as wide as the simulated disturbance makes them. That the fit "
         "finds the true mean slip could not be seen in the thesis.",
         source=_source(fixture),
@@ -103,8 +103,8 @@ def angular_rates(fixture: Fixture) -> ThesisFigure:
 def translational_rates(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.10."""
     panels, forward, side, linear, worst = [], [], [], [], np.zeros(2)
-    for ground, name in GROUNDS.items():
-        rates = circle_rates(fixture, ground)
+    for terrain, name in TERRAINS.items():
+        rates = circle_rates(fixture, terrain)
         panels += [rate_panel(name, rates, channel) for channel in (0, 1)]
         slip, v = np.array([row.slip for row in rates.rows]), np.array([row.v for row in rates.rows])
         forward.append(f"{100 * np.abs(slip[:, 0] / v).max():.1f} % of the speed on {name}")
@@ -135,14 +135,14 @@ def translational_rates(fixture: Fixture) -> ThesisFigure:
 
 
 def _least_linear(rates: Rates, channel: int) -> float:
-    """The least share of squares, over the curvatures, that slip proportional to speed explains."""
-    shares = []
+    """The least fraction of squares, over the curvatures, that slip proportional to speed explains."""
+    fractions = []
     for curvature in CURVATURES:
         v, slip, _, _ = rates.of(curvature)
         rate = slip[:, channel]
         slope = float(v @ rate / (v @ v))
-        shares.append(1.0 - float(np.sum((rate - slope * v) ** 2) / np.sum(rate**2)))
-    return min(shares)
+        fractions.append(1.0 - float(np.sum((rate - slope * v) ** 2) / np.sum(rate**2)))
+    return min(fractions)
 
 
 def _source(fixture: Fixture) -> str:

@@ -81,7 +81,7 @@ def recovered_noise(fixture: Fixture) -> ThesisFigure:
             panel,
             Grid(
                 "Learned over true",
-                ("objective", "scatter around", *NAMES, "within three stated sigma"),
+                ("objective", "scatter around", *NAMES, "within three reported sigma"),
                 rows,
             ),
         ),

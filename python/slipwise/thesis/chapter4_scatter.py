@@ -9,7 +9,7 @@ import numpy as np
 
 from slipwise import _core
 from slipwise.number_text import number_text
-from slipwise.thesis.chapter4_paths import GROUNDS, circle_group, circle_source, curve_line
+from slipwise.thesis.chapter4_paths import TERRAINS, circle_group, circle_source, curve_line
 from slipwise.thesis.fixture import DISTURBANCE, STD_XY, STD_YAW, Fixture
 from slipwise.thesis.grid import Grid
 from slipwise.thesis.panel import BASELINE, FITTED, INK, Floats, Line, Panel, outline, paths_line
@@ -91,8 +91,8 @@ def spread_panel(title: str, group: SteadyGroup, learned: LearnedNoise) -> Panel
 def learned_scatter(fixture: Fixture) -> ThesisFigure:
     """Make figure 4.3."""
     panels, rows, ends = [], [], []
-    for ground, name in GROUNDS.items():
-        group = circle_group(fixture, ground)
+    for terrain, name in TERRAINS.items():
+        group = circle_group(fixture, terrain)
         scatter = measured_scatter(group)[-1]
         for rule, rules in RULES.items():
             learned = learned_noise(group, rules)
@@ -136,7 +136,7 @@ def learned_scatter(fixture: Fixture) -> ThesisFigure:
             *panels,
             Grid(
                 "Learned noise, in 10⁻⁴ of m²/s, rad²/s, m² and rad²",
-                ("ground", "by", *channels, "variance at the end, learned over measured: x / y / θ"),
+                ("terrain", "by", *channels, "variance at the end, learned over measured: x / y / θ"),
                 tuple(rows),
                 note="As simulated: the disturbance of the commands, its angular part reduced by the "
                 "measured slip, and the noise of the first pose.",

@@ -29,7 +29,7 @@ def commands(fixture: Fixture) -> ThesisFigure:
         "κ [1/m]",
         (Line(commanded.t, commanded.omega / commanded.v, "", BASELINE),),
     )
-    track = Panel(
+    wheel_separation = Panel(
         "Where the robot went",
         "x [m]",
         "y [m]",
@@ -42,13 +42,13 @@ def commands(fixture: Fixture) -> ThesisFigure:
         title="Commands of the experiment",
         shows="Speed and curvature as they were commanded, each pair held, and the path.",
         agrees=f"Circles at {len(fixture.size.circle_speeds)} speeds and {len(CURVATURES)} curvatures, to "
-        f"the left and to the right, on level ground that is the same everywhere: {len(groups)} commands "
+        f"the left and to the right, on level terrain that is the same everywhere: {len(groups)} commands "
         f"give {len(paths)} segments of {RULES.length:g} s.",
         differs=f"Each command is held for {fixture.size.circle_time:g} s, and the first {RULES.settle:g} s "
         "are left out until the drive's lag has settled; the thesis drove for longer and does not say what "
         "it left out, nor which its speeds and other curvatures were.",
-        source="simulated Land Tamer on tyre-force ground",
-        parts=(speed, curvature, track),
+        source="simulated Land Tamer on tyre-force terrain",
+        parts=(speed, curvature, wheel_separation),
     )
 
 
@@ -61,7 +61,7 @@ def vehicle() -> ThesisFigure:
     rows = (
         ("mass", f"{robot.mass:g} kg"),
         ("wheels", f"{len(robot.wheel_places)}, radius {robot.wheel_radius:g} m"),
-        ("track", f"{robot.track:g} m"),
+        ("wheel_separation", f"{robot.wheel_separation:g} m"),
         ("axles", ", ".join(f"{axle:g}" for axle in robot.axles) + " m"),
         ("delay of a command", f"{robot.command_delay:g} s"),
         ("time constant of a side's speed", f"{robot.command_lag:g} s"),

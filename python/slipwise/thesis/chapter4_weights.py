@@ -27,13 +27,13 @@ def compared_weights(fixture: Fixture) -> ThesisFigure:
     """Compare the weights over groups of segments with known slip."""
     count = fixture.size.drawn_groups
     groups = [drawn_group(seed=1000 * fixture.seed + seed, count=SEGMENTS) for seed in range(count)]
-    rows, sizes, shares = [], {}, []
+    rows, sizes, fractions = [], {}, []
     for name, rules in RULES.items():
         error, sigma = _errors(groups, rules)
         size = np.sqrt(np.mean(error**2, axis=0))
         inside = float(np.mean(np.abs(error) < 2 * sigma))
         sizes[name] = float(size[2])
-        shares.append(inside)
+        fractions.append(inside)
         stated = np.sqrt(np.mean(sigma**2, axis=0))
         cells = [f"{1000 * a:.2f} ({1000 * b:.2f})" for a, b in zip(size, stated, strict=True)]
         rows.append((name, *cells, f"{100 * inside:.0f} %"))
@@ -45,8 +45,8 @@ def compared_weights(fixture: Fixture) -> ThesisFigure:
         shows=f"Error of the estimated slip rates over {count} groups of {SEGMENTS} segments whose slip and "
         "noise are known, and in brackets the standard deviation that the fit states. 95 % of the errors "
         "should lie within two of these.",
-        agrees=f"Every weight finds the slip: {100 * min(shares):.0f} to {100 * max(shares):.0f} % of the "
-        "errors lie within two stated standard deviations, and the heading's weight matters little.",
+        agrees=f"All weights find it: {100 * min(fractions):.0f} to {100 * max(fractions):.0f} % of the "
+        "errors lie within two reported standard deviations, and the heading's weight matters little.",
         differs="The thesis prints L where only L² has the unit of a squared distance; at L = 1 m the two "
         "are the same, at 0.25 m they are not. The poses of a segment err together, so the fit's "
         "uncertainty comes from how whole segments disagree. Weighting by the inverse covariance of a "
@@ -65,7 +65,7 @@ def compared_weights(fixture: Fixture) -> ThesisFigure:
 
 
 def _errors(groups: list[SteadyGroup], rules: SlipFitRules) -> tuple[np.ndarray, np.ndarray]:
-    """Errors and stated standard deviations, [groups, 3] each."""
+    """Errors and reported standard deviations, [groups, 3] each."""
     fits: list[_core.SlipRateFit] = [fit_slip(group, rules) for group in groups]
     error = np.array([np.array(fit.slip) - SLIP for fit in fits])
     return error, np.sqrt(np.array([np.diag(fit.covariance) for fit in fits]))

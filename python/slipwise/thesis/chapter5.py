@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from slipwise.thesis.chapter5_scores import score_table
 from slipwise.thesis.chapter5_spread import spread_figure
-from slipwise.thesis.chapter5_surfaces import REGRESSIONS, other_ground_figure, surface_figure
+from slipwise.thesis.chapter5_surfaces import REGRESSIONS, other_terrain_figure, surface_figure
 from slipwise.thesis.chapter5_times import times_table
 from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.thesis_figure import ThesisFigure
@@ -16,11 +16,11 @@ from slipwise.thesis.thesis_figure import ThesisFigure
 def chapter5_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
     """Make the figures and tables of the slip surfaces."""
     figures = []
-    for share, regression in zip((0.0, 0.4, 0.45), REGRESSIONS, strict=True):
-        progress(f"surfaces by {regression.title}", share)
+    for fraction, regression in zip((0.0, 0.4, 0.45), REGRESSIONS, strict=True):
+        progress(f"surfaces by {regression.title}", fraction)
         figures.append(surface_figure(fixture, regression))
-    progress("contact-friction ground", 0.5)
-    figures.append(other_ground_figure(fixture))
+    progress("contact-friction terrain", 0.5)
+    figures.append(other_terrain_figure(fixture))
     progress("held-out scores", 0.8)
     figures.append(score_table(fixture))
     figures.insert(1, spread_figure(fixture))

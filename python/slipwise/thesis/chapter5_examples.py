@@ -35,12 +35,12 @@ class SteadyExamples:
     whole: SlipExamples  # both, in order of time
 
 
-def simulated_examples(fixture: Fixture, ground: str) -> SteadyExamples:
-    """Return the segments of the simulated circles on one ground."""
+def simulated_examples(fixture: Fixture, terrain: str) -> SteadyExamples:
+    """Return the segments of the simulated circles on one terrain."""
     circles = len(fixture.size.circle_speeds) * len(CURVATURES) * 2
     driven = f"{circles} circles of {fixture.size.circle_time:g} s"
     return examples_of(
-        f"simulated Land Tamer on {ground} ground, {driven}", held_paths(fixture.circles(ground).log)
+        f"simulated Land Tamer on {terrain} terrain, {driven}", held_paths(fixture.circles(terrain).log)
     )
 
 
@@ -55,8 +55,8 @@ def husky_examples(fixture: Fixture) -> SteadyExamples:
 
 
 def all_examples(fixture: Fixture) -> list[SteadyExamples]:
-    """Return the examples of both grounds and of the Husky, which is left out where its log is missing."""
-    found = [simulated_examples(fixture, ground) for ground in ("tyre-force", "contact-friction")]
+    """Return the examples of both terrains and of the Husky, which is left out where its log is missing."""
+    found = [simulated_examples(fixture, terrain) for terrain in ("tyre-force", "contact-friction")]
     try:
         return [*found, husky_examples(fixture)]
     except MissingLogError:

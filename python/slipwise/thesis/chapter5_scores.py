@@ -31,7 +31,7 @@ SURFACES: dict[str, Callable[[], SlipSurface]] = {
     "Bayesian, terms of (5.1)": lambda: BayesianSurface(THESIS),
     "Bayesian, odd-even-10": lambda: BayesianSurface(ODD_EVEN),
 }
-GROUNDS = 2  # sources that are simulated; the Husky comes after them
+TERRAINS = 2  # sources that are simulated; the Husky comes after them
 CUT: tuple[tuple[str, str, Dash], ...] = (
     ("least squares, odd-even-10", FITTED, "solid"),
     ("Gaussian process", BASELINE, "solid"),
@@ -116,8 +116,8 @@ def _differs(sources: list[SteadyExamples], scores: list[dict[str, SurfaceScore]
     )
     return (
         f"The terms of (5.1) have no V ω: sideways they miss by {sideways[0]} where those of odd-even-10 "
-        f"miss by {sideways[1]} on tyre-force ground. A dash for a log score means that the standard "
-        "deviation of (5.6) is negative somewhere." + in_place * (len(sources) > GROUNDS)
+        f"miss by {sideways[1]} on tyre-force terrain. A dash for a log score means that the standard "
+        "deviation of (5.6) is negative somewhere." + in_place * (len(sources) > TERRAINS)
     )
 
 

@@ -22,7 +22,7 @@ def spread_figure(fixture: Fixture) -> ThesisFigure:
     examples = sources[0].whole
     forms = _forms(examples)
     at = {name: form.predict(examples.v, examples.omega).std.mean(axis=0) for name, form in forms.items()}
-    wide = ", ".join(number_text(share, 2) for share in at["thesis (5.6)"] / at["log-variance"])
+    wide = ", ".join(number_text(fraction, 2) for fraction in at["thesis (5.6)"] / at["log-variance"])
     negative = ", ".join(
         f"{100.0 * _negative(source.whole):.0f} % ({source.source.split(',')[0]})" for source in sources
     )
@@ -35,7 +35,7 @@ def spread_figure(fixture: Fixture) -> ThesisFigure:
         agrees="Both forms see how large the residuals are where segments are.",
         differs="The thesis regresses absolute residuals, whose mean is 0.8 of the standard deviation, on "
         f"terms without a constant: beside the other form (5.6) reads {wide} on average (forward, sideways, "
-        "angular; tyre-force ground), goes to zero with the speed, and is not positive for "
+        "angular; tyre-force terrain), goes to zero with the speed, and is not positive for "
         f"{negative} of the examples and channels.",
         source=sources[0].source,
         parts=tuple(_panel(forms, examples, channel) for channel in range(3)),
@@ -43,7 +43,7 @@ def spread_figure(fixture: Fixture) -> ThesisFigure:
 
 
 def _negative(examples: SlipExamples) -> float:
-    """Share of examples and channels at which (5.6) is no standard deviation."""
+    """Fraction of examples and channels at which (5.6) is no standard deviation."""
     std = _forms(examples)["thesis (5.6)"].predict(examples.v, examples.omega).std
     return float(np.mean(std <= 0.0))
 

@@ -79,8 +79,8 @@ def surface_figure(fixture: Fixture, regression: Regression) -> ThesisFigure:
     )
 
 
-def other_ground_figure(fixture: Fixture) -> ThesisFigure:
-    """Draw the angular slip rate by all three on the ground that nobody here wrote."""
+def other_terrain_figure(fixture: Fixture) -> ThesisFigure:
+    """Draw the angular slip rate by all three on the terrain that nobody here wrote."""
     examples = simulated_examples(fixture, "contact-friction")
     surfaces = [fitted(partial(regression.make, TERMS), examples.whole) for regression in REGRESSIONS]
     means = [surface.predict(examples.whole.v, examples.whole.omega).mean[:, 2] for surface in surfaces]
@@ -89,13 +89,13 @@ def other_ground_figure(fixture: Fixture) -> ThesisFigure:
     return ThesisFigure(
         key="figure-5-contact",
         thesis="Figures 5.1 to 5.3",
-        title="Angular slip surfaces on contact-friction ground",
+        title="Angular slip surfaces on contact-friction terrain",
         shows="The angular slip rate by the three regressions, as above.",
         agrees=f"The three give similar results: from least squares, the Gaussian process is "
         f"{number_text(process, 2)} rad/s rms away and Bayesian regression {number_text(bayesian, 2)}, of a "
         f"slip rate of {number_text(size, 2)} rad/s rms.",
-        differs="The ground is MuJoCo's own friction, whose slip follows no law that a basis holds. "
-        "The thesis has one ground.",
+        differs="The terrain is MuJoCo's own friction, whose slip follows no law that a basis holds. "
+        "The thesis has one terrain.",
         source=examples.source,
         parts=tuple(
             curvature_panel(surface, examples.whole, 2, regression.title)

@@ -49,7 +49,7 @@ def times_table(fixture: Fixture) -> ThesisFigure:
     costs = {name: [cost(name, count, fixture) for count in SIZES] for name in KINDS}
     process, bayesian = costs["Gaussian process"][-1], costs["Bayesian"]
     largest = fixture.size.largest_process
-    growth = costs["Gaussian process"][1].add / max(costs["Gaussian process"][0].add, 1e-9)
+    inflation = costs["Gaussian process"][1].add / max(costs["Gaussian process"][0].add, 1e-9)
     return ThesisFigure(
         key="table-5-times",
         thesis="Section 5.3.1",
@@ -57,7 +57,7 @@ def times_table(fixture: Fixture) -> ThesisFigure:
         shows="Processor time, least squares and Bayesian regression with the ten terms of odd-even-10, for "
         "three channels together.",
         agrees="To add one example, the Gaussian process factors its matrix again: from 100 to 1 000 "
-        f"examples that takes {growth:.0f} times as long (1 000 times is the limit of O(N³)). Bayesian "
+        f"examples that takes {inflation:.0f} times as long (1 000 times is the limit of O(N³)). Bayesian "
         f"regression takes {number_text(1e3 * bayesian[0].add, 2)} ms at 100 and "
         f"{number_text(1e3 * bayesian[-1].add, 2)} ms at 10 000 examples, where the Gaussian process takes "
         f"about {number_text(process.add, 2)} s.",

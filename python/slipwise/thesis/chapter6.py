@@ -16,7 +16,7 @@ from slipwise.thesis.chapter6_uncertainty import correlation_figure, learned_sur
 from slipwise.thesis.fixture import Fixture
 from slipwise.thesis.thesis_figure import ThesisFigure
 
-GROUND = "tyre-force"
+TERRAIN = "tyre-force"
 
 
 def chapter6_figures(fixture: Fixture, progress: Callable[[str, float], None]) -> list[ThesisFigure]:
@@ -26,17 +26,17 @@ def chapter6_figures(fixture: Fixture, progress: Callable[[str, float], None]) -
     figures = [path_figure(path), perturbation_figure(path)]
     progress("estimators of the thesis", 0.35)
     figures += _courses(fixture)
-    for share, ground in ((0.6, "tyre-force"), (0.8, "contact-friction")):
-        progress(f"Table 6.2 on {ground} ground", share)
-        figures.append(error_table(fixture, ground))
+    for fraction, terrain in ((0.6, "tyre-force"), (0.8, "contact-friction")):
+        progress(f"Table 6.2 on {terrain} terrain", fraction)
+        figures.append(error_table(fixture, terrain))
     return figures
 
 
 def _courses(fixture: Fixture) -> list[ThesisFigure]:
     """Figures 6.3 to 6.7, with the terms of (6.10) from wheel speeds."""
-    log = circling(fixture, GROUND)
+    log = circling(fixture, TERRAIN)
     source = (
-        f"simulated Land Tamer on {GROUND} ground, {fixture.size.long_time:g} s of circles at various "
+        f"simulated Land Tamer on {TERRAIN} terrain, {fixture.size.long_time:g} s of circles at various "
         "speeds and curvatures from zero, wheel speeds as input"
     )
     descent, filtered, correct = (

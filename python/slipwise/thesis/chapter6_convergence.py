@@ -84,7 +84,7 @@ def filter_figure(filtered: Recording, descent: Recording, source: str) -> Thesi
         f"{100.0 * apart:.0f} % as long as the filter's own, in units of the priors. {_settling(filtered)}",
         differs=f"Its residuals are {_size_text(filtered.innovation)}, {more} than those of gradient descent "
         f"({_size_text(descent.innovation)}): Table 6.2 shows which predicts better. The thesis takes "
-        "the different values for local minima; the terms of (6.10) do not hold this ground's slip, so each "
+        "the different values for local minima; the terms of (6.10) do not hold this terrain's slip, so each "
         "estimator settles on what fits the segments as it weighs them.",
         source=source,
         parts=(*parameter_panels(filtered), *_residual_panels(filtered.t[1:], filtered.innovation, "filter")),
@@ -115,7 +115,7 @@ def without_slip(recording: Recording) -> Floats:
     predicted = np.array(
         [
             _core.integrate_segment(
-                baseline, np.zeros(0), fed.track(i), fed.segments[i], _core.Integrator.Exact
+                baseline, np.zeros(0), fed.input_history(i), fed.segments[i], _core.Integrator.Exact
             ).poses[-1]
             for i in range(len(fed))
         ]

@@ -26,7 +26,7 @@ HELD = (
     (1.5, 0.6, 8.0),
 )  # v, omega, s
 DRAWS = 20  # perturbed drives
-GROUND = "tyre-force"
+TERRAIN = "tyre-force"
 LOOKS: dict[str, tuple[str, Dash, float]] = {
     "perturbed drive": (FITTED, "solid", 0.8),
     "rigid-body physics": (MEASURED, "solid", 1.6),
@@ -40,13 +40,13 @@ class SimplePath:
 
     def __init__(self, fixture: Fixture) -> None:
         """Fit the surfaces and drive."""
-        examples = simulated_examples(fixture, GROUND)
+        examples = simulated_examples(fixture, TERRAIN)
         self.source = examples.source
         surface = fitted(lambda: LeastSquaresSurface(BASIS), examples.whole)
         none = fitted(lambda: BayesianSurface(_core.Basis("none", [], [], [])), examples.whole)
         self.commands = _commands()
         duration = sum(seconds for *_, seconds in HELD)
-        plain = Scenario(duration=duration, commands=self.commands, ground=GROUND)
+        plain = Scenario(duration=duration, commands=self.commands, terrain=TERRAIN)
         drawn = replace(plain, perturbation=Perturbation(surface))
         self.ideal = simulate(replace(plain, perturbation=Perturbation(none, spread=0.0)), seed=0).truth
         self.mean = simulate(replace(plain, perturbation=Perturbation(surface, spread=0.0)), seed=0).truth

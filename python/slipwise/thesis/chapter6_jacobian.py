@@ -30,7 +30,7 @@ LENGTHS = (0.5, 1.0, 2.0, 3.5, 5.0, 7.5, 10.0)  # s
 def jacobian_figure(filtered: Recording, log: Log, source: str) -> ThesisFigure:
     """Compare both Jacobians, alone and in the thesis's filter, whose recording with (6.7) is given."""
     courses = {"(6.7)": filtered, "exact": record(log, replace(filtered.course, jacobian=EXACT))}
-    wrong = np.array([shares_wrong(log, length) for length in LENGTHS])
+    wrong = np.array([fractions_wrong(log, length) for length in LENGTHS])
     at = LENGTHS.index(HORIZON)
     series = (
         Line(np.array(LENGTHS), 100.0 * wrong[:, 0], "mean of segments", FITTED),
@@ -42,7 +42,7 @@ def jacobian_figure(filtered: Recording, log: Log, source: str) -> ThesisFigure:
         key="equation-6-7",
         thesis="Equation 6.7",
         title="The Jacobian of the thesis and the exact one",
-        shows="How far the position rows of (6.7) are from the exact derivative, as a share of it (Frobenius "
+        shows="How far the position rows of (6.7) are from the exact derivative, as a part of it (Frobenius "
         "norm, each parameter in units of its prior), over the length of the segment; and the thesis's "
         "filter with either.",
         agrees="Rows of the heading are the same, and over short segments the position rows too: "
@@ -54,26 +54,26 @@ def jacobian_figure(filtered: Recording, log: Log, source: str) -> ThesisFigure:
         f"{_verdict(log, courses)}",
         source=source,
         parts=(
-            Panel("error of (6.7)", "segment [s]", "share of the exact rows [%]", series),
+            Panel("error of (6.7)", "segment [s]", "fraction of the exact rows [%]", series),
             _grid(log, courses),
         ),
     )
 
 
-def shares_wrong(log: Log, length: float) -> tuple[float, float]:
+def fractions_wrong(log: Log, length: float) -> tuple[float, float]:
     """Mean and largest relative error of the position rows of (6.7) over segments of a length [s]."""
     course = Course("iekf")
     windows = drive_windows(log, course, length)
     motion = _core.MotionModel(_core.named_basis(course.basis), False, False)
     unit = np.array(_core.slip_prior_std(motion.basis, 1.0, 0.5, 1.0))
-    shares = []
+    fractions = []
     for i, segment in enumerate(windows.segments):
-        at = _core.linearize_segment(motion, np.zeros(motion.size), windows.track(i), segment)
+        at = _core.linearize_segment(motion, np.zeros(motion.size), windows.input_history(i), segment)
         exact, thesis = (
             np.array(_core.segment_jacobian(kind, motion, at, segment))[:2] * unit for kind in (EXACT, THESIS)
         )
-        shares.append(float(np.linalg.norm(thesis - exact) / np.linalg.norm(exact)))
-    return float(np.mean(shares)), float(np.max(shares))
+        fractions.append(float(np.linalg.norm(thesis - exact) / np.linalg.norm(exact)))
+    return float(np.mean(fractions)), float(np.max(fractions))
 
 
 def _grid(log: Log, courses: dict[str, Recording]) -> Grid:

@@ -100,7 +100,7 @@ def record(log: Log, course: Course) -> Recording:
     posteriors = [_now(estimator)]
     innovation = np.empty((len(fed), 3))
     for i in range(len(fed)):
-        innovation[i] = estimator.learn(fed.track(i), fed.segments[i]).innovation
+        innovation[i] = estimator.learn(fed.input_history(i), fed.segments[i]).innovation
         posteriors.append(_now(estimator))
     columns = [np.array(column) for column in zip(*posteriors, strict=True)]
     t = np.concatenate((fed.start[:1], fed.end))

@@ -26,7 +26,7 @@ NAMES = ("forward slip per V [1]", "angular slip per ω [1]")
 
 @dataclass(frozen=True, eq=False)
 class Drifting:
-    """A drive over ground that changes, in W windows, and the posterior of its P parameters."""
+    """A drive over terrain that changes, in W windows, and the posterior of its P parameters."""
 
     t: Floats  # [W] s, middle of the windows
     truth: Floats  # [W, P]
@@ -48,13 +48,13 @@ def smoothing_figure(seed: int, duration: float) -> ThesisFigure:
         key="smoothing",
         thesis="Beside Figure 6.4",
         title="Parameters that change slowly: filtered and smoothed",
-        shows="Two slip parameters of a drive whose ground changes and comes back, known from the windows "
+        shows="Two slip parameters of a drive whose terrain changes and comes back, known from the windows "
         "so far (filter) and from all windows (smoother), each with one standard deviation.",
-        agrees="As in (6.13), process noise lets the parameters follow the ground: the filter follows with "
+        agrees="As in (6.13), process noise lets the parameters follow the terrain: the filter follows with "
         f"{number_text(errors[0][0], 2)} and {number_text(errors[0][1], 2)} rms error.",
         differs="The thesis filters only. Afterwards, the smoother knows both sides of every moment: "
         f"{number_text(errors[1][0], 2)} and {number_text(errors[1][1], 2)} rms, without the filter's "
-        f"lateness. Within one stated standard deviation lie {inside[0]:.0f} % (filter) and "
+        f"lateness. Within one reported standard deviation lie {inside[0]:.0f} % (filter) and "
         f"{inside[1]:.0f} % (smoother) of the true values; 68 % would be exact for a random walk, "
         "which a sine is not.",
         source=f"windows of {WINDOW:g} s simulated with known slip noise and pose noise, {duration:g} s",
@@ -65,7 +65,7 @@ def smoothing_figure(seed: int, duration: float) -> ThesisFigure:
 def drifting_drive(seed: int, duration: float) -> Drifting:
     """Simulate windows whose slip parameters go through one sine, and learn them."""
     commands = thesis_drive(seed, duration)
-    track = _core.InputTrack(commands.t, commands.v, commands.vy, commands.omega)
+    history = _core.InputHistory(commands.t, commands.v, commands.vy, commands.omega)
     model = _core.MotionModel(BASIS, False, False)
     starts = np.arange(0.0, duration - WINDOW + 1e-9, WINDOW)
     phase = np.sin(2.0 * math.pi * (starts + WINDOW / 2) / duration)
@@ -73,23 +73,23 @@ def drifting_drive(seed: int, duration: float) -> Drifting:
     random = np.random.Generator(np.random.PCG64([seed, 64]))
     segments, noises = [], []
     for start, alpha in zip(starts.tolist(), truth, strict=True):
-        segment, noise = _measured(model, alpha, track, start, random)
+        segment, noise = _measured(model, alpha, history, start, random)
         segments.append(segment)
         noises.append(noise)
     prior = _core.Estimate(np.zeros(2), np.asfortranarray(np.diag(np.square(PRIOR_STD))))
-    return Drifting(starts + WINDOW / 2, truth, *_learned(model, prior, track, segments, noises))
+    return Drifting(starts + WINDOW / 2, truth, *_learned(model, prior, history, segments, noises))
 
 
 def _measured(
     model: _core.MotionModel,
     alpha: Floats,
-    track: _core.InputTrack,
+    history: _core.InputHistory,
     start: float,
     random: np.random.Generator,
 ) -> tuple[_core.Segment, Floats]:
     """One window as it is measured, and the covariance of its noise."""
     still = _core.Segment(start, start + WINDOW, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    path = _core.integrate_segment(model, alpha, track, still, _core.Integrator.Exact)
+    path = _core.integrate_segment(model, alpha, history, still, _core.Integrator.Exact)
     end = np.array(path.poses[-1])
     noise = np.array(_core.slip_covariance(path, NOISE)) + np.array(
         _core.pose_noise_covariance(_core.Pose2(*end.tolist()), NOISE)
@@ -102,7 +102,7 @@ def _measured(
 def _learned(
     model: _core.MotionModel,
     prior: _core.Estimate,
-    track: _core.InputTrack,
+    history: _core.InputHistory,
     segments: list[_core.Segment],
     noises: list[Floats],
 ) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
@@ -112,7 +112,9 @@ def _learned(
     iekf = _core.IekfSettings()
 
     def smoothed(count: int) -> list[_core.Estimate]:
-        return _core.rts_smooth(model, prior, [track] * count, segments[:count], noises[:count], drift, iekf)
+        return _core.rts_smooth(
+            model, prior, [history] * count, segments[:count], noises[:count], drift, iekf
+        )
 
     filtered = [smoothed(count)[-1] for count in range(1, len(segments) + 1)]
     return _columns(filtered), _columns(smoothed(len(segments)))

@@ -80,14 +80,14 @@ def contest(log: Log, input_name: str) -> Contest:
     return ordered | {DEFAULT: errors[DEFAULT]}
 
 
-def error_table(fixture: Fixture, ground: str) -> ThesisFigure:
-    """Make Table 6.2 on one ground."""
-    log = fixture.long_drive(ground).log
+def error_table(fixture: Fixture, terrain: str) -> ThesisFigure:
+    """Make Table 6.2 on one terrain."""
+    log = fixture.long_drive(terrain).log
     contests = {name: contest(log, name) for name in INPUTS}
     return ThesisFigure(
-        key=f"table-6-2-{ground}",
+        key=f"table-6-2-{terrain}",
         thesis="Table 6.2",
-        title=f"Five-second pose errors of the estimators, {ground} ground",
+        title=f"Five-second pose errors of the estimators, {terrain} terrain",
         shows="Mean and standard deviation of the error after 5 s. In-sample: with parameters that have "
         "learned the very segment, as the thesis computed it, over the whole drive from nothing. Honest: "
         "predicted with what was known 5 s before the segment began, over the second half of the drive. "
@@ -95,7 +95,7 @@ def error_table(fixture: Fixture, ground: str) -> ThesisFigure:
         "EKF is ekf-thesis, with (6.7) or with the exact Jacobian.",
         agrees=_agrees(contests),
         differs=_differs(contests),
-        source=f"simulated Land Tamer on {ground} ground, drive of {fixture.size.long_time:g} s from zero; "
+        source=f"simulated Land Tamer on {terrain} terrain, drive of {fixture.size.long_time:g} s from zero; "
         f"single estimators learn {BASIS}, {DEFAULT} averages several bases",
         parts=(
             *(_grid(name, found) for name, found in contests.items()),

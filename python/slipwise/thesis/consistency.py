@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Is the stated uncertainty true? NEES of every estimator over drives whose parameters are known."""
+"""Is the reported uncertainty true? NEES of every estimator over drives whose parameters are known."""
 
 from __future__ import annotations
 
@@ -54,9 +54,9 @@ def _figure(found: dict[str, Results], runs: int) -> ThesisFigure:
     return ThesisFigure(
         "consistency",
         "Not in the thesis",
-        "Is the stated uncertainty true?",
+        "Is the reported uncertainty true?",
         f"Each estimator learns {runs} drives of {MINUTES:g} minutes whose {SIZE} slip parameters were drawn "
-        "from the prior. NEES is the squared error of all parameters in units of the stated covariance, over "
+        "from the prior. NEES is the squared error of all parameters in units of that covariance, over "
         "their number m: 1 on average where the covariance is true, and for so many drives between "
         f"{band[0]:.2f} and {band[1]:.2f} with 95 %.",
         " ".join(_errors(name, results) for name, results in found.items()),
@@ -132,7 +132,9 @@ def _panel(name: str, results: Results) -> Panel:
     ]
     count = max(len(runs) for runs in results.values())
     lines.append(Line(_chi_square_quantiles(count) / SIZE, _steps(count), "if true", INK, width=2.6))
-    return Panel(f"Drives with {name}", "NEES/m [1]", "share of drives below [1]", tuple(lines), log_x=True)
+    return Panel(
+        f"Drives with {name}", "NEES/m [1]", "fraction of drives below [1]", tuple(lines), log_x=True
+    )
 
 
 def _steps(count: int) -> Floats:
@@ -143,6 +145,6 @@ def _chi_square_quantiles(count: int) -> Floats:
     """Quantiles of chi-square with `SIZE` degrees at `_steps(count)` (Wilson-Hilferty)."""
     from statistics import NormalDist
 
-    z = np.array([NormalDist().inv_cdf(share) for share in _steps(count).tolist()])
+    z = np.array([NormalDist().inv_cdf(fraction) for fraction in _steps(count).tolist()])
     spread = 2.0 / (9.0 * SIZE)
     return np.asarray(SIZE * (1.0 - spread + z * np.sqrt(spread)) ** 3, dtype=np.float64)

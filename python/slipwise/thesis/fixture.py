@@ -68,24 +68,24 @@ class Fixture:
         self._made: dict[str, Simulation] = {}
         self._logs: dict[str, Log] = {}
 
-    def circles(self, ground: str = "tyre-force") -> Simulation:
+    def circles(self, terrain: str = "tyre-force") -> Simulation:
         """Return held commands: speeds times curvatures to both sides; drives are disturbed."""
         held = [
             (v, side * curvature * v)
             for v, curvature, side in itertools.product(self.size.circle_speeds, CURVATURES, (1, -1))
         ]
-        return self._held(f"circles, {ground}", held, self.size.circle_time, ground)
+        return self._held(f"circles, {terrain}", held, self.size.circle_time, terrain)
 
-    def one_circle(self, ground: str = "tyre-force") -> Simulation:
+    def one_circle(self, terrain: str = "tyre-force") -> Simulation:
         """Return one command held for long, that of figure 4.1."""
         v, curvature = CIRCLE
-        return self._held(f"one circle, {ground}", [(v, v * curvature)], self.size.one_circle_time, ground)
+        return self._held(f"one circle, {terrain}", [(v, v * curvature)], self.size.one_circle_time, terrain)
 
-    def long_drive(self, ground: str = "tyre-force") -> Simulation:
+    def long_drive(self, terrain: str = "tyre-force") -> Simulation:
         """Return nine minutes of circles and random driving."""
-        name = f"long, {ground}"
+        name = f"long, {terrain}"
         if name not in self._made:
-            scenario = Scenario(duration=self.size.long_time, ground=ground)
+            scenario = Scenario(duration=self.size.long_time, terrain=terrain)
             self._made[name] = simulate(scenario, seed=self.seed)
         return self._made[name]
 
@@ -112,7 +112,7 @@ class Fixture:
             self._logs[name] = open_log(path)
         return self._logs[name]
 
-    def _held(self, name: str, held: list[tuple[float, float]], time: float, ground: str) -> Simulation:
+    def _held(self, name: str, held: list[tuple[float, float]], time: float, terrain: str) -> Simulation:
         """Drive commands (v, omega), each for `time`; the log does not hold the disturbance."""
         if name not in self._made:
             commanded = _one_after_the_other([hold(v, omega, time) for v, omega in held])
@@ -120,7 +120,7 @@ class Fixture:
             off = rng.standard_normal((2, len(commanded))) * np.array(DISTURBANCE)[:, None]
             driven = replace(commanded, v=commanded.v + off[0], omega=commanded.omega + off[1])
             duration = time * len(held)
-            scenario = Scenario(duration, commands=driven, ground=ground, std_xy=STD_XY, std_yaw=STD_YAW)
+            scenario = Scenario(duration, commands=driven, terrain=terrain, std_xy=STD_XY, std_yaw=STD_YAW)
             simulation = simulate(scenario, seed=self.seed)
             runs = tuple(replace(run, commands=commanded) for run in simulation.log.runs)
             self._made[name] = replace(simulation, log=replace(simulation.log, runs=runs))

@@ -63,7 +63,7 @@ class KnownRun:
     prior: _core.Estimate
     truth: Floats  # [parameters], drawn from the prior
     noise: _core.MotionNoise
-    track: _core.InputTrack
+    history: _core.InputHistory
     poses: list[_core.Pose2]  # measured, every `STEP`
 
     def segments(self, stride: int) -> Iterator[_core.Segment]:
@@ -101,8 +101,8 @@ def known_run(basis: str, seed: int, noise: _core.MotionNoise = NOISE, *, minute
         tangent = (np.array([speed, 0.0, rate]) + slip) * STEP + psd * rng.standard_normal(3)
         pose = _core.compose(pose, _core.exp(tangent))
     measured.append(_disturbed(pose, rng, noise))
-    track = _core.InputTrack(t, v, np.zeros_like(v), omega)
-    return KnownRun(model, prior, truth, noise, track, measured)
+    history = _core.InputHistory(t, v, np.zeros_like(v), omega)
+    return KnownRun(model, prior, truth, noise, history, measured)
 
 
 def learned(feeding: Feeding, drive: KnownRun) -> _core.Estimate:
@@ -112,7 +112,7 @@ def learned(feeding: Feeding, drive: KnownRun) -> _core.Estimate:
     settings.iekf.huber, settings.iekf.gate = NO_OUTLIERS
     estimator = _core.make_estimator(feeding.estimator, drive.model, drive.prior, settings)
     for segment in drive.segments(feeding.stride):
-        estimator.learn(drive.track, segment)
+        estimator.learn(drive.history, segment)
     return estimator.estimate()
 
 

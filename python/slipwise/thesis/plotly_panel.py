@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.palette import BAND, DIVERGING, transparent
 from slipwise.thesis.panel import (
     Band,
@@ -70,7 +70,7 @@ def _line(line: Line, colour: str) -> Trace:
         "mode": "lines",
         "x": numbers(line.x),
         "y": numbers(line.y),
-        "name": plain_label(line.label),
+        "name": baseline_label(line.label),
         "opacity": line.opacity,
         "line": {"color": colour, "width": line.width, "dash": line.dash},
         "hoverinfo": "x+y+name" if line.label else "x+y",
@@ -83,7 +83,7 @@ def _points(points: Points, colour: str, *, solid: bool) -> Trace:
         "mode": "markers",
         "x": numbers(points.x),
         "y": numbers(points.y),
-        "name": plain_label(points.label),
+        "name": baseline_label(points.label),
         "opacity": points.opacity,
     }
     if not solid:
@@ -103,7 +103,7 @@ def _error_bars(bars: ErrorBars, colour: str) -> Trace:
         "x": numbers(bars.x),
         "y": numbers(bars.y),
         "error_y": {"type": "data", "array": numbers(bars.error), "thickness": 1.2, "width": 3},
-        "name": plain_label(bars.label),
+        "name": baseline_label(bars.label),
         "marker": {
             "color": colour,
             "size": 6,
@@ -123,7 +123,7 @@ def _band(band: Band, colour: str) -> Trace:
         "fill": "toself",
         "fillcolor": transparent(colour, 0.22),
         "line": {"width": 0, "color": colour},
-        "name": plain_label(band.label),
+        "name": baseline_label(band.label),
         "hoverinfo": "skip",
     }
 
@@ -131,9 +131,9 @@ def _band(band: Band, colour: str) -> Trace:
 def _bars(bars: Bars, colour: str) -> Trace:
     trace: Trace = {
         "type": "bar",
-        "x": [plain_label(name) for name in bars.names],
+        "x": [baseline_label(name) for name in bars.names],
         "y": numbers(bars.values),
-        "name": plain_label(bars.label),
+        "name": baseline_label(bars.label),
         "marker": {"color": colour},
     }
     if bars.error is not None:
@@ -154,8 +154,8 @@ def _surface(surface: Surface) -> list[Trace]:
 def _heat(heat: Heat) -> Trace:
     return {
         "type": "heatmap",
-        "x": [plain_label(name) for name in heat.columns],
-        "y": [plain_label(name) for name in heat.rows],
+        "x": [baseline_label(name) for name in heat.columns],
+        "y": [baseline_label(name) for name in heat.rows],
         "z": numbers(heat.values),
         "colorscale": DIVERGING,
         "zmin": -heat.limit,
@@ -171,7 +171,7 @@ def _axes(panel: Panel) -> Trace:
     if panel.x_names:
         x |= {
             "tickvals": list(range(len(panel.x_names))),
-            "ticktext": [plain_label(n) for n in panel.x_names],
+            "ticktext": [baseline_label(n) for n in panel.x_names],
         }
     if panel.equal_axes:
         y |= {"scaleanchor": "x", "scaleratio": 1}

@@ -58,13 +58,13 @@ def real_log_figures(fixture: Fixture, progress: Progress) -> list[ThesisFigure]
             "real-log-husky",
             ADDED,
             "Surfaces and estimators on a Husky",
-            lambda: husky(fixture, lambda what, share: progress(what, 0.25 * share)),
+            lambda: husky(fixture, lambda what, fraction: progress(what, 0.25 * fraction)),
         ),
         figure_of_log(
             "real-logs-warthog",
             ADDED,
             "Surfaces and estimators on a Warthog",
-            lambda: warthog(fixture, lambda what, share: progress(what, 0.25 + 0.75 * share)),
+            lambda: warthog(fixture, lambda what, fraction: progress(what, 0.25 + 0.75 * fraction)),
         ),
     ]
 

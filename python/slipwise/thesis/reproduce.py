@@ -26,7 +26,7 @@ from slipwise.thesis.thesis_figure import ThesisFigure
 if TYPE_CHECKING:
     from multiprocessing.queues import SimpleQueue
 
-Progress = Callable[[str, float], None]  # what is being done, and which share of it is done, 0 to 1
+Progress = Callable[[str, float], None]  # what is being done, and which fraction of it is done, 0 to 1
 MakeFigures = Callable[[Fixture, Progress], list[ThesisFigure]]
 WORKERS = 2
 POLL = 0.2  # [s] between looks at what the workers report
@@ -57,7 +57,7 @@ CHAPTERS = (
     Chapter("chapter-5", "Chapter 5: slip surfaces", chapter5_figures),
     Chapter("chapter-6", "Chapter 6: transient dynamics", chapter6_figures),
     Chapter("real-logs", "Beyond: all methods on real logs", real_log_figures),
-    Chapter("consistency", "Beyond: is the stated uncertainty true?", consistency_figures),
+    Chapter("consistency", "Beyond: is the reported uncertainty true?", consistency_figures),
 )
 
 
@@ -96,7 +96,7 @@ def reproduce(
     Args:
         plan: seed, folder of real logs, and size of the simulated drives.
         chapters: which to make.
-        progress: called with what is being done and which share of the whole is done, 0 to 1.
+        progress: called with what is being done and which fraction of the whole is done, 0 to 1.
 
     Raises:
         SlipwiseError: an extra is not installed, a log cannot be read, or a worker was ended from outside.
@@ -135,15 +135,15 @@ def _follow(
     progress: Progress,
 ) -> None:
     """Report progress until all futures are done or one has failed."""
-    shares: dict[str, float] = {}
+    fractions: dict[str, float] = {}
     waiting = True
     while waiting:
         done = wait(futures, timeout=POLL).done
         waiting = len(done) < len(futures) and not any(future.exception() for future in done)
         while not reports.empty():
-            key, what, share = reports.get()
-            shares[key] = max(share, shares.get(key, 0.0))
-            progress(f"{key}: {what}", sum(shares.values()) / len(futures))
+            key, what, fraction = reports.get()
+            fractions[key] = max(fraction, fractions.get(key, 0.0))
+            progress(f"{key}: {what}", sum(fractions.values()) / len(futures))
 
 
 class _Worker:
@@ -161,8 +161,8 @@ def _start(plan: FixturePlan, reports: SimpleQueue[tuple[str, str, float]]) -> N
 
 
 def _make(chapter: Chapter) -> list[ThesisFigure]:
-    def progress(what: str, share: float) -> None:
-        _Worker.reports.put((chapter.key, what, share))
+    def progress(what: str, fraction: float) -> None:
+        _Worker.reports.put((chapter.key, what, fraction))
 
     figures = chapter.make_figures(_Worker.fixture, progress)
     progress("done", 1.0)

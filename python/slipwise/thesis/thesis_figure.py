@@ -21,7 +21,7 @@ class ThesisFigure:
     shows: str = ""  # what is drawn, one or two sentences
     agrees: str = ""  # with the thesis
     differs: str = ""  # from the thesis, and why
-    source: str = ""  # which simulated ground, or which log
+    source: str = ""  # which simulated terrain, or which log
     parts: tuple[Panel | Grid, ...] = ()
     missing: str = ""  # what is missing and how to give it; then there is nothing else to show
 

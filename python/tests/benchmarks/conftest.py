@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What tests of benchmarks share: their modules by name, and simulated logs in place of the real ones."""
+"""What tests of benchmarks fraction: their modules by name, and simulated logs in place of the real ones."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def test_each_variant_changes_what_it_says(data: Path) -> None:
 
 
 def test_what_the_learner_refuses_has_no_score(data: Path) -> None:
-    assert score_variants([Variant("none", settings={"window": {"length": -1.0}})], [LOG]) == [None]
+    assert score_variants([Variant("none", settings={"segment": {"length": -1.0}})], [LOG]) == [None]
 
 
 def test_a_constant_needs_a_build_of_its_own(data: Path) -> None:
@@ -61,11 +61,11 @@ def test_a_constant_needs_a_build_of_its_own(data: Path) -> None:
 def test_numbers_are_multiplied_and_whole_ones_stay_whole() -> None:
     core = _core.LearnerSettings()
     scaled(core, "hypotheses.average.change.longest", 0.4)
-    scaled(core, "hypotheses.average.weighting.share", 2.0)
+    scaled(core, "hypotheses.average.weighting.fraction", 2.0)
     scaled(core, "disturbance.time_constants", 0.5)
     fresh = _core.LearnerSettings()
     assert core.hypotheses.average.change.longest == round(0.4 * fresh.hypotheses.average.change.longest)
-    assert core.hypotheses.average.weighting.share == 2.0 * fresh.hypotheses.average.weighting.share
+    assert core.hypotheses.average.weighting.fraction == 2.0 * fresh.hypotheses.average.weighting.fraction
     assert core.disturbance.time_constants == [0.5 * t for t in fresh.disturbance.time_constants]
     scaled(core, "hypotheses.average.change.longest", 1e-9)
     assert core.hypotheses.average.change.longest == 1

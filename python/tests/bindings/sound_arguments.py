@@ -21,8 +21,8 @@ def _model() -> _core.MotionModel:
     return _core.MotionModel(_core.named_basis("edd-2"), False, True)
 
 
-def _inputs() -> _core.InputTrack:
-    return _core.InputTrack(T, np.sin(T), np.zeros(ROWS), np.cos(T))
+def _inputs() -> _core.InputHistory:
+    return _core.InputHistory(T, np.sin(T), np.zeros(ROWS), np.cos(T))
 
 
 def _segment() -> _core.Segment:
@@ -186,7 +186,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "ExpectedPose": _expected,
     "FollowingEstimator": _following,
     "Gpu": lambda: None,
-    "InputTrack": _inputs,
+    "InputHistory": _inputs,
     "Integrator": lambda: _core.Integrator.Exact,
     "LeastSquaresFit": _fit,
     "LearnerEvent": lambda: _learner().events()[0],
@@ -243,7 +243,7 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "sealed body": lambda: b"learned",
     "SteadySegment.__init__ poses": lambda: np.zeros((3, 3)),
     "SteadySegment.__init__ times": lambda: np.array([0.0, 1.0, 2.0]),
-    "InputTrack.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),
+    "InputHistory.__init__ t": lambda: np.array([0.0, 0.1, 0.2]),
     "FollowingEstimator.__init__ name": lambda: "iekf",
     "DisturbanceModel.__init__ weights": lambda: np.ones(1),
     "fits_all_segments name": lambda: "iekf",
@@ -345,7 +345,7 @@ def _array(bound: Bound, parameter: str, annotation: str) -> Any:
 def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
     """Yield objects of this type that are sound by themselves, of other sizes or times than those above."""
     nan, zero = float("nan"), np.zeros(1)
-    larger = _core.MotionModel.with_response(_core.named_basis("odd-even-10"), True).with_mount(True)
+    larger = _core.MotionModel.with_response(_core.named_basis("odd-even-10"), True).with_extrinsics(True)
     path = _core.linearize_segment(larger, np.zeros(larger.size), _inputs(), _segment())
     wide = _core.Segment(1.0, 2.0, _core.Pose2(nan, 0.0, 0.0), None, nan, 0.0)
     late = _core.Segment(1e6, 1e6 + 1.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
@@ -360,7 +360,7 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
             _core.ActuatorModel(1e300, 0, 1e300, 0, 0),
         ],
         "Estimate": [_core.Estimate(np.zeros(9), np.eye(9)), _core.Estimate(zero[:0], np.zeros((0, 0)))],
-        "InputTrack": [_core.InputTrack(zero, zero, zero, zero), _core.InputTrack(*[zero[:0]] * 4)],
+        "InputHistory": [_core.InputHistory(zero, zero, zero, zero), _core.InputHistory(*[zero[:0]] * 4)],
         "LeastSquaresFit": [_core.fit_least_squares(np.ones((9, 5)), np.ones(9), np.ones(9))],
         "MotionModel": [larger, _core.MotionModel(_core.Basis("none", [], [], []), False, False)],
         "Pose2": [_core.Pose2(nan, nan, nan), _core.Pose2(1e300, -1e300, 1e300)],

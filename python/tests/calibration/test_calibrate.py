@@ -100,8 +100,8 @@ def part_of(run: Run, start: float, end: float) -> Run:
 def test_lag_and_delay_are_recovered_from_commands(lag: float, delay: float) -> None:
     log = simulated_log(Drive(seconds=120.0, lag=lag, delay=delay))
     model = calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).model
-    lag_v, lag_omega, delay_v, delay_omega = np.exp(model.mean[-4:])
-    assert [lag_v, lag_omega] == pytest.approx([lag, lag], rel=0.15)
+    time_constant_v, time_constant_omega, delay_v, delay_omega = np.exp(model.mean[-4:])
+    assert [time_constant_v, time_constant_omega] == pytest.approx([lag, lag], rel=0.15)
     assert [delay_v, delay_omega] == pytest.approx([delay, delay], abs=0.03)
 
 
@@ -114,7 +114,7 @@ def test_history_ends_where_the_model_is() -> None:
     assert history.mean[-1].tobytes() == model.mean.tobytes()
     assert history.std[-1] == pytest.approx([p.std for p in model.content.parameters])
     assert (np.diff(history.t) > 0.0).all()
-    assert model.content.provenance.learned_windows == len(history.t)
+    assert model.content.provenance.learned_segments == len(history.t)
 
 
 def test_uncertainty_shrinks_with_more_driving() -> None:
@@ -152,7 +152,10 @@ def test_errors_of_the_verdict_are_those_of_the_evaluation(settings: dict[str, s
     scores = evaluate(log, input="wheel", settings=make_settings(settings), options=options)
     learned, plain = (scores.score(name, held_out.horizon) for name in (result.method, "none"))
     assert (held_out.position, held_out.heading) == (learned.position.mean, learned.heading.mean)
-    assert (held_out.plain_position, held_out.plain_heading) == (plain.position.mean, plain.heading.mean)
+    assert (held_out.baseline_position, held_out.baseline_heading) == (
+        plain.position.mean,
+        plain.heading.mean,
+    )
 
 
 def test_never_moving_robot_is_said_with_advice() -> None:
@@ -221,7 +224,7 @@ def test_runs_of_equal_names_stay_apart() -> None:
 
 
 def test_progress_goes_from_the_start_to_the_end() -> None:
-    shares: list[float] = []
-    calibrate(simulated_log(Drive(seconds=120.0)), input="wheel", progress=shares.append)
-    assert shares == sorted(shares)
-    assert 0.0 < shares[0] <= shares[-1] <= 1.0
+    fractions: list[float] = []
+    calibrate(simulated_log(Drive(seconds=120.0)), input="wheel", progress=fractions.append)
+    assert fractions == sorted(fractions)
+    assert 0.0 < fractions[0] <= fractions[-1] <= 1.0

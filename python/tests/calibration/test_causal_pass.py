@@ -25,7 +25,7 @@ class LastEnd:
 
     ends: list[float] = field(default_factory=list)
 
-    def learn(self, _inputs: _core.InputTrack, segment: _core.Segment) -> float:
+    def learn(self, _inputs: _core.InputHistory, segment: _core.Segment) -> float:
         self.ends.append(segment.end)
         return segment.end
 

@@ -11,7 +11,7 @@ SEEDS = range(6)
 
 
 def far_off(runs: list[list[Found]]) -> list[str]:
-    """Parameters that miss by more than three stated standard deviations."""
+    """Parameters that miss by more than three reported standard deviations."""
     return [f"{found.name}: {found.sigmas:.1f}" for run in runs for found in run if abs(found.sigmas) > 3.0]
 
 
@@ -32,7 +32,7 @@ def test_much_was_learned_of_every_parameter(from_commands_alone: list[list[Foun
 
 def test_all_is_found_in_cascade_and_as_surely_as_stated() -> None:
     runs = [from_wheels_too(seed) for seed in SEEDS]
-    assert {"clock_offset", "sensor_x", "lon.V", "slow_share_v", "log_delay_omega"} <= {
+    assert {"clock_offset", "sensor_x", "lon.V", "slow_fraction_v", "log_delay_omega"} <= {
         f.name for f in runs[0]
     }
     assert len(far_off(runs)) <= 0.03 * sum(len(run) for run in runs), far_off(runs)

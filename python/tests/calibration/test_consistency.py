@@ -33,7 +33,7 @@ def test_ellipsoids_that_are_too_small_are_named_with_the_factor_that_mends_them
     found = drawn(200, 3.0)
     assert found.too_small
     assert found.nis == pytest.approx(27.0, rel=0.3)
-    assert found.sentence().startswith("Its stated uncertainty is too small: NIS 2")
+    assert found.sentence().startswith("Its reported uncertainty is too small: NIS 2")
     assert found.advice()[0].startswith("Multiply predicted covariances by ")
     assert drawn(200, 10.0).untrue
 

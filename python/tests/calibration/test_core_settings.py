@@ -26,7 +26,7 @@ def test_from_commands_lag_and_delay_are_learned_in_longer_segments() -> None:
 
 def test_segments_are_cut_as_those_of_other_methods_are() -> None:
     settings = make_settings(
-        {"window": {"length": 3.0, "unknown_after": 0.3}, "mount": {"x": 0.4, "yaw": 0.2}}
+        {"segment": {"length": 3.0, "unknown_after": 0.3}, "sensor_extrinsics": {"x": 0.4, "yaw": 0.2}}
     )
     stream = core_settings(settings, "wheel", HORIZONS).stream
     assert (stream.segment_length, stream.unknown_after) == (3.0, 0.3)
@@ -71,10 +71,10 @@ def test_what_is_switched_off_is_off_in_the_core(content: dict[str, object], rea
 
 
 def test_the_pose_of_the_sensor_is_learned_only_where_that_is_asked() -> None:
-    assert not core_settings(Settings(), "wheel", HORIZONS).hypotheses.mount
-    learned = make_settings({"mount": {"x": 1.0, "learn": True}})
+    assert not core_settings(Settings(), "wheel", HORIZONS).hypotheses.sensor_extrinsics
+    learned = make_settings({"sensor_extrinsics": {"x": 1.0, "learn": True}})
     core = core_settings(learned, "wheel", HORIZONS)
-    assert core.hypotheses.mount
+    assert core.hypotheses.sensor_extrinsics
     assert core.hypotheses.filter.prior.sensor.vector().tolist() == [1.0, 0.0, 0.0]
 
 

@@ -108,7 +108,7 @@ def test_iekf_is_the_filter_that_calibrates_until_that_refits(settings: Settings
     average = _core.ModelAverage("one", settings.bases(), False, False, False, *filters)
     estimating = run_of("iekf", settings, windows)
     for i in range(7):
-        average.learn(windows.track(i), windows.segments[i])
+        average.learn(windows.input_history(i), windows.segments[i])
         known, posterior = average.state(), estimating.posterior(i + 1)
         assert posterior.mean == pytest.approx(np.array(known.estimate.mean), rel=1e-9)
     # Means that agree after each segment have had the same gains; the covariance that the average

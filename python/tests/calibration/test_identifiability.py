@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a drive leaves open is said, with its look-alike and the driving that would help."""
+"""What a drive leaves open is said, with its confounded parameters and the driving that would help."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from sample_logs import Drive, simulated_log
 from slipwise import _core, open_log
 from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.calibration.identifiability import (
-    LookAlike,
+    Confounded,
     advice_for_pairs,
-    look_alikes,
+    confounded,
+    not_identifiable,
     timing_words,
-    undetermined,
 )
 from slipwise.calibration.learner import Posterior
 from slipwise.logs import Log
 from slipwise.models import load_model
 
-LEARN = {"basis": "edd-2", "mount": {"learn": True}}
+LEARN = {"basis": "edd-2", "sensor_extrinsics": {"learn": True}}
 
 
 def learned(log: Log, source: str, given: dict[str, object]) -> Calibration:
@@ -46,40 +46,43 @@ def posterior(motion: _core.MotionModel, correlation: float) -> Posterior:
 
 def test_pairs_that_go_together_are_named() -> None:
     motion = _core.MotionModel(_core.named_basis("edd-2"), True, False)
-    assert look_alikes(posterior(motion, 0.89)) == ()
-    (pair,) = look_alikes(posterior(motion, -0.95))
-    assert pair == LookAlike("lon.V", "ang.w", pytest.approx(-0.95))
+    assert confounded(posterior(motion, 0.89)) == ()
+    (pair,) = confounded(posterior(motion, -0.95))
+    assert pair == Confounded("lon.V", "ang.w", pytest.approx(-0.95))
     assert str(pair) == "lon.V and ang.w (-0.95)"
-    assert undetermined(posterior(motion, -0.95)) == ()
+    assert not_identifiable(posterior(motion, -0.95)) == ()
 
 
 def test_a_lever_arm_that_a_straight_drive_cannot_show_is_said() -> None:
     verdict = learned(straight(), "wheel", LEARN).verdict
-    assert {"sensor_x", "sensor_y"} <= set(verdict.undetermined)
-    assert "sensor_yaw" not in verdict.undetermined
+    assert {"sensor_x", "sensor_y"} <= set(verdict.not_identifiable)
+    assert "sensor_yaw" not in verdict.not_identifiable
     assert any("Turn on the spot both ways" in text and "sensor_x" in text for text in verdict.advice)
 
 
 def test_a_sensor_and_the_slip_it_looks_like_are_named_with_what_to_do(tmp_path: Path) -> None:
     log = simulated_log(Drive(seconds=90.0))
-    result = learned(log, "wheel", {"basis": "full-linear-6", "mount": {"learn": True}})
-    pairs = {frozenset((pair.first, pair.second)) for pair in result.verdict.look_alikes}
+    result = learned(log, "wheel", {"basis": "full-linear-6", "sensor_extrinsics": {"learn": True}})
+    pairs = {frozenset((pair.first, pair.second)) for pair in result.verdict.confounded}
     confounded = (("sensor_x", "lat.w"), ("sensor_y", "lon.w"), ("sensor_yaw", "lat.V"))
     assert {frozenset(pair) for pair in confounded} <= pairs
-    assert any("give its place under [mount]" in text for text in result.verdict.advice)
+    assert any("give its place under [sensor_extrinsics]" in text for text in result.verdict.advice)
     again = load_model(result.model.save(tmp_path / "m.yaml")).content.verdict
-    assert [(p.first, p.second) for p in again.look_alikes] == [
-        (p.first, p.second) for p in result.verdict.look_alikes
+    assert [(p.first, p.second) for p in again.confounded] == [
+        (p.first, p.second) for p in result.verdict.confounded
     ]
     assert again.timing == result.verdict.timing
 
 
 def test_lag_and_delay_of_one_channel_alone_trade_places() -> None:
     advice = advice_for_pairs(
-        (LookAlike("log_delay_v", "log_lag_v", -0.97), LookAlike("log_lag_v", "log_delay_omega", 0.95))
+        (
+            Confounded("log_delay_v", "log_time_constant_v", -0.97),
+            Confounded("log_time_constant_v", "log_delay_omega", 0.95),
+        )
     )
     assert len(advice) == 1
-    assert advice[0].endswith("delay_v and lag_v (-0.97).")
+    assert advice[0].endswith("delay_v and time_constant_v (-0.97).")
 
 
 def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
@@ -102,7 +105,7 @@ def test_it_is_said_which_delay_holds_which_clock_offset() -> None:
 def test_a_clock_offset_that_steady_driving_cannot_show_stays_at_its_prior() -> None:
     result = learned(straight(late=0.4), "wheel", {"basis": "edd-2"})
     (offset,) = (p for p in result.model.content.parameters if p.name == "clock_offset")
-    assert not offset.determined
+    assert not offset.identifiable
     assert abs(offset.value) < 0.5 * offset.prior_std
     assert "it stays about where it was before any data" in result.verdict.timing
 

@@ -25,9 +25,9 @@ COMPARED = (
     "t_end",
     "pose",
     "covariance",
-    "growth",
+    "inflation",
     "dof",
-    "usual_nis",
+    "nominal_nis",
     "structure",
     "measured",
     "learned_until",
@@ -78,7 +78,7 @@ def test_the_history_has_a_row_for_each_segment_in_the_order_of_time(input_name:
     assert history is not None
     drive, settings = prepare_run(log(), input_name), Settings()
     rules = replace(settings.rules(), whole_frames=True)
-    segments = collect_windows(drive, settings.window_length(input_name), rules)
+    segments = collect_windows(drive, settings.segment_length(input_name), rules)
     assert found.segments == len(segments) == len(history.t)
     assert np.array_equal(history.t, segments.end)
     assert np.array_equal(history.run, segments.position)

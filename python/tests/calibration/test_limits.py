@@ -64,7 +64,7 @@ def test_limits_are_found_within_three_sigma(limits: _core.CommandLimits, seed: 
     axes = (
         (_core.LimitedAxis.Side,) if limits is SIDES else (_core.LimitedAxis.Speed, _core.LimitedAxis.YawRate)
     )
-    smooth = (_core.LimitKind.Top, _core.LimitKind.Acceleration, _core.LimitKind.Braking)
+    smooth = (_core.LimitKind.Saturation, _core.LimitKind.SlewRateUp, _core.LimitKind.SlewRateDown)
     assert {(axis, kind) for axis in axes for kind in smooth} <= shown
     assert {axis for axis, _ in shown} == set(axes)
     for limit in found:
@@ -80,7 +80,7 @@ def test_a_drive_without_limits_shows_none() -> None:
 
 def test_a_drive_that_is_too_dull_says_what_would_show_a_limit() -> None:
     found = search(SIDES, dull_drive(1, 60.0), 1)
-    assert not {limit.kind for limit in found.found} & {_core.LimitKind.Top, _core.LimitKind.DeadBand}
+    assert not {limit.kind for limit in found.found} & {_core.LimitKind.Saturation, _core.LimitKind.DeadBand}
     text = " ".join(limits_advice(found))
     assert "No top speed shows: command more than 1.0 m/s to see one" in text
     assert "No dead-band shows" in text
@@ -94,7 +94,9 @@ def test_simulated_physics_behind_limits_show_them() -> None:
     rows = np.column_stack((run.wheels.t, run.wheels.v, run.wheels.omega))
     record = _core.WheelRecord(track_of(run.commands), np.ascontiguousarray(rows))
     found = _core.find_limits([record], _core.PriorSettings(), 1.0, _core.LEAST_LIMIT_GAIN, None)
-    tops = [f for f in found.found if f.kind == _core.LimitKind.Top and f.axis == _core.LimitedAxis.Side]
+    tops = [
+        f for f in found.found if f.kind == _core.LimitKind.Saturation and f.axis == _core.LimitedAxis.Side
+    ]
     assert len(tops) == 1
     assert tops[0].value == pytest.approx(1.2, rel=0.05)
 
@@ -102,9 +104,9 @@ def test_simulated_physics_behind_limits_show_them() -> None:
 def test_limits_are_used_where_they_predict_better(model: Model) -> None:
     limits = model.limits
     assert limits is not None
-    assert limits.side.top == pytest.approx(1.5, rel=0.02)
-    assert limits.side.acceleration == pytest.approx(1.2, rel=0.05)
-    assert limits.track == pytest.approx(TRACK, rel=0.05)
+    assert limits.side.saturation == pytest.approx(1.5, rel=0.02)
+    assert limits.side.slew_rate_up == pytest.approx(1.2, rel=0.05)
+    assert limits.wheel_separation == pytest.approx(TRACK, rel=0.05)
 
 
 def test_without_the_cascaded_structure_there_are_none(log: Log) -> None:
@@ -150,10 +152,16 @@ def test_limits_of_commands_reach_the_parameters_of_nav2() -> None:
     def learned(value: float) -> LearnedLimit:
         return LearnedLimit(value=value, std=0.01)
 
-    axis = AxisLimitsSection(dead_band=learned(0.1), top=learned(1.0), acceleration=learned(2.0))
+    axis = AxisLimitsSection(dead_band=learned(0.1), saturation=learned(1.0), slew_rate_up=learned(2.0))
     none = AxisLimitsSection()
     section = LimitsSection(
-        speed=axis, yaw_rate=none, side=none, track=1.0, track_std=0.0, gain_v=1.0, gain_omega=1.0
+        speed=axis,
+        yaw_rate=none,
+        side=none,
+        wheel_separation=1.0,
+        wheel_separation_std=0.0,
+        gain_v=1.0,
+        gain_omega=1.0,
     )
     numbers = LearnedNumbers(make_model(replace(named("edd-2"), commands=True)))
     gains = (numbers.exactly(0.9), numbers.exactly(1.0))
@@ -186,19 +194,22 @@ def test_limits_are_learned_from_commands_and_poses_alone(limits: _core.CommandL
     learned = calibrate(log, input="command").model
     assert learned.limits is not None
     if limits is SIDES:
-        assert learned.limits.track == pytest.approx(TRACK, rel=0.02)
+        assert learned.limits.wheel_separation == pytest.approx(TRACK, rel=0.02)
     for axis, truth in (
         (learned.limits.speed, limits.speed),
         (learned.limits.yaw_rate, limits.yaw_rate),
         (learned.limits.side, limits.side),
     ):
         assert axis.dead_band == pytest.approx(truth.dead_band, abs=0.03)
-        assert axis.top == pytest.approx(truth.top, rel=0.03)
-        assert axis.acceleration == pytest.approx(truth.acceleration, rel=0.05)
-        assert axis.braking == pytest.approx(truth.braking, rel=0.05)
+        assert axis.saturation == pytest.approx(truth.saturation, rel=0.03)
+        assert axis.slew_rate_up == pytest.approx(truth.slew_rate_up, rel=0.05)
+        assert axis.slew_rate_down == pytest.approx(truth.slew_rate_down, rel=0.05)
     known = {p.name: p for p in learned.content.parameters}
     held = 0.025  # s by which the simulated robot is later: it drives each wheel speed until the next
-    for name, truth in (("lag_v", CHAIN.lag_v), ("lag_omega", CHAIN.lag_omega)):
+    for name, truth in (
+        ("time_constant_v", CHAIN.time_constant_v),
+        ("time_constant_omega", CHAIN.time_constant_omega),
+    ):
         assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
     for name, truth in (("delay_v", CHAIN.delay_v + held), ("delay_omega", CHAIN.delay_omega + held)):
         assert abs(known[f"log_{name}"].value - np.log(truth)) < 3.0 * known[f"log_{name}"].std
@@ -225,7 +236,7 @@ def test_limits_that_change_are_found_again() -> None:
     )
     learned = calibrate(driven(commands, changed), input="command").model.limits
     assert learned is not None
-    assert learned.side.top == pytest.approx(0.8, rel=0.1)
+    assert learned.side.saturation == pytest.approx(0.8, rel=0.1)
 
 
 @pytest.mark.parametrize("first", [4, 5])
@@ -237,8 +248,8 @@ def test_limits_that_explain_little_one_by_one_are_found_together(real_log_dir: 
         learner.start_run()
         learner.push(recording_of(run))
     found = {(f.axis, f.kind): f.value for f in learner.find_limits(TRACK).search.found}
-    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Acceleration)] == pytest.approx(2.6, rel=0.1)
-    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.Braking)] == pytest.approx(2.65, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.SlewRateUp)] == pytest.approx(2.6, rel=0.1)
+    assert found[(_core.LimitedAxis.YawRate, _core.LimitKind.SlewRateDown)] == pytest.approx(2.65, rel=0.1)
 
 
 def test_looking_for_limits_changes_nothing_that_is_learned(log: Log) -> None:

@@ -20,14 +20,14 @@ def test_the_table_has_a_key_for_every_option_of_reading() -> None:
 def test_settings_become_options_and_given_ones_go_before() -> None:
     log = {
         "wheel_radius": 0.1,
-        "track": 0.5,
+        "wheel_separation": 0.5,
         "poses": "p.txt",
         "columns": {"t": "time"},
         "left_joints": ["a"],
     }
-    settings = make_settings({"log": log, "window": {"unknown_after": 2.0}})
-    options = settings.log_options(track=0.7, columns={"cmd_v": "vx"})
-    assert (options.wheel_radius, options.track, options.unknown_after) == (0.1, 0.7, 2.0)
+    settings = make_settings({"log": log, "segment": {"unknown_after": 2.0}})
+    options = settings.log_options(wheel_separation=0.7, columns={"cmd_v": "vx"})
+    assert (options.wheel_radius, options.wheel_separation, options.unknown_after) == (0.1, 0.7, 2.0)
     assert options.poses == Path("p.txt")
     assert options.columns == {"t": "time", "cmd_v": "vx"}
     assert options.left_joints == ("a",)

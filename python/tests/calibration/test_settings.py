@@ -25,14 +25,14 @@ lon = ["V", "V*abs(w)"]
 lat = ["w"]
 ang = ["w", "V*w"]
 
-[window]
+[segment]
 length = 1.5
 unknown_after = 0.4
 
 [prior]
 slip_fraction = 0.2
 clock_offset_std = 0.1
-lag = 0.5
+time_constant = 0.5
 delay = 0.2
 
 [filter]
@@ -70,7 +70,7 @@ child_frame = "robot"
 left_joints = ["l"]
 right_joints = ["r"]
 wheel_radius = 0.1
-track = 0.5
+wheel_separation = 0.5
 wheelbase = 1.2
 command_scale = [0.5, 1.0]
 wheel_scale = [0.1, -1.0]
@@ -83,9 +83,9 @@ end = 2.0
 columns = {}
 
 [vehicle]
-track = 1.08
+wheel_separation = 1.08
 
-[mount]
+[sensor_extrinsics]
 x = 1.5
 y = -0.2
 yaw = 0.1
@@ -109,9 +109,9 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     settings = load_settings(written(tmp_path, EVERY_KEY))
     assert key_paths(settings.model_dump(exclude_unset=True)) == key_paths(Settings().model_dump())
     assert settings.rules() == WindowRules(0.4, sensor=(1.5, -0.2, 0.1))
-    assert settings.window_length("wheel") == settings.window_length("command") == 1.5
+    assert settings.segment_length("wheel") == settings.segment_length("command") == 1.5
     core = settings.filter_settings()
-    assert (core.prior.slip_fraction, core.prior.lag, core.prior.delay) == (0.2, 0.5, 0.2)
+    assert (core.prior.slip_fraction, core.prior.time_constant, core.prior.delay) == (0.2, 0.5, 0.2)
     assert core.prior.clock_offset_std == 0.1
     assert core.prior.sensor.vector().tolist() == [1.5, -0.2, 0.1]
     assert core.iekf.huber == 2.0
@@ -119,7 +119,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert core.noise.shape.fraction == [0.04, 0.04, 0.04]
     assert (core.noise.shape.pose_std_xy, core.noise.shape.pose_std_yaw) == (0.01, 0.005)
     assert core.noise.adapt is False
-    assert settings.vehicle.track == 1.08
+    assert settings.vehicle.wheel_separation == 1.08
     log = settings.log_options()
     assert (log.command_topic, log.pose_topic, log.wheel_topic, log.imu_topic) == ("/c", "/p", "none", "/i")
     assert (log.pose_frame, log.child_frame, log.left_joints, log.right_joints) == (
@@ -128,7 +128,12 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
         ("l",),
         ("r",),
     )
-    assert (log.wheel_radius, log.track, log.wheelbase, log.poses) == (0.1, 0.5, 1.2, Path("p.txt"))
+    assert (log.wheel_radius, log.wheel_separation, log.wheelbase, log.poses) == (
+        0.1,
+        0.5,
+        1.2,
+        Path("p.txt"),
+    )
     assert (log.command_scale, log.wheel_scale) == ((0.5, 1.0), (0.1, -1.0))
     assert (log.pose_yaw_offset, log.most_unpacked) == (0.2, 64.0)
     assert (log.pose_clock_offset, log.start, log.end, log.unknown_after) == (1.5, 1.0, 2.0, 0.4)
@@ -139,7 +144,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert not learner.learn_disturbance
     assert (learner.stream.from_commands, learner.stream.segment_length) == (True, 1.5)
     assert (learner.stream.unknown_after, learner.stream.horizons) == (0.4, [1.0, 4.0])
-    assert (learner.hypotheses.dynamics, learner.hypotheses.mount) == (True, True)
+    assert (learner.hypotheses.dynamics, learner.hypotheses.sensor_extrinsics) == (True, True)
     assert not learner.hypotheses.several  # a basis of one's own is learned alone
     auto = core_settings(settings.choosing("auto", None), "command", ()).hypotheses
     assert (auto.cascaded, auto.direct, auto.baseline) == (False, True, False)
@@ -194,20 +199,20 @@ def load_settings_of_nothing() -> Settings:
         ("colour = 1", "colour: there is no such key"),
         ("[filter]\nhubber = 2.0", r"filter\.hubber: there is no such key"),
         ("[filter]\nhuber = nan", r"filter\.huber"),
-        ("[prior]\nlag = -1.0", r"prior\.lag: must be at least 1e-06"),
-        ("[prior]\nlag = inf", r"prior\.lag"),
+        ("[prior]\ntime_constant = -1.0", r"prior\.time_constant: must be at least 1e-06"),
+        ("[prior]\ntime_constant = inf", r"prior\.time_constant"),
         ("[noise]\npsd_time = [1.0]", r"noise\.psd_time"),
         ("[noise]\npsd_motion = [-1.0, 0.0, 0.0]", r"noise\.psd_motion"),
         ("[noise]\nfraction = [nan, 0.0, 0.0]", r"noise\.fraction"),
         ("[auto]\nstructures = []", r"'joint' must be among the structures"),
         ('[auto]\nstructures = ["joint", "other"]', r"auto\.structures"),
         ("[auto]\nbases = []", r"auto\.bases"),
-        ("[window]\nlength = 0.0", r"window\.length"),
+        ("[segment]\nlength = 0.0", r"segment\.length"),
         ("[noise]\npose_std_yaw = 1e12", r"noise\.pose_std_yaw: must be at most 1e\+06"),
         ("[noise]\nfraction = [1e300, 0.0, 0.0]", r"noise\.fraction\.0: must be at most 1e\+06"),
         ("[prior]\nclock_offset_std = 1e300", r"prior\.clock_offset_std: must be at most 100"),
         ("[prior]\nslip_fraction = 1e-300", r"prior\.slip_fraction: must be at least 1e-09"),
-        ("[vehicle]\ntrack = 1000000000", r"vehicle\.track: must be at most 100"),
+        ("[vehicle]\ntrack = 1000000000", r"vehicle\.wheel_separation: must be at most 100"),
         ("basis = 3", "basis: must be text, not 3"),
         ("basis", r"not a TOML file: .*write lines like basis = \"auto\""),
         ("basis = 'a'\nbasis = 'b'", "not a TOML file"),
@@ -264,3 +269,13 @@ def test_third_partys_basis_is_learned_by_its_terms_alone() -> None:
     averaged = make_settings({"terms": terms, "auto": {"bases": ["none", "edd-2", "custom"]}})
     weights = calibrate(log, input="wheel", settings=averaged).model.content.weights
     assert weights["custom"] > 0.9
+
+
+def test_keys_of_the_version_before_are_read_and_said() -> None:
+    old = {"mount": {"x": 0.3}, "window": {"length": 1.9}, "prior": {"lag": 0.2}, "vehicle": {"track": 0.5}}
+    with pytest.warns(FutureWarning, match=r"mount is sensor_extrinsics now, window is segment now"):
+        settings = make_settings(old)
+    assert settings.sensor_extrinsics.x == 0.3
+    assert settings.segment_length("wheel") == 1.9
+    assert settings.prior.time_constant == 0.2
+    assert settings.vehicle.wheel_separation == 0.5

@@ -19,7 +19,7 @@ RANDOM_WALK = {"drift": "random-walk", "length": 100.0}
 
 
 def changing_log() -> Log:
-    """Two drives of two minutes, on one ground and on another."""
+    """Two drives of two minutes, on one terrain and on another."""
     basis = _core.named_basis("edd-2")
     logs = [simulated_log(Drive(seed=k, basis=basis, alpha=slip)) for k, slip in ((1, BEFORE), (2, AFTER))]
     return Log(runs=tuple(replace(log.runs[0], name=f"run {k}") for k, log in enumerate(logs)))

@@ -30,9 +30,9 @@ def predictions(measured: np.ndarray, pose: np.ndarray, covariance: np.ndarray) 
         t_end=t + 1.0,
         pose=pose,
         covariance=covariance,
-        growth=np.ones(size),
+        inflation=np.ones(size),
         dof=np.full(size, MOST_DOF),
-        usual_nis=np.full(size, 3.0),
+        nominal_nis=np.full(size, 3.0),
         measured=measured,
         learned_until=t,
         structure=np.zeros(size, np.int64),
@@ -139,8 +139,8 @@ def test_gaussian_residuals_are_covered_as_often_as_stated() -> None:
     covariance = np.tile(root @ root.T, (count, 1, 1))
     residuals = rng.standard_normal((count, 3)) @ root.T
     p = predictions(residuals, np.zeros((count, 3)), covariance)
-    for share, stated in zip(normal_coverage(p.stated_nis), (0.5, 0.9, 0.95), strict=True):
-        assert share == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
+    for fraction, stated in zip(normal_coverage(p.reported_nis), (0.5, 0.9, 0.95), strict=True):
+        assert fraction == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
     low, high = nis_band(count)
     assert low < p.nis.mean() < high
 
@@ -151,14 +151,14 @@ def test_residuals_of_a_t_are_covered_as_often_as_it_states() -> None:
     spread = np.sqrt((dof - 2.0) / rng.chisquare(dof, (count, 1))) * np.array([0.2, 0.3, 0.1])
     residuals = rng.standard_normal((count, 3)) * spread
     p = replace(predictions(residuals, np.zeros((count, 3)), covariance), dof=np.full(count, dof))
-    for share, stated in zip(coverage(p.inside), (0.5, 0.9, 0.95), strict=True):
-        assert share == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
+    for fraction, stated in zip(coverage(p.inside), (0.5, 0.9, 0.95), strict=True):
+        assert fraction == pytest.approx(stated, abs=3.0 * np.sqrt(stated * (1.0 - stated) / count))
     assert normal_coverage(p.nis)[0] > 0.6, "a normal distribution of the same covariance is too wide inside"
 
 
-def test_stated_nis_is_that_of_the_covariance_without_growth() -> None:
+def test_reported_nis_is_that_of_the_covariance_without_growth() -> None:
     p = predictions(np.full((3, 3), 0.1), np.zeros((3, 3)), np.tile(np.eye(3), (3, 1, 1)))
-    assert replace(p, growth=np.full(3, 4.0)).stated_nis == pytest.approx(4.0 * p.nis)
+    assert replace(p, inflation=np.full(3, 4.0)).reported_nis == pytest.approx(4.0 * p.nis)
 
 
 @pytest.mark.parametrize("count", [3, 10, 100])

@@ -34,7 +34,7 @@ def test_drive_that_slips_gives_a_good_verdict_with_its_figures() -> None:
     held_out = result.model.content.verdict.held_out
     assert result.verdict.good
     assert held_out is not None
-    assert held_out.position < 0.2 * held_out.plain_position
+    assert held_out.position < 0.2 * held_out.baseline_position
     figures = f"mean error after 5 s is {held_out.position:.3g} m and {held_out.heading:.3g} rad, "
     assert figures in result.verdict.sentence
     assert result.model.content.verdict.sentence == result.verdict.sentence
@@ -43,20 +43,20 @@ def test_drive_that_slips_gives_a_good_verdict_with_its_figures() -> None:
 def test_straight_drive_at_constant_speed_names_what_it_does_not_determine() -> None:
     drive = Drive(seconds=60.0, basis=SLIP, alpha=(-0.1, -0.3), speeds=(1.0, 1.0), yaw_rates=(0.0, 0.0))
     result = verdict_of(drive, "full-linear-6")
-    assert set(result.verdict.undetermined) >= {"lon.w", "lat.w", "ang.w", "clock_offset"}
-    assert not set(result.verdict.undetermined) & {"lon.V", "lat.V", "ang.V"}
+    assert set(result.verdict.not_identifiable) >= {"lon.w", "lat.w", "ang.w", "clock_offset"}
+    assert not set(result.verdict.not_identifiable) & {"lon.V", "lat.V", "ang.V"}
     advice = " ".join(result.verdict.advice)
     assert "Turn both ways at several yaw rates, in place too (for lon.w, lat.w, ang.w)." in advice
     assert "steady driving cannot show a clock offset (for clock_offset)" in advice
-    stated = {p.name for p in result.model.content.parameters if not p.determined}
-    assert stated == set(result.verdict.undetermined)
+    stated = {p.name for p in result.model.content.parameters if not p.identifiable}
+    assert stated == set(result.verdict.not_identifiable)
     assert result.model.mean[1] == pytest.approx(0.0, abs=0.05)  # what is not determined stays at the prior
 
 
 def test_commands_that_never_change_do_not_determine_lag_and_delay() -> None:
     drive = Drive(seconds=60.0, speeds=(1.0, 1.0), yaw_rates=(0.3, 0.3), lag=0.3)
     result = verdict_of(drive, "edd-2", "command")
-    assert "log_delay_omega" in result.verdict.undetermined
+    assert "log_delay_omega" in result.verdict.not_identifiable
     assert any("Change the yaw rate in steps" in text for text in result.verdict.advice)
 
 
@@ -66,9 +66,9 @@ def test_perfect_robot_under_noise_is_not_said_to_be_improved(seed: int) -> None
     result = verdict_of(drive)
     held_out = result.model.content.verdict.held_out
     assert held_out is not None
-    assert held_out.position < 1.15 * held_out.plain_position + 0.01
+    assert held_out.position < 1.15 * held_out.baseline_position + 0.01
     if result.verdict.good:
-        assert held_out.position * held_out.heading < held_out.plain_position * held_out.plain_heading
+        assert held_out.position * held_out.heading < held_out.baseline_position * held_out.baseline_heading
     else:
         assert "does not beat the kinematic baseline: " in result.verdict.sentence
 
@@ -90,14 +90,14 @@ def test_longest_horizon_with_enough_windows_is_judged() -> None:
     result = verdict_of(Drive(seconds=20.0, basis=SLIP, alpha=(-0.1, -0.4)))
     held_out = result.model.content.verdict.held_out
     assert held_out is not None
-    assert (held_out.horizon, held_out.windows) == (2.0, 5)
-    assert held_out.windows >= FEWEST_WINDOWS
-    assert set(result.model.content.noise.tails) == {1.0, 2.0, 5.0}
+    assert (held_out.horizon, held_out.segments) == (2.0, 5)
+    assert held_out.segments >= FEWEST_WINDOWS
+    assert set(result.model.content.noise.student_t) == {1.0, 2.0, 5.0}
 
 
 def test_every_parameter_of_every_basis_has_a_drive_that_determines_it() -> None:
     for name in _core.basis_names():
-        model = _core.MotionModel.with_response(_core.named_basis(name), True).with_mount(True)
+        model = _core.MotionModel.with_response(_core.named_basis(name), True).with_extrinsics(True)
         for info in model.parameters:
             advice = drives_for((info.name,))
             assert len(advice) == 1

@@ -87,7 +87,7 @@ def _slipping() -> Columns:
 
 @pytest.fixture
 def columns(_slipping: Columns) -> Columns:
-    """A minute and a half of a robot that turns 30 % less than it is told; to be damaged."""
+    """A minute and a half of a robot that turns 30 % less than it is commanded; to be damaged."""
     return {name: values.copy() for name, values in _slipping.items()}
 
 

@@ -24,7 +24,7 @@ COMMANDS = (
 
 @pytest.fixture
 def dull_csv(folder: Path) -> Path:
-    """A robot that does exactly what it is told, so that there is nothing to learn."""
+    """A robot that does exactly what it is commanded, so that there is nothing to learn."""
     drive = Drive(seconds=60.0, slip_psd=(0.0, 0.0, 0.0), pose_std=(0.0, 0.0))
     return write_csv(folder / "dull.csv", make_columns(drive))
 
@@ -160,7 +160,7 @@ def test_evaluate_shows_every_method_at_every_horizon(slipwise: Slipwise, drive_
     arguments = (
         "--methods",
         "vendor,edd-2,batch,auto",
-        "--vendor-track-multiplier",
+        "--vendor-wheel-separation-multiplier",
         "1.4",
         "--horizons",
         "1,2",
@@ -219,7 +219,7 @@ def test_several_logs_are_one(slipwise: Slipwise, drive_csv: Path, columns: Colu
 def test_inspect_says_what_is_in_a_log(slipwise: Slipwise, drive_csv: Path) -> None:
     result = slipwise("inspect", drive_csv)
     assert (result.code, result.err) == (0, "")
-    for part in ("poses", "rate [Hz]", "clock_offset", "omega [rad/s]", "V [m/s]", "determined: "):
+    for part in ("poses", "rate [Hz]", "clock_offset", "omega [rad/s]", "V [m/s]", "identifiable: "):
         assert part in result.out
 
 

@@ -16,7 +16,7 @@ pytest.importorskip("mujoco")
 def test_the_demo_ends_with_its_table_and_paths(slipwise: Callable[..., Result], folder: Path) -> None:
     result = slipwise("demo", "--output", "shown", "--duration", "90")
     assert (result.code, result.err) == (0, "")
-    for method in ("none ", "vendor, track x 1.875", "edd-2", "slipwise"):
+    for method in ("none ", "vendor, separation x 1.875", "edd-2", "slipwise"):
         assert f"\n  {method}" in result.out
     for head in ("position [m], 2 s", "heading [deg], 2 s", "position [m], 5 s", "heading [deg], 5 s"):
         assert head in result.out

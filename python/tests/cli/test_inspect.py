@@ -43,7 +43,7 @@ def two_robots(bag: Bag) -> Bag:
 
 UNCLEAR = {
     "--wheelbase": car,
-    "--wheel-radius and --track": joints_alone,
+    "--wheel-radius and --wheel-separation": joints_alone,
     "--pose-topic, or --poses FILE": commands_alone,
     "--command-topic one of": two_robots,
 }

@@ -16,14 +16,14 @@ pytest.importorskip("mujoco")
 
 
 @pytest.fixture(scope="module")
-def told() -> list[tuple[str, float]]:
+def commanded() -> list[tuple[str, float]]:
     return []
 
 
 @pytest.fixture(scope="module")
-def result(tmp_path_factory: pytest.TempPathFactory, told: list[tuple[str, float]]) -> DemoResult:
+def result(tmp_path_factory: pytest.TempPathFactory, commanded: list[tuple[str, float]]) -> DemoResult:
     folder = tmp_path_factory.mktemp("demo")
-    return run_demo(folder, DemoOptions(duration=120.0), progress=lambda *now: told.append(now))
+    return run_demo(folder, DemoOptions(duration=120.0), progress=lambda *now: commanded.append(now))
 
 
 def test_slipwise_beats_doing_nothing_and_the_vendor(result: DemoResult) -> None:
@@ -43,10 +43,12 @@ def test_the_files_are_what_the_result_says(result: DemoResult) -> None:
     assert "simulated 1000 kg" in result.report.read_text()
 
 
-def test_progress_only_grows_and_reaches_the_end(result: DemoResult, told: list[tuple[str, float]]) -> None:
-    shares = [share for _, share in told]
-    assert shares == sorted(shares)
-    assert shares[-1] == 1.0
+def test_progress_only_grows_and_reaches_the_end(
+    result: DemoResult, commanded: list[tuple[str, float]]
+) -> None:
+    fractions = [fraction for _, fraction in commanded]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
 
 
 def test_the_same_seed_gives_the_same_bag_and_scores(result: DemoResult, tmp_path: Path) -> None:

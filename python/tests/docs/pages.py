@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the documents share: the pages, and the blocks of code in them."""
+"""What the tests of the documents fraction: the pages, and the blocks of code in them."""
 
 from __future__ import annotations
 

@@ -19,8 +19,8 @@ def newest(name: str) -> Any:
 
 def test_how_soon_a_change_of_ground_is_found_is_as_measured() -> None:
     page = (ROOT / "docs/derivations.md").read_text(encoding="utf-8")
-    section = page[page.index("## 17. Change of ground") : page.index("## 18.")]
-    figures = newest("ground_change")
+    section = page[page.index("## 17. Change of terrain") : page.index("## 18.")]
+    figures = newest("terrain_change")
     rows = table_rows(section, "| yaw slip times |")
     assert [row[0] for row in rows] == ["1.5", "1.25"]
     for factor, *found in rows:

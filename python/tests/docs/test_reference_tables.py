@@ -9,7 +9,7 @@ from python.tests.docs.pages import ROOT, blocks, code_words, table_rows
 
 from slipwise import _core, student
 from slipwise.calibration import consistency, identifiability, judgement, statistics
-from slipwise.calibration.settings import WINDOW_SECONDS, Settings, make_settings
+from slipwise.calibration.settings import SEGMENT_SECONDS, Settings, make_settings
 from slipwise.evaluation.prediction_file import COLUMNS
 from slipwise.evaluation.result import Score
 from slipwise.logs.tidy_columns import NUMERIC, TEXT
@@ -56,7 +56,7 @@ def test_the_settings_page_lists_every_key_with_its_default() -> None:
     assert keys(shown) | without_default(block) == every_key, "say in docs/settings.md what is new"
     defaults = re.search(r"without it ([\d.]+) from wheel speeds and ([\d.]+) from commands", block)
     assert defaults is not None
-    assert (float(defaults[1]), float(defaults[2])) == (WINDOW_SECONDS["wheel"], WINDOW_SECONDS["command"])
+    assert (float(defaults[1]), float(defaults[2])) == (SEGMENT_SECONDS["wheel"], SEGMENT_SECONDS["command"])
 
 
 def test_the_settings_blocks_of_other_pages_are_valid() -> None:
@@ -143,7 +143,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.memory:g})" in derivations
     assert f"{noise.largest:g} s_i" in derivations
     weighting = average.weighting
-    assert f"η = {weighting.learning_rate:g}, share α_n = min({weighting.share:g}, 1/n)" in derivations
+    assert f"η = {weighting.learning_rate:g}, fraction α_n = min({weighting.fraction:g}, 1/n)" in derivations
     assert f"has π = {average.largest_basis:g}" in derivations
     assert f"Above {iekf.gate:g} the window is left out. Above {iekf.huber:g}²" in derivations
     assert f"by less than {iekf.tolerance:g}" in derivations
@@ -151,7 +151,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     assert f"above log odds of {change.threshold:g}" in derivations
     assert f"after {change.warm_up} windows in which" in derivations
     assert f"`longest` = {change.longest} windows ago" in derivations
-    assert f"a share f = {change.forget:g} of their prior variance" in derivations
+    assert f"a fraction f = {change.forget:g} of their prior variance" in derivations
     assert f"compete for {change.trial} windows" in derivations
 
 
@@ -166,13 +166,13 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
     assert f"ν lies between {student.LEAST_DOF:g} and {student.MOST_DOF:g}" in flowing
     prior = _core.StudentCalibration().fitted()
     assert f"with no window at all, ν is about {prior.dof:.1f}" in flowing
-    limits = f"prior: growth {prior.inflation:.1f}, dof {prior.dof:.1f}"
+    limits = f"prior: inflation {prior.inflation:.1f}, dof {prior.dof:.1f}"
     assert limits in " ".join(read("statistics.md").split())
     assert f"{student.ellipse_squared(0.95, 10.0):.1f} for 95 % and dof = 10" in " ".join(
         read("statistics.md").split()
     )
     assert f"from {statistics.RESAMPLES} samples of moving blocks" in derivations
-    assert f"undetermined above a ratio of {identifiability.UNDETERMINED_RATIO:g}" in " ".join(
+    assert f"not_identifiable above a ratio of {identifiability.UNIDENTIFIABLE_RATIO:g}" in " ".join(
         derivations.split()
     )
     pages = " ".join(read("statistics.md").split())

@@ -86,12 +86,12 @@ def spoilt_inputs(inputs: Inputs, after: float) -> Inputs:
 
 def chosen(predictions: Predictions) -> list[int]:
     """Five predictions, from the first to the last."""
-    return sorted({round(share * (len(predictions) - 1)) for share in (0.0, 0.25, 0.5, 0.75, 1.0)})
+    return sorted({round(fraction * (len(predictions) - 1)) for fraction in (0.0, 0.25, 0.5, 0.75, 1.0)})
 
 
 def same(one: Predictions, i: int, other: Predictions, j: int) -> None:
     """Both hold the same prediction, to the last bit."""
-    for name in ("t_start", "t_end", "pose", "covariance", "growth", "dof", "learned_until"):
+    for name in ("t_start", "t_end", "pose", "covariance", "inflation", "dof", "learned_until"):
         a, b = np.asarray(getattr(one, name)[i]), np.asarray(getattr(other, name)[j])
         assert a.tobytes() == b.tobytes(), (one.method, name, float(one.t_start[i]))
 
@@ -104,8 +104,8 @@ def by_name(evaluation: Evaluation) -> dict[tuple[str, float], Predictions]:
 def test_log_cut_off_anywhere_gives_the_same_predictions(log: Log, input_name: str) -> None:
     whole = evaluate(log, input=input_name, options=OPTIONS)
     first, last = whole.predictions[0].t_start[0], whole.predictions[0].t_end[-1]
-    for share in (0.3, 0.55, 0.8):
-        until = float(first + share * (last - first))
+    for fraction in (0.3, 0.55, 0.8):
+        until = float(first + fraction * (last - first))
         part = evaluate(cut_off(log, until), input=input_name, options=OPTIONS)
         for key, here in by_name(part).items():
             there = by_name(whole)[key]

@@ -29,7 +29,7 @@ def log() -> Log:
 @pytest.fixture(scope="module")
 def evaluation(log: Log) -> Evaluation:
     options = EvaluationOptions(
-        methods=("none", "vendor", "edd-2", "auto"), vendor_track_multiplier=1.0 / 0.6
+        methods=("none", "vendor", "edd-2", "auto"), vendor_wheel_separation_multiplier=1.0 / 0.6
     )
     return evaluate(log, input="wheel", options=options)
 
@@ -53,7 +53,7 @@ def test_scores_are_those_of_the_predictions_in_the_second_half(evaluation: Eval
         assert score.nis == pytest.approx(np.mean(nis))
 
 
-def test_ratios_are_relative_to_the_plain_model_and_to_the_best_rival(evaluation: Evaluation) -> None:
+def test_ratios_are_relative_to_the_baseline_model_and_to_the_best_rival(evaluation: Evaluation) -> None:
     scores = {m: evaluation.score(m, 2.0) for m in evaluation.methods}
     plain = scores["none"].position.mean
     assert scores["none"].position_ratio[0] == pytest.approx(1.0)
@@ -67,7 +67,7 @@ def test_vendor_multiplier_that_is_true_leaves_no_heading_error(evaluation: Eval
     assert evaluation.score("none", 5.0).heading.mean > 0.2
 
 
-def test_learned_methods_beat_the_plain_model_far(evaluation: Evaluation) -> None:
+def test_learned_methods_beat_the_baseline_model_far(evaluation: Evaluation) -> None:
     for method in ("edd-2", "auto"):
         assert evaluation.score(method, 5.0).position_ratio[2] < 0.3
         assert evaluation.score(method, 5.0).heading_ratio[2] < 0.3
@@ -108,9 +108,12 @@ def test_single_estimators_are_methods_by_name(log: Log) -> None:
     ("options", "message"),
     [
         (EvaluationOptions(methods=("none", "magic")), "unknown method 'magic' .*known are none, vendor"),
-        (EvaluationOptions(methods=("vendor",)), "needs a multiplier .*--vendor-track-multiplier"),
-        (EvaluationOptions(methods=("vendor",), vendor_track_multiplier=0.0), "must be positive"),
-        (EvaluationOptions(methods=("vendor",), vendor_track_multiplier=float("nan")), "must be positive"),
+        (EvaluationOptions(methods=("vendor",)), "needs a multiplier .*--vendor-wheel-separation-multiplier"),
+        (EvaluationOptions(methods=("vendor",), vendor_wheel_separation_multiplier=0.0), "must be positive"),
+        (
+            EvaluationOptions(methods=("vendor",), vendor_wheel_separation_multiplier=float("nan")),
+            "must be positive",
+        ),
         (EvaluationOptions(methods=("model",)), "needs a model file .*--model FILE"),
         (EvaluationOptions(horizons=()), "horizons must be positive seconds"),
         (EvaluationOptions(horizons=(1.0, -2.0)), "horizons must be positive seconds"),

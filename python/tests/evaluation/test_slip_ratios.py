@@ -30,7 +30,7 @@ ALPHA = (
     *(-TAN * (1 - MEAN), TAN * TRACK / 2 * HALF),
     *(-HALF / (TRACK / 2), -MEAN),
 )
-SETTINGS = make_settings({"vehicle": {"track": TRACK}})
+SETTINGS = make_settings({"vehicle": {"wheel_separation": TRACK}})
 
 
 @cache
@@ -97,7 +97,9 @@ def test_poses_within_the_embargo_do_not_reach_a_prediction(method: str) -> None
 
 @pytest.mark.parametrize("method", RIVALS)
 def test_commands_are_refused_with_advice(method: str) -> None:
-    with pytest.raises(SettingsError, match=f"{method} learns slip between wheels and ground.*--input wheel"):
+    with pytest.raises(
+        SettingsError, match=f"{method} learns slip between wheels and terrain.*--input wheel"
+    ):
         evaluate(crooked(), input="command", options=EvaluationOptions(methods=(method,)))
 
 

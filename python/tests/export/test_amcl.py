@@ -99,7 +99,7 @@ def test_file_holds_the_alphas_and_those_of_the_other_sample_model_in_a_comment(
 
 
 def test_learned_growth_makes_the_alphas_grow() -> None:
-    grown = make_model(replace(ROBOT, growth={1.0: 2.0, 4.0: 8.0}))
+    grown = make_model(replace(ROBOT, inflation={1.0: 2.0, 4.0: 8.0}))
     factor = np.exp(np.interp(HORIZON, [1.0, 4.0], np.log([2.0, 8.0])))
     assert alphas(grown, HORIZON).omni[:4] == pytest.approx(
         [factor * alpha for alpha in alphas(make_model(ROBOT), HORIZON).omni[:4]]

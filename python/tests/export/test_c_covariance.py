@@ -40,11 +40,11 @@ int main(void) {
   while (scanf("%lf", &end) == 1) {
     slipwise_window window = {2, 0, 0, 0, 0};
     slipwise_pose pose = {0, 0, 0};
-    slipwise_real c[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, growth, dof;
+    slipwise_real c[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, inflation, dof;
     int status, i;
     window.end = (slipwise_real)end;
     status = slipwise_predict_covariance(&commands, &window, &pose, 0, c);
-    slipwise_tail(window.end - window.start, &growth, &dof);
+    slipwise_tail(window.end - window.start, &inflation, &dof);
     printf("%d %.17g %.17g %.17g", status, (double)pose.x, (double)pose.y, (double)pose.yaw);
     for (i = 0; i < 9; ++i) {
       printf(" %.17g", (double)c[i / 3][i % 3]);
@@ -73,11 +73,11 @@ def run(model: Model, folder: Path, number: str, commands: np.ndarray, ends: lis
 
 
 def with_tails(model: Model) -> Model:
-    """The model with noise of all kinds, and tails that differ between horizons."""
+    """The model with noise of all kinds, and students that differ between horizons."""
     noise = model.content.noise.model_dump()
     noise |= {
         "scale": [1.5, 0.7, 2.0],
-        "tails": {1.0: {"growth": 1.4, "dof": 5.0}, 5.0: {"growth": 2.6, "dof": 3.0}},
+        "student_t": {1.0: {"inflation": 1.4, "dof": 5.0}, 5.0: {"inflation": 2.6, "dof": 3.0}},
     }
     content = model.content.model_copy(update={"noise": type(model.content.noise).model_validate(noise)})
     return Model(content)

@@ -132,21 +132,21 @@ def commands_of(seed: int, *, seconds: float = 12.0) -> Floats:
 
 def expected(model: Model, commands: Floats, window: Window) -> Floats:
     t, v, omega = (np.ascontiguousarray(column) for column in commands.T)
-    given = _core.InputTrack(t, v, np.zeros_like(v), omega)
+    given = _core.InputHistory(t, v, np.zeros_like(v), omega)
     drive = window.drive
-    track = (
+    history = (
         model.driven(given)
         if drive is None
         else model.driven_from(given, window.start, _core.BodyTwist(drive[0], 0.0, drive[1]))
     )
     segment = _core.Segment(window.start, window.end, _core.Pose2(0.0, 0.0, 0.0), None, window.gx, window.gy)
     if drive is not None:
-        held = _core.InputTrack(
+        held = _core.InputHistory(
             *(np.array([value]) for value in (window.start - 10.0, drive[0], 0.0, drive[1]))
         )
         twist = _core.BodyTwist(drive[0], 0.0, drive[1])
         segment = segment.with_measured_actuator(held, window.start, twist)
-    path = _core.integrate_segment(model.motion, model.mean, track, segment, _core.Integrator.Exact)
+    path = _core.integrate_segment(model.motion, model.mean, history, segment, _core.Integrator.Exact)
     return np.asarray(path.poses[-1])
 
 
@@ -209,12 +209,12 @@ def test_header_has_delays_without_an_actuator_model(compiled: Compile, delays: 
 
 
 @pytest.mark.parametrize("lanes", [(), ("speed", "yaw_rate"), ("side",)], ids=["free", "ramps", "sides"])
-@pytest.mark.parametrize("share", [0.0, 0.14, 0.8])
+@pytest.mark.parametrize("fraction", [0.0, 0.14, 0.8])
 def test_header_goes_from_a_measured_speed_to_the_command_and_not_beyond(
-    compiled: Compile, share: float, lanes: tuple[str, ...]
+    compiled: Compile, fraction: float, lanes: tuple[str, ...]
 ) -> None:
-    rates = {lane: {"acceleration": 0.8, "braking": 1.7} for lane in lanes}
-    values = {"slow_share_v": share, "gain_v": 0.8, "log_slow_lag_v": 1.0}
+    rates = {lane: {"slew_rate_up": 0.8, "slew_rate_down": 1.7} for lane in lanes}
+    values = {"slow_fraction_v": fraction, "gain_v": 0.8, "log_slow_time_constant_v": 1.0}
     model = make_model(Made(_core.Basis("none", [], [], []), values, response=True, limits=rates or None))
     program = compiled(model, "double")
     commands = np.array([(t, 1.0, 0.0) for t in np.arange(0.0, 6.0, 0.25)])
@@ -251,7 +251,9 @@ def test_header_puts_commands_behind_limits(compiled: Compile, lanes: str, numbe
 
 @pytest.mark.parametrize("number", ["float", "double"])
 def test_header_agrees_with_predict_along_a_path(compiled: Compile, number: str) -> None:
-    made = named("odd-even-10", lon__V=-0.08, lat__w=0.07, ang__w=-0.5, ang__V=-0.04, log_lag_v=-2.06)
+    made = named(
+        "odd-even-10", lon__V=-0.08, lat__w=0.07, ang__w=-0.5, ang__V=-0.04, log_time_constant_v=-2.06
+    )
     model = make_model(replace(made, commands=True))
     commands = commands_of(seed=11)
     path = predict(model, commands, horizon=5.0, start=2.0)
@@ -325,7 +327,7 @@ def test_constants_are_those_of_the_model_to_the_last_bit() -> None:
 
     actuator = model.motion.actuator(model.mean)
     assert [number("P0"), number("P1")] == [-0.1, 1.0 / 3.0]
-    assert number("LAG_V") == actuator.lag_v
+    assert number("LAG_V") == actuator.time_constant_v
     assert number("DELAY_OMEGA") == actuator.delay_omega
     assert number("CLOCK_OFFSET") == 0.07
     assert [number("SPEED_MIN"), number("SPEED_MAX")] == model.content.range.speed
@@ -333,6 +335,6 @@ def test_constants_are_those_of_the_model_to_the_last_bit() -> None:
 
 def test_a_chain_that_the_header_does_not_know_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     model = make_model(replace(named("edd-2"), commands=True))
-    monkeypatch.setattr("slipwise.export.actuator._KNOWN", {"log_lag_v"})
+    monkeypatch.setattr("slipwise.export.actuator._KNOWN", {"log_time_constant_v"})
     with pytest.raises(ModelError, match=r"the actuator model has log_delay_omega, .* cannot be exported"):
         c_header(model, [])

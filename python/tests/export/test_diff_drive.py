@@ -117,7 +117,7 @@ def test_a_perfect_robot_has_multipliers_of_one_within_three_sigma() -> None:
 
 def test_twist_covariance_gives_the_models_covariance_after_the_horizon() -> None:
     """Messages with this variance, each as new, spread as much after the horizon as `predict` says."""
-    made = replace(EDD_2, speed=(-1.0, 1.0), yaw_rate=(-1.0, 1.0), growth={1.0: 1.5}, fraction=0.1)
+    made = replace(EDD_2, speed=(-1.0, 1.0), yaw_rate=(-1.0, 1.0), inflation={1.0: 1.5}, fraction=0.1)
     parameters = written(make_model(made), ExportOptions(horizon=2.0))
     motion = np.array([0.5 + 0.3 * 0.5, 0.5 + 0.3 * 0.5, 0.5 + 0.5 / 5.0])  # derivations.md, section 5
     lasting = np.square(0.1 * motion) + np.square([0.01 * 0.5, 0.0, 0.01 * 0.5])  # slip, and parameters

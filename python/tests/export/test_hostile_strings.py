@@ -45,9 +45,9 @@ def full(made_from: Any) -> dict[str, Any]:
     content["weights"] = {"edd-2": 1.0}
     content["provenance"]["settings"] = {"basis": "edd-2", "nested": {"key": "text"}}
     content["verdict"] |= {
-        "undetermined": ["lon.V"],
+        "not_identifiable": ["lon.V"],
         "advice": ["Drive on."],
-        "look_alikes": [{"first": "lon.V", "second": "ang.w", "correlation": 0.95}],
+        "confounded": [{"first": "lon.V", "second": "ang.w", "correlation": 0.95}],
         "timing": "The delays are those from commands to poses.",
     }
     return content

@@ -29,7 +29,7 @@ KILTED = ExportOptions(nav2="kilted")
 def changed(made: Made, parameters: Mapping[str, Mapping[str, Any]], *, windows: int = 600) -> Model:
     """Return a model in which some parameters are known worse, independently of the others."""
     content = make_model(made).content.model_dump(mode="json")
-    content["provenance"]["learned_windows"] = windows
+    content["provenance"]["learned_segments"] = windows
     for i, parameter in enumerate(content["parameters"]):
         parameter.update(parameters.get(parameter["name"], {}))
         content["covariance"][i][i] = parameter["std"] ** 2
@@ -43,7 +43,7 @@ def exported(model: Model, target: str, options: ExportOptions | None = None) ->
 def test_the_standard_deviation_is_that_of_drawn_parameters() -> None:
     model = changed(
         replace(COMMAND, response=True),
-        {"log_lag_v": {"std": 0.1}, "slow_share_v": {"std": 0.05}, "gain_v": {"std": 0.04}},
+        {"log_time_constant_v": {"std": 0.1}, "slow_fraction_v": {"std": 0.05}, "gain_v": {"std": 0.04}},
     )
     numbers, rng = LearnedNumbers(model), np.random.default_rng(3)
     number = actuator_of(model).v.gain * 1.5 / actuator_of(model).v.mean_delay
@@ -68,7 +68,7 @@ def test_three_tenths_of_a_number_is_the_most_it_may_be_unsure(std: float, writt
 
 
 def test_what_the_log_says_little_about_is_not_written_however_narrow_its_prior_is() -> None:
-    model = changed(WHEEL, {"lon.V": {"std": 0.028, "prior_std": 0.03, "determined": False}})
+    model = changed(WHEEL, {"lon.V": {"std": 0.028, "prior_std": 0.03, "identifiable": False}})
     file = exported(model, "diff-drive")
     assert {"left_wheel_radius_multiplier", "right_wheel_radius_multiplier"} <= set(file.kept)
     assert "the log does not determine it" in file.kept["left_wheel_radius_multiplier"]
@@ -77,9 +77,11 @@ def test_what_the_log_says_little_about_is_not_written_however_narrow_its_prior_
 
 def test_what_is_known_together_is_written_though_its_parts_are_not() -> None:
     """Lag and delay trade places: each is known badly, their sum well."""
-    content = changed(COMMAND, {"log_lag_v": {"std": 0.4}, "log_delay_v": {"std": 0.6}}).content
+    content = changed(COMMAND, {"log_time_constant_v": {"std": 0.4}, "log_delay_v": {"std": 0.6}}).content
     dump = content.model_dump(mode="json")
-    lag, delay = ([p.name for p in content.parameters].index(name) for name in ("log_lag_v", "log_delay_v"))
+    lag, delay = (
+        [p.name for p in content.parameters].index(name) for name in ("log_time_constant_v", "log_delay_v")
+    )
     dump["covariance"][lag][delay] = dump["covariance"][delay][lag] = -0.99 * 0.4 * 0.6
     together = Model(ModelFile.model_validate(dump))
     assert exported(together, "mppi").values["FollowPath.model_delay_vx"] == pytest.approx(0.5)
@@ -87,7 +89,7 @@ def test_what_is_known_together_is_written_though_its_parts_are_not() -> None:
 
 
 BADLY = {name: {"std": 0.5} for name in ("lon.V", "ang.w")}
-BADLY |= {name: {"std": 2.0} for name in ("log_lag_v", "log_lag_omega")}
+BADLY |= {name: {"std": 2.0} for name in ("log_time_constant_v", "log_time_constant_omega")}
 EVERYTHING = (
     ("diff-drive", WHEEL, SEPARATED),
     ("diff-drive", WHEEL, None),
@@ -150,7 +152,7 @@ def test_amcl_gets_no_alphas_from_ten_windows() -> None:
 
 
 def test_an_alpha_that_is_the_prior_of_a_parameter_is_no_alpha() -> None:
-    model = changed(WHEEL, {"ang.w": {"std": 0.29, "determined": False}})
+    model = changed(WHEEL, {"ang.w": {"std": 0.29, "identifiable": False}})
     file = exported(model, "amcl")
     assert "the log does not determine it" in file.kept["alpha1"]
     assert "alpha3" in file.values
@@ -158,7 +160,7 @@ def test_an_alpha_that_is_the_prior_of_a_parameter_is_no_alpha() -> None:
 
 
 def test_the_filter_controls_only_the_speed_whose_lag_is_known() -> None:
-    file = exported(changed(COMMAND, {"log_lag_omega": {"std": 0.5}}), "robot-localization")
+    file = exported(changed(COMMAND, {"log_time_constant_omega": {"std": 0.5}}), "robot-localization")
     assert file.values["control_config"] == [True, False, False, False, False, False]
     assert file.values["acceleration_gains"] == pytest.approx([1.0 / 0.3, 0, 0, 0, 0, 0])
     assert "not the yaw rate: learned 0.30 +- 0.15, which is not known well enough" in file.text
@@ -166,12 +168,15 @@ def test_the_filter_controls_only_the_speed_whose_lag_is_known() -> None:
 
 def test_limits_of_the_sides_are_folded_into_those_of_the_body() -> None:
     """The strictest of what is known counts; one that is not known does not."""
-    limits = {"speed": {"acceleration": 12.5}, "side": {"acceleration": 1.67, "braking": 2.0, "top": 1.2}}
+    limits = {
+        "speed": {"slew_rate_up": 12.5},
+        "side": {"slew_rate_up": 1.67, "slew_rate_down": 2.0, "saturation": 1.2},
+    }
     content = make_model(replace(COMMAND, limits=limits)).content.model_dump(mode="json")
-    content["limits"]["speed"]["acceleration"]["std"] = 1.3e7
+    content["limits"]["speed"]["slew_rate_up"]["std"] = 1.3e7
     model = Model(ModelFile.model_validate(content))
     values = {k.removeprefix("FollowPath."): v for k, v in exported(model, "mppi").values.items()}
-    separation = content["limits"]["track"]
+    separation = content["limits"]["wheel_separation"]
     assert values["ax_max"] == pytest.approx(0.9 * 1.67)
     assert values["ax_min"] == pytest.approx(-0.9 * 2.0)
     assert values["az_max"] == pytest.approx(0.6 * 2.0 * 1.67 / separation)
@@ -182,14 +187,14 @@ def test_limits_of_the_sides_are_folded_into_those_of_the_body() -> None:
 
 
 def test_a_body_faster_than_its_sides_is_not_counted_on() -> None:
-    made = replace(named("edd-2", lon__V=0.1), commands=True, limits={"side": {"acceleration": 1.67}})
+    made = replace(named("edd-2", lon__V=0.1), commands=True, limits={"side": {"slew_rate_up": 1.67}})
     assert exported(make_model(made), "mppi").values["FollowPath.ax_max"] == pytest.approx(1.67)
 
 
 def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
-    made = replace(COMMAND, limits={"speed": {"acceleration": 12.5, "top": 1.0}})
-    content = changed(made, {"log_lag_v": {"std": 0.9}}).content.model_dump(mode="json")
-    content["limits"]["speed"]["acceleration"]["std"] = 1.3e7
+    made = replace(COMMAND, limits={"speed": {"slew_rate_up": 12.5, "saturation": 1.0}})
+    content = changed(made, {"log_time_constant_v": {"std": 0.9}}).content.model_dump(mode="json")
+    content["limits"]["speed"]["slew_rate_up"]["std"] = 1.3e7
     model = Model(ModelFile.model_validate(content))
     lines = exported(model, "c-header").text.splitlines()
     (lag,) = (line for line in lines if line.startswith("#define SLIPWISE_LAG_V "))
@@ -198,5 +203,5 @@ def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
     assert f"SLIPWISE_R({math.exp(model.mean[2])!r})" in lag
     assert "0.300 +- 0.003" in other
     assert "not identified" not in other
-    assert "/* limits.speed.acceleration, 12.5 +- 1.3e+07, not identified */" in lines
-    assert "/* limits.speed.top, 1.000 +- 0.010 */" in lines
+    assert "/* limits.speed.slew_rate_up, 12.5 +- 1.3e+07, not identified */" in lines
+    assert "/* limits.speed.saturation, 1.000 +- 0.010 */" in lines

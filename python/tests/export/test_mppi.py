@@ -18,7 +18,11 @@ from slipwise.prediction import predict
 
 LATE = replace(
     named(
-        "edd-2", lon__V=-0.1, ang__w=-0.4, log_lag_omega=float(np.log(0.5)), log_delay_v=float(np.log(0.1))
+        "edd-2",
+        lon__V=-0.1,
+        ang__w=-0.4,
+        log_time_constant_omega=float(np.log(0.5)),
+        log_delay_v=float(np.log(0.1)),
     ),
     commands=True,
 )
@@ -46,8 +50,8 @@ def test_the_delay_loses_the_distance_that_lag_and_delay_lose() -> None:
 
 def test_learned_limits_replace_what_is_less_strict() -> None:
     axes = {
-        "speed": {"dead_band": 0.1, "top": 1.2, "acceleration": 0.8, "braking": 1.7},
-        "yaw_rate": {"top": 5.0, "acceleration": 0.3},
+        "speed": {"dead_band": 0.1, "saturation": 1.2, "slew_rate_up": 0.8, "slew_rate_down": 1.7},
+        "yaw_rate": {"saturation": 5.0, "slew_rate_up": 0.3},
     }
     made = replace(named("edd-2"), commands=True, limits=axes)
     parameters, gains = written(made, KILTED), (1.1, 0.9)  # of the sides behind the limits
@@ -75,8 +79,8 @@ def test_gain_and_slow_part_count() -> None:
 def test_the_delay_is_nearer_to_lag_and_delay_than_nothing_is() -> None:
     rng = np.random.default_rng(2)
     model, total = make_model(LATE), written(LATE)["model_delay_vx"]
-    late = LATE.values | {"log_lag_v": -20.0, "log_delay_v": float(np.log(total))}
-    at_once = LATE.values | {"log_lag_v": -20.0, "log_delay_v": -20.0}
+    late = LATE.values | {"log_time_constant_v": -20.0, "log_delay_v": float(np.log(total))}
+    at_once = LATE.values | {"log_time_constant_v": -20.0, "log_delay_v": -20.0}
     others = [make_model(replace(LATE, values=values)) for values in (late, at_once)]
     misses = []
     for _ in range(10):

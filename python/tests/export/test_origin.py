@@ -25,13 +25,13 @@ def test_plain_words_stay_and_long_ones_are_cut() -> None:
 
 
 def test_the_lines_name_log_verdict_and_range() -> None:
-    made = replace(named("edd-2"), speed=(-0.5, 1.5), yaw_rate=(-1.0, 1.0), good=False, determined=False)
+    made = replace(named("edd-2"), speed=(-0.5, 1.5), yaw_rate=(-1.0, 1.0), good=False, identifiable=False)
     text = "\n".join(origin_lines(make_model(made), "robot.yaml"))
     assert "model robot.yaml" in text
     assert "log: drives/monday.mcap" in text
     assert "NOT GOOD ENOUGH" in text
     assert "speeds -0.5 to 1.5 m/s and yaw rates -1 to 1 rad/s" in text
-    assert "not determined by the log" in text
+    assert "not identifiable from the log" in text
 
 
 def test_a_hostile_log_name_and_sentence_stay_one_line_each() -> None:

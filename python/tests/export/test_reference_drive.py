@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The noise that other tools are told is that of predictions, the slip disturbance included."""
+"""The noise that other tools are commanded is that of predictions, the slip disturbance included."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from slipwise.models import Model
 from slipwise.prediction import predict
 
 MADE = replace(
-    named("edd-2", lon__V=-0.05, ang__w=-0.3), disturbance=(0.2, 0.3, 8.0), growth={1.0: 1.4, 5.0: 2.0}
+    named("edd-2", lon__V=-0.05, ang__w=-0.3), disturbance=(0.2, 0.3, 8.0), inflation={1.0: 1.4, 5.0: 2.0}
 )
 
 

@@ -16,7 +16,7 @@ from slipwise.export import ExportOptions, export_model
 from slipwise.export.robot_localization import DEFAULTS, FREQUENCY
 
 ROBOT = replace(named("edd-2", ang__w=-0.2), speed=(-0.4, 1.0), yaw_rate=(-0.8, 0.8))
-LAGS = {"log_lag_v": float(np.log(0.4)), "log_lag_omega": float(np.log(0.25))}
+LAGS = {"log_time_constant_v": float(np.log(0.4)), "log_time_constant_omega": float(np.log(0.25))}
 COMMANDED = replace(ROBOT, commands=True, values=LAGS)
 
 
@@ -68,13 +68,13 @@ def test_the_filters_control_term_follows_a_step_as_the_core_does() -> None:
         speed += gain * (1.0 - speed) * dt
     drive = _core.Basis("none", [], [], [])
     motion = _core.MotionModel(drive, True, False)
-    track = _core.InputTrack(np.array([0.0]), np.array([1.0]), np.zeros(1), np.zeros(1))
+    history = _core.InputHistory(np.array([0.0]), np.array([1.0]), np.zeros(1), np.zeros(1))
     start, lag = 1.0, np.log([0.4, 0.25, 1e-9, 1e-9])
     ends = [
         _core.linearize_segment(
             motion,
             lag,
-            track,
+            history,
             _core.Segment(start, start + t, _core.Pose2(0, 0, 0), _core.BodyTwist(0, 0, 0), 0, 0),
         ).predicted.x
         for t in (0.99, 1.01)
@@ -83,7 +83,7 @@ def test_the_filters_control_term_follows_a_step_as_the_core_does() -> None:
 
 
 def test_a_gain_stays_below_the_filters_frequency() -> None:
-    quick = replace(COMMANDED, values={"log_lag_v": float(np.log(1e-3))})
+    quick = replace(COMMANDED, values={"log_time_constant_v": float(np.log(1e-3))})
     assert written(quick)["acceleration_gains"][0] == FREQUENCY
 
 

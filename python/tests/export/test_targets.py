@@ -34,7 +34,9 @@ def fitting(target: Target) -> Made:
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> None:
-    made = replace(fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", determined=False)
+    made = replace(
+        fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", identifiable=False
+    )
     head = export_model(make_model(made), target.name, name="mine.yaml").text[:1200]
     for words in (
         f"slipwise {version('slipwise')}, model mine.yaml",
@@ -42,7 +44,7 @@ def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> No
         "drives/monday.mcap (sha256 abababababababab)",
         "verdict: good. It misses by 3 cm.",
         "speeds -0.5 to 1.5 m/s",
-        "not determined by the log",
+        "not identifiable from the log",
         "ang.w",
     ):
         assert words in head

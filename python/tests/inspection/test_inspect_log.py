@@ -21,7 +21,7 @@ from slipwise.logs import Log, empty_poses
 def test_a_known_clock_offset_is_found_within_its_uncertainty(late: float) -> None:
     inspection = inspect_log(simulated_log(Drive(seconds=180.0, late=late)))
     (offset,) = (timing for timing in inspection.timing if timing.name == "clock_offset")
-    assert offset.determined
+    assert offset.identifiable
     assert offset.std < 0.02
     assert abs(offset.seconds - late) < 4.0 * offset.std
 
@@ -29,42 +29,47 @@ def test_a_known_clock_offset_is_found_within_its_uncertainty(late: float) -> No
 def test_a_known_delay_and_lag_of_commands_are_found_within_their_uncertainty() -> None:
     inspection = inspect_log(simulated_log(Drive(seconds=300.0, lag=0.5, delay=0.2)))
     found = {timing.name: timing for timing in inspection.timing if timing.input == "command"}
-    for name, true in (("delay_v", 0.2), ("delay_omega", 0.2), ("lag_v", 0.5), ("lag_omega", 0.5)):
-        assert found[name].determined
+    for name, true in (
+        ("delay_v", 0.2),
+        ("delay_omega", 0.2),
+        ("time_constant_v", 0.5),
+        ("time_constant_omega", 0.5),
+    ):
+        assert found[name].identifiable
         assert abs(found[name].seconds - true) < max(4.0 * found[name].std, 0.03)
 
 
 def test_times_are_those_that_calibrate_finds() -> None:
     log = simulated_log(Drive(seconds=180.0, lag=0.4, delay=0.15, late=0.1))
-    told = {(timing.input, timing.name): timing for timing in inspect_log(log).timing}
-    assert len(told) == len(inspect_log(log).timing)
+    commanded = {(timing.input, timing.name): timing for timing in inspect_log(log).timing}
+    assert len(commanded) == len(inspect_log(log).timing)
     for name in ("command", "wheel"):
         content = calibrate(log, input=name).model.content
         for parameter in content.parameters:
-            timing = told.get((name, parameter.name.removeprefix("log_")))
+            timing = commanded.get((name, parameter.name.removeprefix("log_")))
             if timing is None or parameter.name == "clock_offset" != name:
                 continue
             logarithm = parameter.name.startswith("log_")
             assert timing.seconds == (math.exp(parameter.value) if logarithm else parameter.value)
             assert timing.std == pytest.approx(parameter.std * (timing.seconds if logarithm else 1.0))
-            assert timing.determined == parameter.determined
-    assert {"delay_v", "lag_v"} <= {name for given, name in told if given == "command"}
+            assert timing.identifiable == parameter.identifiable
+    assert {"delay_v", "time_constant_v"} <= {name for given, name in commanded if given == "command"}
 
 
 def test_a_robot_that_obeys_at_once_has_delays_and_no_lag() -> None:
     slipping = Drive(seconds=120.0, basis=_core.named_basis("edd-2"), alpha=(-0.1, -0.3))
     run = simulated_log(slipping).runs[0]
     log = Log(runs=(replace(run, wheels=None),))
-    told = {timing.name: timing for timing in inspect_log(log).timing}
-    assert set(told) == {"delay_v", "delay_omega"}
-    assert abs(told["delay_v"].seconds) < 0.06
-    assert "clock offset included" in told["delay_v"].meaning
+    commanded = {timing.name: timing for timing in inspect_log(log).timing}
+    assert set(commanded) == {"delay_v", "delay_omega"}
+    assert abs(commanded["delay_v"].seconds) < 0.06
+    assert "clock offset included" in commanded["delay_v"].meaning
 
 
 def test_straight_driving_does_not_determine_turning_and_the_advice_says_so() -> None:
     log = simulated_log(Drive(seconds=60.0, yaw_rates=(0.0, 1e-12)))
     (wheel,) = (item for item in inspect_log(log).learned if item.input == "wheel")
-    determined = {p.name: p.determined for p in wheel.parameters}
+    determined = {p.name: p.identifiable for p in wheel.parameters}
     assert determined["lon.V"]
     assert not determined["ang.w"]
     assert any("ang.w" in advice and "Turn" in advice for advice in wheel.advice)
@@ -95,7 +100,7 @@ def test_a_parked_robot_is_inspected() -> None:
 def test_late_poses_of_a_real_log_are_seen(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "warthog" / "grass.csv.gz")
     (offset,) = (timing for timing in inspect_log(log).timing if timing.name == "clock_offset")
-    assert offset.determined
+    assert offset.identifiable
     assert 0.03 < offset.seconds < 0.35
     assert np.isfinite(offset.std)
 

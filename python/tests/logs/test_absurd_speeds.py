@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from slipwise.errors import LogError
-from slipwise.logs.absurd_speeds import FASTEST, USUAL, absurd_speeds
+from slipwise.logs.absurd_speeds import FASTEST, NOMINAL, absurd_speeds
 from slipwise.logs.left_out import Tally
 from slipwise.logs.streams import RawStream, to_inputs, to_poses
 
@@ -50,7 +50,7 @@ def test_no_sample_is_judged_by_a_later_one(values: list[float], cut: int) -> No
     assert absurd_speeds(np.array(values[:cut], dtype=float)).tolist() == whole[:cut].tolist()
 
 
-@given(st.lists(st.floats(-USUAL, USUAL)))
+@given(st.lists(st.floats(-NOMINAL, NOMINAL)))
 def test_nothing_that_robots_drive_is_absurd(values: list[float]) -> None:
     assert not absurd_speeds(np.array(values, dtype=float)).any()
 

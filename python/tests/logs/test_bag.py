@@ -205,7 +205,7 @@ def test_joint_states_give_wheels_with_radius_and_track(tmp_path: Path) -> None:
         bag.add(stamp, "/joint_states", "sensor_msgs/msg/JointState", state)
     folder = bag.write(tmp_path / "a.mcap")
     assert open_log(folder).runs[0].wheels is None
-    wheels = open_log(folder, options=LogOptions(wheel_radius=0.1, track=0.5)).runs[0].wheels
+    wheels = open_log(folder, options=LogOptions(wheel_radius=0.1, wheel_separation=0.5)).runs[0].wheels
     assert wheels is not None
     assert wheels.v[0] == pytest.approx(0.3)
     assert wheels.omega[0] == pytest.approx(0.4)

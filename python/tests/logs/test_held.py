@@ -35,7 +35,7 @@ def test_poses_are_compared_with_inputs_that_the_setting_calls_known() -> None:
 
 
 def test_driven_distances_and_maps_obey_the_setting() -> None:
-    rules = make_settings({"window": {"unknown_after": 1.5}}).rules()
+    rules = make_settings({"segment": {"unknown_after": 1.5}}).rules()
     windows = collect_windows(prepare_run(Log(runs=(slow_run(),)), "command"), 2.0, rules)
     np.testing.assert_allclose(windows.distances(), windows.end - windows.start, atol=1e-6)
     assert "20 s in all" in coverage_map([SLOW], unknown_after=1.5)[-1]

@@ -15,7 +15,7 @@ from slipwise.logs import Inputs, LogOptions, open_log
 from slipwise.logs.joints import SideMotion, sides_text, speeds_from_angles
 
 WHEELS = ["left_wheel", "right_wheel"]
-SIZES = LogOptions(wheel_radius=0.1, track=0.5)
+SIZES = LogOptions(wheel_radius=0.1, wheel_separation=0.5)
 
 
 @dataclass
@@ -66,7 +66,7 @@ def test_joint_states_that_are_not_read_are_named_with_their_wheels(tmp_path: Pa
     log = open_log(bag_with_joints(tmp_path, [1.0, 3.0]))
     assert log.runs[0].wheels is None
     (note,) = (note for note in log.notes if "joint" in note)
-    assert "--wheel-radius and --track" in note
+    assert "--wheel-radius and --wheel-separation" in note
     assert "left: left_wheel; right: right_wheel" in note
     assert log.advice == {"wheel": note}
 

@@ -9,13 +9,13 @@ from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, 
 
 def test_equal_wheels_drive_straight_and_opposite_ones_turn_on_the_spot() -> None:
     left, right = np.array([10.0, -10.0]), np.array([10.0, 10.0])
-    v, omega = twist_from_wheels(left, right, wheel_radius=0.1, track=0.5)
+    v, omega = twist_from_wheels(left, right, wheel_radius=0.1, wheel_separation=0.5)
     np.testing.assert_allclose(v, [1.0, 0.0], atol=1e-15)
     np.testing.assert_allclose(omega, [0.0, 4.0], atol=1e-15)
 
 
 def test_a_faster_right_side_turns_to_the_left() -> None:
-    _, omega = twist_from_wheels(np.array([5.0]), np.array([6.0]), wheel_radius=0.2, track=0.8)
+    _, omega = twist_from_wheels(np.array([5.0]), np.array([6.0]), wheel_radius=0.2, wheel_separation=0.8)
     assert omega[0] == pytest.approx(0.2 * 1.0 / 0.8)
 
 

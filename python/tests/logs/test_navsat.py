@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slipwise.logs import Inputs
-from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_track
+from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_path
 
 
 def test_earth_centred_positions_on_the_axes() -> None:
@@ -37,7 +37,7 @@ def test_up_is_up() -> None:
 def test_the_heading_is_turned_about_when_driving_backward() -> None:
     t = np.linspace(0.0, 9.0, 10)
     back = Inputs(t=t, v=np.full(10, -1.0), vy=np.zeros(10), omega=np.zeros(10))
-    yaw, known = heading_from_track(t, np.negative(t), np.zeros(10), back)
+    yaw, known = heading_from_path(t, np.negative(t), np.zeros(10), back)
     assert known.all()
     np.testing.assert_allclose(np.cos(yaw), 1.0)
 
@@ -45,13 +45,13 @@ def test_the_heading_is_turned_about_when_driving_backward() -> None:
 def test_a_parked_robot_has_no_course() -> None:
     rng = np.random.default_rng(0)
     noise = rng.normal(scale=0.02, size=(2, 100))
-    _, known = heading_from_track(np.linspace(0.0, 5.0, 100), noise[0], noise[1], None)
+    _, known = heading_from_path(np.linspace(0.0, 5.0, 100), noise[0], noise[1], None)
     assert not known.any()
 
 
 def test_slow_driving_at_a_high_rate_has_a_course() -> None:
     t = np.linspace(0.0, 10.0, 201)
-    yaw, known = heading_from_track(t, 0.5 * t, 0.5 * t, None)
+    yaw, known = heading_from_path(t, 0.5 * t, 0.5 * t, None)
     assert known.all()
     np.testing.assert_allclose(yaw, 0.25 * np.pi)
 

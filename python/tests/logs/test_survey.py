@@ -57,12 +57,12 @@ def test_columns_of_a_table_are_shown_with_what_they_need(tmp_path: Path) -> Non
     )
     parts = parts_of(path)
     assert parts["cmd_steer"].why == "a steering angle needs --wheelbase"
-    assert parts["wheel_left"].why == "wheel speeds need --wheel-radius and --track"
+    assert parts["wheel_left"].why == "wheel speeds need --wheel-radius and --wheel-separation"
     assert (parts["wheel_left"].count, parts["wheel_right"].count) == (1, 2)
     assert parts["odo_v"].why == "there is no odo_omega beside it"
     assert "--columns" in parts["fuel"].why
     assert (parts["x"].used_as, parts["cmd_v"].used_as) == ("pose", "command")
-    sized = parts_of(path, LogOptions(wheel_radius=0.1, track=0.5, wheelbase=1.0))
+    sized = parts_of(path, LogOptions(wheel_radius=0.1, wheel_separation=0.5, wheelbase=1.0))
     assert (sized["wheel_left"].used_as, sized["cmd_steer"].used_as) == ("wheel", "command")
 
 

@@ -88,9 +88,9 @@ def test_other_columns_are_carried_along(tmp_path: Path) -> None:
 
 def test_wheel_speeds_need_radius_and_track(tmp_path: Path) -> None:
     path = table(tmp_path, "0,2,4,0,0,0", "0.1,2,4,0,0,0", header="t,wheel_left,wheel_right,x,y,yaw")
-    with pytest.raises(LogError, match="--wheel-radius and --track"):
+    with pytest.raises(LogError, match="--wheel-radius and --wheel-separation"):
         open_log(path)
-    wheels = open_log(path, options=LogOptions(wheel_radius=0.5, track=2.0)).runs[0].wheels
+    wheels = open_log(path, options=LogOptions(wheel_radius=0.5, wheel_separation=2.0)).runs[0].wheels
     assert wheels is not None
     assert (wheels.v[0], wheels.omega[0]) == (1.5, 0.5)
 

@@ -65,7 +65,7 @@ def test_a_fused_pose_is_the_last_resort_and_is_pointed_out() -> None:
 def test_joint_states_are_no_wheels_without_radius_and_track() -> None:
     topics = (("/cmd_vel", TWIST_STAMPED), ("/joint_states", JOINT_STATE), ("/amcl_pose", POSE_STAMPED))
     assert chosen(*topics)[2] is None
-    assert chosen(*topics, options=LogOptions(wheel_radius=0.1, track=0.5))[2] == "/joint_states"
+    assert chosen(*topics, options=LogOptions(wheel_radius=0.1, wheel_separation=0.5))[2] == "/joint_states"
 
 
 def test_satellite_fixes_bring_an_imu() -> None:
@@ -164,8 +164,12 @@ def test_a_pose_topic_that_only_might_be_wheel_odometry_is_not_read_as_wheels() 
 def test_joint_states_without_sizes_are_named_with_the_options_to_add() -> None:
     topics = (("/cmd_vel", TWIST), ("/joint_states", JOINT_STATE), ("/vicon/p", POSE_STAMPED))
     roles = choose_topics(live(*topics), LogOptions())
-    assert "/joint_states has joint states: give --wheel-radius and --track" in roles.advice["wheel"]
-    with pytest.raises(LogError, match="/joint_states has joint states: give --wheel-radius and --track"):
+    assert (
+        "/joint_states has joint states: give --wheel-radius and --wheel-separation" in roles.advice["wheel"]
+    )
+    with pytest.raises(
+        LogError, match="/joint_states has joint states: give --wheel-radius and --wheel-separation"
+    ):
         chosen(*topics[1:])
     beside = choose_topics(live(*topics, ("/odom", ODOMETRY)), LogOptions())
     assert beside.advice == {}

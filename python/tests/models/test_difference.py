@@ -46,9 +46,9 @@ def test_slip_terms_of_other_bases_are_not_compared_but_gains_are() -> None:
 def test_a_limit_that_one_model_lacks_is_listed_without_a_z() -> None:
     made = replace(named("edd-2"), commands=True)
     rows = differences(make_model(made), make_model(replace(made, limits=LIMITS)))
-    top = next(row for row in rows if row.name == "limits.speed.top")
-    assert top.first is None
-    assert top.second == (1.1, 0.01)
+    saturation = next(row for row in rows if row.name == "limits.speed.saturation")
+    assert saturation.first is None
+    assert saturation.second == (1.1, 0.01)
 
 
 def test_models_of_different_inputs_cannot_be_compared() -> None:

@@ -81,7 +81,7 @@ def test_model_without_an_actuator_model_makes_the_round_trip(tmp_path: Path) ->
     assert again.content == model.content
     assert again.motion.delays
     actuator = again.motion.actuator(again.mean)
-    assert (actuator.delay_v, actuator.delay_omega, actuator.lag_v) == (0.2, -0.01, 0.0)
+    assert (actuator.delay_v, actuator.delay_omega, actuator.time_constant_v) == (0.2, -0.01, 0.0)
     with pytest.raises(ModelError, match="a lag or delay is longer than 1000 s"):
         make_model(Made(_core.named_basis("edd-2"), delays=(0.2, -2000.0)))
 
@@ -98,9 +98,11 @@ def test_a_model_without_an_actuator_model_reaches_its_speed_at_once_after_the_d
 def test_a_file_of_the_schema_before_is_read_and_its_slip_does_not_wander(
     content: Content, tmp_path: Path
 ) -> None:
-    older = {key: value for key, value in content.items() if key != "coloured"} | {"slipwise_model": 2}
+    older = {key: value for key, value in content.items() if key != "slip_disturbance"} | {
+        "slipwise_model": 2
+    }
     model = load_model(saved(older, tmp_path / "m.yaml"))
-    assert model.content.coloured is None
+    assert model.content.slip_disturbance is None
     assert model.covariance_over(1.0).tobytes() == model.covariance.tobytes()
     again = load_model(model.save(tmp_path / "m.yaml"))
     assert again.content == model.content
@@ -134,15 +136,21 @@ WRONG = {
     "no schema": (set_key("slipwise_model", None), "schema version None"),
     "schema is a flag": (set_key("slipwise_model", True), "schema version True"),
     "schema is text": (set_key("slipwise_model", "2"), "schema version '2'"),
-    "slip is disturbed without a guess": (set_key("coloured.candidates", []), r"coloured\.candidates"),
-    "weights of more than all": (set_key("coloured.candidates.0.weight", 1.5), "coloured: .*sum to 1"),
+    "slip is disturbed without a guess": (
+        set_key("slip_disturbance.candidates", []),
+        r"slip_disturbance\.candidates",
+    ),
+    "weights of more than all": (
+        set_key("slip_disturbance.candidates.0.weight", 1.5),
+        "slip_disturbance: .*sum to 1",
+    ),
     "a section of the schema before": (set_key("start", {}), "start: there is no such key"),
     "disturbance of negative size": (
-        set_key("coloured.candidates.1.turn", -0.1),
-        r"coloured\.candidates\.1\.turn",
+        set_key("slip_disturbance.candidates.1.angular", -0.1),
+        r"slip_disturbance\.candidates\.1\.angular",
     ),
     "disturbance of no time": (
-        set_key("coloured.candidates.1.time_constant", 0.0),
+        set_key("slip_disturbance.candidates.1.time_constant", 0.0),
         r"candidates\.1\.time_constant",
     ),
     "unknown input": (set_key("input", "joystick"), "input: must be 'command' or 'wheel', not 'joystick'"),
@@ -160,10 +168,19 @@ WRONG = {
     "covariance not symmetric": (set_key("covariance.0.1", 1e-4), "covariance: not symmetric and positive"),
     "negative variance": (set_key("covariance.2.2", -1e-4), "covariance: not symmetric and positive"),
     "no variance, yet covariance": (set_key("covariance.2.2", 0.0), "covariance: not symmetric and positive"),
-    "noise of two channels": (set_key("noise.scale", [1.0, 1.0]), r"noise\.scale"),
-    "growth of zero": (set_key("noise.tails", {1.0: {"growth": 0.0, "dof": 5.0}}), r"noise\.tails"),
-    "tails of negative time": (set_key("noise.tails", {-1.0: {"growth": 1.0, "dof": 5.0}}), r"noise\.tails"),
-    "tails without a covariance": (set_key("noise.tails", {1.0: {"growth": 1.0, "dof": 2.0}}), r"1\.0\.dof"),
+    "noise of two channels": (set_key("noise.variance_scale", [1.0, 1.0]), r"noise\.variance_scale"),
+    "inflation of zero": (
+        set_key("noise.student_t", {1.0: {"inflation": 0.0, "dof": 5.0}}),
+        r"noise\.student_t",
+    ),
+    "tails of negative time": (
+        set_key("noise.student_t", {-1.0: {"inflation": 1.0, "dof": 5.0}}),
+        r"noise\.student_t",
+    ),
+    "Student t without a covariance": (
+        set_key("noise.student_t", {1.0: {"inflation": 1.0, "dof": 2.0}}),
+        r"1\.0\.dof",
+    ),
     "range of one number": (set_key("range.speed", [1.0]), r"range\.speed"),
     "unknown term": (set_key("slip.lon", ["V", "quux"]), "quux"),
     "terms that are not parameters": (set_key("slip.lon", ["V"]), "the parameters are .* have"),

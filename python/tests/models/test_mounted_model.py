@@ -30,23 +30,23 @@ def body() -> Model:
 
 @pytest.fixture
 def mounted() -> Model:
-    return make_model(replace(MADE, mount=(1.5, -0.2, 0.3)))
+    return make_model(replace(MADE, sensor_extrinsics=(1.5, -0.2, 0.3)))
 
 
 def test_the_file_keeps_the_mount(mounted: Model, tmp_path: Path) -> None:
     again = load_model(mounted.save(tmp_path / "m.yaml"))
     assert again.content == mounted.content
-    assert again.motion.mount
+    assert again.motion.sensor_extrinsics
     assert [p.name for p in again.content.parameters][-3:] == ["sensor_x", "sensor_y", "sensor_yaw"]
     assert again.mean[-3:].tolist() == [1.5, -0.2, 0.3]
 
 
 def test_a_file_from_before_there_was_a_mount_is_read(body: Model, tmp_path: Path) -> None:
     content = yaml.safe_load(body.to_yaml())
-    del content["mount"]
+    del content["sensor_extrinsics"]
     path = tmp_path / "old.yaml"
     path.write_text(yaml.safe_dump(content), encoding="utf-8")
-    assert not load_model(path).motion.mount
+    assert not load_model(path).motion.sensor_extrinsics
 
 
 def test_the_body_is_the_model_without_the_mount(body: Model, mounted: Model) -> None:
@@ -61,12 +61,12 @@ def test_prediction_is_that_of_base_link(body: Model, mounted: Model) -> None:
 
 
 def test_the_core_compares_the_sensor(mounted: Model) -> None:
-    track = _core.InputTrack(
+    history = _core.InputHistory(
         *(COMMANDS[:, [0]].T),
         *(np.ascontiguousarray(c) for c in (COMMANDS[:, 1], np.zeros(3), COMMANDS[:, 2])),
     )
     segment = _core.Segment(0.0, 3.0, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    at = _core.linearize_segment(mounted.motion, mounted.mean, track, segment)
+    at = _core.linearize_segment(mounted.motion, mounted.mean, history, segment)
     sensor = _core.Pose2(1.5, -0.2, 0.3)
     end = _core.Pose2(*predict(mounted, COMMANDS, horizon=3.0).poses[-1].tolist())
     expected = _core.between(sensor, _core.compose(end, sensor))

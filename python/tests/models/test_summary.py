@@ -16,8 +16,8 @@ from slipwise.models.summary import summarise
 
 def judged(model: Model, *, good: bool = True, windows: int = 20) -> Model:
     """The model with held-out errors of 0.05 m and 0.02 rad, where the baseline has 0.55 m and 0.4 rad."""
-    held_out = {"horizon": 5.0, "windows": windows, "position": 0.05, "heading": 0.02}
-    held_out |= {"plain_position": 0.55, "plain_heading": 0.4}
+    held_out = {"horizon": 5.0, "segments": windows, "position": 0.05, "heading": 0.02}
+    held_out |= {"baseline_position": 0.55, "baseline_heading": 0.4}
     content = model.content.model_dump()
     content["verdict"] |= {"good": good, "held_out": held_out}
     return Model(ModelFile.model_validate(content))
@@ -92,7 +92,7 @@ def test_a_gain_of_the_actuator_is_told_from_slip() -> None:
 def test_a_slow_mode_is_said_where_it_is_identified_and_hides_the_fast_one_where_it_is_not() -> None:
     clear = replace(named("edd-2"), response=True)
     assert "(30.0 ± 1.0 % of it with a slower one of 1.500 ± 0.015 s)" in str(summarise(make_model(clear)))
-    hazy = replace(named("edd-2", slow_share_v=0.7, slow_share_omega=0.7), response=True, std=0.29)
+    hazy = replace(named("edd-2", slow_fraction_v=0.7, slow_fraction_omega=0.7), response=True, std=0.29)
     hidden = str(summarise(make_model(hazy)))
     assert "Follows commands after 0.20 ± 0.06 s." in hidden
     assert "time constant" not in hidden
@@ -100,7 +100,12 @@ def test_a_slow_mode_is_said_where_it_is_identified_and_hides_the_fast_one_where
 
 def test_limits_offsets_and_the_place_of_the_sensor_are_said() -> None:
     made = replace(
-        named("edd-2"), commands=True, clock_offset=0.1, limits=LIMITS, mount=(-0.5, 0.2, 0.0), std=0.01
+        named("edd-2"),
+        commands=True,
+        clock_offset=0.1,
+        limits=LIMITS,
+        sensor_extrinsics=(-0.5, 0.2, 0.0),
+        std=0.01,
     )
     text = str(summarise(make_model(made)))
     assert "Actuator limits of speed: dead band below 0.100 ± 0.010 m/s, at most 1.100 ± 0.010 m/s" in text

@@ -97,7 +97,7 @@ def difference(p: Predictions, i: int, other: _core.PredictedPath) -> list[str]:
     pairs = {
         "pose": (p.pose[i], other.poses[-1]),
         "covariance": (p.covariance[i], other.covariances[-1]),
-        "inflation": (p.growth[i], other.students[-1].inflation),
+        "inflation": (p.inflation[i], other.students[-1].inflation),
         "dof": (p.dof[i], other.students[-1].dof),
         "structure": (p.structure[i], other.structure),
     }
@@ -118,14 +118,16 @@ def same_model(
     assert [p.value for p in content.parameters] == posterior.estimate.mean.tolist()
     assert [p.prior_std for p in content.parameters] == list(posterior.prior_std)
     assert content.covariance == posterior.estimate.covariance.tolist()
-    assert noise.scale == list(posterior.noise_scale)
+    assert noise.variance_scale == list(posterior.noise_scale)
     assert list(content.weights.values()) == list(posterior.basis_weights)
-    tails = {h: s for h, s in zip(JUDGING_HORIZONS, learned.students, strict=True) if h in noise.tails}
-    assert [(t.growth, t.dof) for t in noise.tails.values()] == [(s.inflation, s.dof) for s in tails.values()]
-    assert content.coloured is not None
+    students = {h: s for h, s in zip(JUDGING_HORIZONS, learned.students, strict=True) if h in noise.student_t}
+    assert [(t.inflation, t.dof) for t in noise.student_t.values()] == [
+        (s.inflation, s.dof) for s in students.values()
+    ]
+    assert content.slip_disturbance is not None
     law = learned.disturbance.law
-    assert [disturbance.weight for disturbance in content.coloured.candidates] == list(law.weights)
-    assert content.provenance.learned_windows == learned.segments
+    assert [disturbance.weight for disturbance in content.slip_disturbance.candidates] == list(law.weights)
+    assert content.provenance.learned_segments == learned.segments
     assert content.range.speed + content.range.yaw_rate == list(learned.range)
 
 
@@ -135,7 +137,7 @@ def check(folder: Path, name: str, input_name: str) -> None:
     log = open_log(path)
     learner, differing = replayed(path, input_name, log, JUDGING_HORIZONS)
     assert not differing, f"{len(differing)} predictions differ: {differing[0]}"
-    limits = learner.find_limits(Settings().vehicle.track)
+    limits = learner.find_limits(Settings().vehicle.wheel_separation)
     same_model(calibrate(log, input=input_name).model.content, learner.model(), limits)
 
 

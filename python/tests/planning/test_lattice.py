@@ -31,18 +31,18 @@ def primitives() -> list[Primitive]:
     return lattice_primitives(learned_model(), options=OPTIONS, limits=LIMITS)
 
 
-def share() -> float:
-    """Return the share of a commanded curvature that this model's slip leaves."""
+def fraction() -> float:
+    """Return the fraction of a commanded curvature that this model's slip leaves."""
     values = {parameter.name: parameter.value for parameter in learned_model().content.parameters}
     return (1.0 + values["ang.w"]) / (1.0 + values["lon.V"])
 
 
 def test_the_map_of_held_curvatures_has_dead_band_and_tops() -> None:
-    axes = {"speed": {"top": 0.8}, "yaw_rate": {"dead_band": 0.1, "top": 0.5}}
+    axes = {"speed": {"saturation": 0.8}, "yaw_rate": {"dead_band": 0.1, "saturation": 0.5}}
     model = make_model(Made(basis=_core.Basis("none", [], [], []), commands=True, limits=axes))
     held = curvature_map(model, limits=LIMITS, speeds=3, curvatures=21)
     speed = np.broadcast_to(held.speed[:, None], held.held.shape)
-    turn = held.told * speed
+    turn = held.commanded * speed
     known = np.isfinite(held.held)
     left = np.where(np.abs(turn) < 0.1, 0.0, np.clip(turn, -0.5, 0.5))
     assert held.held[known] == pytest.approx((left / np.minimum(speed, 0.8))[known])
@@ -78,7 +78,7 @@ def test_every_heading_goes_straight_and_turns_to_both_sides(primitives: list[Pr
 def test_no_primitive_bends_tighter_than_the_robot_can(primitives: list[Primitive]) -> None:
     held = curvature_map(learned_model(), limits=LIMITS, speeds=30)
     tightest = float(np.nanmax([np.nanmax(side) for side in held.tightest()]))
-    assert tightest == pytest.approx(share() * LIMITS.curvature, rel=1e-6)
+    assert tightest == pytest.approx(fraction() * LIMITS.curvature, rel=1e-6)
     for made in primitives:
         assert abs(made.swing) <= made.length * tightest * 1.02
 
@@ -89,7 +89,7 @@ def test_the_file_holds_what_nav2_reads(tmp_path: Path) -> None:
     metadata = content["lattice_metadata"]
     assert metadata["num_of_headings"] == len(metadata["heading_angles"]) == 16
     assert metadata["number_of_trajectories"] == len(content["primitives"])
-    assert metadata["turning_radius"] == pytest.approx(1.0 / (share() * LIMITS.curvature), rel=1e-4)
+    assert metadata["turning_radius"] == pytest.approx(1.0 / (fraction() * LIMITS.curvature), rel=1e-4)
     starts = [entry["start_angle_index"] for entry in content["primitives"]]
     assert starts == sorted(starts)  # Nav2 begins a new list where the start heading changes
     for entry in content["primitives"]:
@@ -113,8 +113,8 @@ def test_the_map_of_held_curvature_says_what_slip_leaves() -> None:
     held = curvature_map(model, limits=LIMITS, speeds=6, curvatures=9)
     known = np.isfinite(held.held)
     assert known.any()
-    assert held.held[known] == pytest.approx((share() * held.told + 0.0 * held.speed[:, None])[known])
-    too_fast = np.abs(held.told * held.speed[:, None]) > LIMITS.yaw_rate + 1e-9
+    assert held.held[known] == pytest.approx((fraction() * held.commanded + 0.0 * held.speed[:, None])[known])
+    too_fast = np.abs(held.commanded * held.speed[:, None]) > LIMITS.yaw_rate + 1e-9
     assert not known[too_fast].any()
 
 

@@ -29,7 +29,10 @@ def test_limits_are_the_fastest_that_was_driven_either_way() -> None:
 
 
 def test_learned_limits_of_the_drive_are_kept_where_they_are_tighter() -> None:
-    axes = {"speed": {"top": 1.1, "acceleration": 0.4, "braking": 1.7}, "yaw_rate": {"top": 5.0}}
+    axes = {
+        "speed": {"saturation": 1.1, "slew_rate_up": 0.4, "slew_rate_down": 1.7},
+        "yaw_rate": {"saturation": 5.0},
+    }
     limits = limits_of(make_model(made(speed=(0.0, 1.5), yaw_rate=(-1.0, 1.0), commands=True, limits=axes)))
     assert limits.speed == pytest.approx(1.1)
     assert limits.yaw_rate == pytest.approx(1.0)
@@ -43,6 +46,6 @@ def test_a_model_that_never_turned_has_no_limits_of_its_own() -> None:
 
 def test_a_start_that_is_not_finite_is_refused() -> None:
     assert DriveState(drive=(-1.0, 0.2), fast=(0.1, 0.0)).fast == (0.1, 0.0)
-    for wrong in ({"drive": (math.nan, 0.0)}, {"told": (0.0, math.inf)}, {"fast": (math.nan, 0.0)}):
+    for wrong in ({"drive": (math.nan, 0.0)}, {"commanded": (0.0, math.inf)}, {"fast": (math.nan, 0.0)}):
         with pytest.raises(SettingsError, match="not finite"):
             DriveState(**wrong)

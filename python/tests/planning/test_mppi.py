@@ -16,10 +16,10 @@ from slipwise.planning import (
     Controller,
     GridMap,
     MppiOptions,
-    Track,
+    ReferencePath,
+    baseline_motion,
     inflated,
     learned_motions,
-    plain_motion,
     vendor_motion,
 )
 from slipwise.planning.mppi import LETHAL
@@ -27,8 +27,8 @@ from slipwise.planning.mppi import LETHAL
 QUICK = MppiOptions(rollouts=256, periods=30, period=0.1)
 
 
-def straight() -> Track:
-    return Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8)
+def straight() -> ReferencePath:
+    return ReferencePath(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8)
 
 
 def test_the_controller_steers_back_to_its_track() -> None:
@@ -37,7 +37,7 @@ def test_the_controller_steers_back_to_its_track() -> None:
         Made(basis=_core.named_basis("edd-2"), values={"ang.w": -0.3}, response=True, limits=LIMITS)
     )
     for motions in (
-        [plain_motion()],
+        [baseline_motion()],
         [vendor_motion(1.5)],
         learned_motions(learned_model(), samples=2),
         learned_motions(slow, samples=2),
@@ -63,17 +63,17 @@ def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> 
 
 
 def test_a_moving_robot_does_not_brake_at_the_first_cycle() -> None:
-    track = Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 1.0)
+    reference = ReferencePath(np.array([[0.0, 0.0], [20.0, 0.0]]), 1.0)
     slow = make_model(Made(basis=_core.named_basis("edd-2"), response=True))
-    for motions in ([plain_motion()], learned_motions(slow)):
+    for motions in ([baseline_motion()], learned_motions(slow)):
         for last in (None, (1.0, 0.0)):
-            controller = Controller(motions, track, options=QUICK)
+            controller = Controller(motions, reference, options=QUICK)
             v, _ = controller.command((1.0, 0.0, 0.0), (1.0, 0.0), last=last)
             assert v > 0.97
 
 
 def test_the_last_command_bounds_the_next() -> None:
-    controller = Controller([plain_motion()], straight(), options=QUICK)
+    controller = Controller([baseline_motion()], straight(), options=QUICK)
     controller.command((1.0, 0.0, 0.0), (0.0, 0.0))
     v, omega = controller.command((1.0, 0.0, 0.0), (0.2, 0.0), last=(1.2, -0.5))
     change = QUICK.acceleration * QUICK.period, QUICK.yaw_acceleration * QUICK.period
@@ -92,8 +92,8 @@ def test_what_lies_beyond_the_map_costs_as_an_obstacle_does() -> None:
 
 def test_a_start_in_an_obstacle_is_refused() -> None:
     obstacles = inflated(walled_map(), 0.3)
-    track = Track(np.array([[1.0, 2.0], [11.0, 2.0]]), 0.8)
-    controller = Controller([plain_motion()], track, options=QUICK, obstacles=obstacles)
+    reference = ReferencePath(np.array([[1.0, 2.0], [11.0, 2.0]]), 0.8)
+    controller = Controller([baseline_motion()], reference, options=QUICK, obstacles=obstacles)
     controller.command((2.0, 2.0, 0.0), (0.0, 0.0))
     with pytest.raises(PlanningError, match="starts inside an obstacle"):
         controller.command((5.7, 2.0, 0.0), (0.0, 0.0))
@@ -103,12 +103,12 @@ def test_what_makes_no_sense_is_refused() -> None:
     with pytest.raises(SettingsError, match="at least one model"):
         Controller([], straight())
     with pytest.raises(SettingsError, match="positive number of seconds"):
-        Controller([plain_motion()], straight(), options=MppiOptions(period=0.0))
+        Controller([baseline_motion()], straight(), options=MppiOptions(period=0.0))
     with pytest.raises(SettingsError, match="2 rollouts"):
-        Controller([plain_motion()], straight(), options=MppiOptions(rollouts=0))
+        Controller([baseline_motion()], straight(), options=MppiOptions(rollouts=0))
     with pytest.raises(SettingsError, match="radius and inflation"):
         inflated(walled_map(), math.nan)
-    controller = Controller([plain_motion()], straight(), options=QUICK)
+    controller = Controller([baseline_motion()], straight(), options=QUICK)
     with pytest.raises(SettingsError, match="the robot's pose is no pose"):
         controller.command((math.nan, 0.0, 0.0), (0.0, 0.0))
     with pytest.raises(SettingsError):

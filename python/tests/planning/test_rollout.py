@@ -27,7 +27,7 @@ def learned(basis: str) -> Model:
 
 
 def responding() -> Model:
-    """A model whose actuator has gains and a slow part, as wheel speeds beside commands teach it."""
+    """A model whose actuator has gains and a slow mode, as wheel speeds beside commands teach it."""
     values = {"lat.w": 0.05, "ang.w": -0.3}
     return make_model(Made(basis=_core.named_basis("full-linear-6"), values=values, response=True))
 

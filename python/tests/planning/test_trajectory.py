@@ -79,21 +79,27 @@ def test_goals_are_reached_through_the_limits_of_the_drive() -> None:
 
 
 def test_a_moving_robot_goes_on_with_its_curvature() -> None:
-    state = DriveState(drive=(0.8, 0.2), told=(0.8, 0.24))
+    state = DriveState(drive=(0.8, 0.2), commanded=(0.8, 0.24))
     plan = trajectory_to(learned_model(), (4.0, 0.5, 0.0), limits=LIMITS, options=OPTIONS, state=state)
     assert plan.commands[0, 1] == pytest.approx(0.8, abs=0.2)
     assert plan.commands[0, 2] / plan.commands[0, 1] == pytest.approx(0.3, abs=0.1)
 
 
-def slow_model(share: float, seconds: float) -> Model:
-    values = {"slow_share_v": share, "log_slow_lag_v": math.log(seconds), "gain_v": 1.0}
-    values |= {"slow_share_omega": share, "log_slow_lag_omega": math.log(seconds), "gain_omega": 1.0}
+def slow_model(fraction: float, seconds: float) -> Model:
+    values = {"slow_fraction_v": fraction, "log_slow_time_constant_v": math.log(seconds), "gain_v": 1.0}
+    values |= {
+        "slow_fraction_omega": fraction,
+        "log_slow_time_constant_omega": math.log(seconds),
+        "gain_omega": 1.0,
+    }
     return make_model(Made(_core.named_basis("edd-2"), values, response=True))
 
 
-@pytest.mark.parametrize(("share", "seconds"), [(0.14, 7.0), (0.3, 1.5), (0.5, 4.0)])
-def test_a_plan_ends_when_the_robot_is_slower_than_what_counts_as_rest(share: float, seconds: float) -> None:
-    model = slow_model(share, seconds)
+@pytest.mark.parametrize(("fraction", "seconds"), [(0.14, 7.0), (0.3, 1.5), (0.5, 4.0)])
+def test_a_plan_ends_when_the_robot_is_slower_than_what_counts_as_rest(
+    fraction: float, seconds: float
+) -> None:
+    model = slow_model(fraction, seconds)
     for goal in ((4.0, 0.0, 0.0), (3.0, 1.0, 0.3)):
         plan = Planner(model, limits=Limits(1.0, 1.0, 1.0)).to(goal)
         assert plan.poses[-1] == pytest.approx(goal, abs=2e-3)
@@ -121,7 +127,7 @@ def test_limits_follow_from_what_the_model_has_seen() -> None:
     assert limits.speed == max(map(abs, seen.speed))
     assert limits.yaw_rate == max(map(abs, seen.yaw_rate))
     assert limits.acceleration == ACCELERATION
-    tight = {"speed": {"top": 0.9, "acceleration": 0.4}, "yaw_rate": {"top": 0.5}}
+    tight = {"speed": {"saturation": 0.9, "slew_rate_up": 0.4}, "yaw_rate": {"saturation": 0.5}}
     limits = limits_of(make_model(replace(named("edd-2"), commands=True, limits=tight)))
     assert (limits.speed, limits.yaw_rate, limits.acceleration) == (0.9, 0.5, 0.4)
 

@@ -16,7 +16,7 @@ from slipwise.models.schema import ModelFile
 
 SEED = 7
 DURATION, RATE, HORIZON = 120.0, 10.0, 5.0
-TRUTH = np.array([-0.05, -0.35])  # edd-2: share of speed and of yaw rate that slip takes away
+TRUTH = np.array([-0.05, -0.35])  # edd-2: fraction of speed and of yaw rate that slip takes away
 METHODS = ("none", "vendor", "edd-2", "odd-even-10", "batch", "auto")
 SHARE_KNOWN = {"none": 0.0, "vendor": 0.6, "edd-2": 0.95, "odd-even-10": 0.97, "batch": 1.0, "auto": 0.98}
 BASES = ("none", "edd-2", "drive-5")
@@ -68,9 +68,9 @@ def _run(place: int, name: str) -> Run:
     v = 1.0 + 0.8 * np.sin(0.11 * t)
     omega = 0.7 * np.sin(0.23 * t + place) * np.cos(0.05 * t)
     commands = Inputs(t=t, v=v, vy=np.zeros_like(t), omega=omega)
-    track = _core.InputTrack(t, v, np.zeros_like(t), omega)
+    history = _core.InputHistory(t, v, np.zeros_like(t), omega)
     segment = _core.Segment(0.0, DURATION, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    path = _core.integrate_segment(_model(), TRUTH, track, segment, _core.Integrator.Exact)
+    path = _core.integrate_segment(_model(), TRUTH, history, segment, _core.Integrator.Exact)
     stamps = np.arange(0.0, DURATION, 1.0 / RATE)
     x, y, yaw = (np.interp(stamps, path.times, path.poses[:, k]) for k in range(3))
     noise = rng.normal(size=(2, len(stamps))) * 0.01
@@ -96,7 +96,7 @@ def _calibration(runs: int) -> Calibration:
                     "value": -0.049,
                     "std": 0.004,
                     "prior_std": 0.3,
-                    "determined": True,
+                    "identifiable": True,
                 },
                 {
                     "name": "ang.w",
@@ -104,7 +104,7 @@ def _calibration(runs: int) -> Calibration:
                     "value": -0.348,
                     "std": 0.01,
                     "prior_std": 0.3,
-                    "determined": True,
+                    "identifiable": True,
                 },
             ],
             "covariance": [[1.6e-5, 0.0], [0.0, 1e-4]],
@@ -122,7 +122,7 @@ def _calibration(runs: int) -> Calibration:
                 "logs": [{"path": "/data/field.mcap", "sha256": "ab" * 32}],
                 "settings": {"basis": "auto"},
                 "learned_seconds": DURATION * runs,
-                "learned_windows": 48 * runs,
+                "learned_segments": 48 * runs,
             },
             "verdict": {"good": True, "sentence": "Good."},
         }
@@ -174,11 +174,11 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
     for place, run in enumerate(log.runs):
         assert run.commands is not None
         inputs = run.commands
-        track = _core.InputTrack(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        history = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
         for start in starts.tolist():
             segment = _core.Segment(start, start + horizon, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
             known = TRUTH * SHARE_KNOWN[method]
-            path = _core.integrate_segment(_model(), known, track, segment, _core.Integrator.Exact)
+            path = _core.integrate_segment(_model(), known, history, segment, _core.Integrator.Exact)
             rows.append((place, start))
             poses.append(path.poses[-1])
             covariances.append(np.diag([0.01, 0.02, 0.004]) * horizon)
@@ -192,9 +192,9 @@ def _predictions(log: Log, method: str, horizon: float) -> Predictions:
         t_end=t_start + horizon,
         pose=np.array(poses),
         covariance=np.array(covariances),
-        growth=np.ones(len(rows)),
+        inflation=np.ones(len(rows)),
         dof=np.full(len(rows), 5.0),
-        usual_nis=np.full(len(rows), 3.0),
+        nominal_nis=np.full(len(rows), 3.0),
         measured=measured,
         learned_until=t_start,
         structure=np.zeros(len(rows), np.int64),
@@ -229,8 +229,8 @@ def _score(part: Predictions, group: tuple[Predictions, ...]) -> Score:
         nis=float(part.nis.mean()),
         nis_band=(2.2, 3.9),
         coverage=(0.48, 0.91, 0.96),
-        stated_nis=float(part.nis.mean()),
-        stated_coverage=(0.6, 0.8, 0.85),
+        reported_nis=float(part.nis.mean()),
+        reported_coverage=(0.6, 0.8, 0.85),
     )
 
 

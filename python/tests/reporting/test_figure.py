@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 
 
 def test_numbers_keep_six_digits_and_drop_what_is_not_finite() -> None:
@@ -28,7 +28,7 @@ def test_layout_is_added_to_the_standard_one() -> None:
 
 
 def test_label_from_a_user_holds_no_markup_and_no_format() -> None:
-    assert plain_label("<b>&%{x}$") == "&lt;b&gt;&amp;% {x}＄"
+    assert baseline_label("<b>&%{x}$") == "&lt;b&gt;&amp;% {x}＄"
 
 
 def test_axis_keeps_the_options_it_is_given() -> None:

@@ -35,7 +35,7 @@ def test_sections_stand_in_the_order_of_the_reader_s_questions(page: str) -> Non
         "How far each method misses",
         "Where the robot drove, and what was predicted",
         "Errors over time",
-        "Is the stated uncertainty true?",
+        "Is the reported uncertainty true?",
         "Parameters while learning",
         "Learned slip, and the speeds and yaw rates driven",
         "Data left out, and what was guessed",

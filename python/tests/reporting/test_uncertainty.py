@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the stated uncertainty is true, in words."""
+"""Whether the reported uncertainty is true, in words."""
 
 from __future__ import annotations
 

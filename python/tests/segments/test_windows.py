@@ -224,7 +224,7 @@ def test_initial_twist_is_the_last_one_measured_and_only_where_fresh() -> None:
     model = _core.MotionModel(_core.Basis("none", [], [], []), True, False)
     fresh = cut(replace(run, wheels=wheels), 2.0).segments
     bare = cut(replace(run, wheels=None), 2.0).segments
-    still = _core.InputTrack(np.array([-9.0]), np.zeros(1), np.zeros(1), np.zeros(1))
+    still = _core.InputHistory(np.array([-9.0]), np.zeros(1), np.zeros(1), np.zeros(1))
     lags = np.log([1.0, 1.0, 0.1, 0.1])
 
     def gone(segment: _core.Segment) -> float:

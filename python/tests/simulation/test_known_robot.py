@@ -29,7 +29,7 @@ def driven(robot: KnownRobot, commands: Inputs = STEP, seconds: float = 4.0) -> 
 
 
 def test_a_step_is_answered_after_the_delay_with_the_lag_the_gain_and_the_slow_part() -> None:
-    robot = replace(QUIET, gain=(0.9, 1.1), slow_share=(0.3, 0.0), slow_lag=(1.5, 1.0))
+    robot = replace(QUIET, gain=(0.9, 1.1), slow_fraction=(0.3, 0.0), slow_time_constant=(1.5, 1.0))
     wheels = driven(robot).wheels
     assert wheels is not None
     late = wheels.t + 0.025 - 0.17  # the middle of each period, since the step arrived
@@ -60,12 +60,12 @@ def test_the_core_predicts_it_by_its_own_chain() -> None:
     )
     robot = replace(QUIET, basis=_core.named_basis("edd-2"), slip=(-0.1, -0.3), sensor=(0.8, 0.2, 0.1))
     run = driven(robot, commands, 5.0)
-    model = _core.MotionModel(robot.basis, True, False).with_mount(True)
+    model = _core.MotionModel(robot.basis, True, False).with_extrinsics(True)
     logs = np.log([*robot.lag, *robot.delay])
-    track = _core.InputTrack(commands.t, commands.v, commands.vy, commands.omega)
+    history = _core.InputHistory(commands.t, commands.v, commands.vy, commands.omega)
     segment = _core.Segment(0.0, float(run.poses.t[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
     parameters = np.concatenate((robot.slip, logs, robot.sensor))
-    predicted = _core.linearize_segment(model, parameters, track, segment).predicted
+    predicted = _core.linearize_segment(model, parameters, history, segment).predicted
     first, last = (
         _core.Pose2(float(run.poses.x[k]), float(run.poses.y[k]), float(run.poses.yaw[k])) for k in (0, -1)
     )

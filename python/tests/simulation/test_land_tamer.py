@@ -50,7 +50,7 @@ def test_turning_left_turns_the_right_wheels_faster() -> None:
 
 def test_odometry_undoes_side_rates() -> None:
     v, omega = np.array([0.0, 1.5, -0.4]), np.array([0.8, -0.3, 0.0])
-    vehicle = LandTamer(wheel_radius=0.27, track=1.1)
+    vehicle = LandTamer(wheel_radius=0.27, wheel_separation=1.1)
     back_v, back_omega = vehicle.odometry(*vehicle.side_rates(v, omega).T)
     np.testing.assert_allclose(back_v, v, atol=1e-15)
     np.testing.assert_allclose(back_omega, omega, atol=1e-15)

@@ -10,15 +10,15 @@ from slipwise.errors import SettingsError, SlipwiseError
 from slipwise.logs.log import Inputs
 from slipwise.simulation.drive import hold, thesis_drive
 from slipwise.simulation.land_tamer import LandTamer
-from slipwise.simulation.physics import GROUNDS, Sampling, World, run_physics, wheel_targets
+from slipwise.simulation.physics import TERRAINS, Sampling, World, run_physics, wheel_targets
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
 
 pytestmark = pytest.mark.slow
 
 
-def drive(commands: Inputs, duration: float, ground: str = "tyre-force") -> Truth:
-    world = World(LandTamer(), ground, TyreLaw())
+def drive(commands: Inputs, duration: float, terrain: str = "tyre-force") -> Truth:
+    world = World(LandTamer(), terrain, TyreLaw())
     return run_physics(world, commands, Sampling.over(duration, 20.0))
 
 
@@ -31,17 +31,17 @@ def ratios(truth: Truth, since: float) -> tuple[float, float]:
     return float(yaw), float(forward)
 
 
-@pytest.mark.parametrize("ground", GROUNDS)
-def test_straight_command_drives_straight(ground: str) -> None:
-    truth = drive(hold(1.5, 0.0, 15.0), 15.0, ground)
+@pytest.mark.parametrize("terrain", TERRAINS)
+def test_straight_command_drives_straight(terrain: str) -> None:
+    truth = drive(hold(1.5, 0.0, 15.0), 15.0, terrain)
     assert np.abs(truth.y).max() < 1e-3
     assert np.abs(truth.yaw).max() < 1e-4
     assert truth.x[-1] == pytest.approx(1.5 * (15.0 - 0.16 - 0.81), rel=0.01)
 
 
-@pytest.mark.parametrize("ground", GROUNDS)
-def test_parked_vehicle_does_not_drift(ground: str) -> None:
-    truth = drive(hold(0.0, 0.0, 10.0), 10.0, ground)
+@pytest.mark.parametrize("terrain", TERRAINS)
+def test_parked_vehicle_does_not_drift(terrain: str) -> None:
+    truth = drive(hold(0.0, 0.0, 10.0), 10.0, terrain)
     assert np.hypot(truth.x, truth.y).max() < 1e-6
     assert np.abs(truth.yaw).max() < 1e-6
 
@@ -101,7 +101,7 @@ def test_mirrored_command_gives_the_mirrored_path_under_the_traction_law() -> No
 
 
 def test_rolling_vehicle_only_loses_energy_under_the_traction_law() -> None:
-    """Told to stop while it drives, the vehicle slows down all along and comes to rest."""
+    """Commanded to stop while it drives, the vehicle slows down all along and comes to rest."""
     going = hold(1.5, 0.0, 20.0)
     stop = (going.t < 5.0).astype(float)
     truth = drive(Inputs(t=going.t, v=going.v * stop, vy=going.vy, omega=going.omega), 20.0, "traction-law")

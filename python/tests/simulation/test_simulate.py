@@ -29,9 +29,9 @@ def minute() -> Simulation:
     return simulate(Scenario(duration=60.0), seed=11)
 
 
-@pytest.mark.parametrize("ground", ["tyre-force", "traction-law", "contact-friction"])
-def test_same_seed_gives_the_same_bytes(ground: str) -> None:
-    scenario = replace(SHORT, ground=ground)
+@pytest.mark.parametrize("terrain", ["tyre-force", "traction-law", "contact-friction"])
+def test_same_seed_gives_the_same_bytes(terrain: str) -> None:
+    scenario = replace(SHORT, terrain=terrain)
     assert column_bytes(simulate(scenario, seed=4)) == column_bytes(simulate(scenario, seed=4))
 
 
@@ -76,7 +76,7 @@ def test_log_holds_commands_wheels_and_poses_at_20_hz(minute: Simulation) -> Non
     assert run.wheels is not None
     assert (len(run.commands), len(run.wheels), len(run.poses)) == (1200, 1201, 1201)
     np.testing.assert_allclose(np.diff(run.poses.t), 0.05, atol=1e-12)
-    assert minute.log.notes == ("simulated: tyre-force ground, 60 s, seed 11",)
+    assert minute.log.notes == ("simulated: tyre-force terrain, 60 s, seed 11",)
 
 
 def test_wheel_twist_is_that_of_the_true_wheel_speeds(minute: Simulation) -> None:
@@ -121,7 +121,7 @@ def test_late_poses_have_late_stamps_and_the_same_places() -> None:
         ({"std_xy": -0.01}, "std_xy is -0.01"),
         ({"std_yaw": float("inf")}, "std_yaw is inf"),
         ({"pose_delay": float("nan")}, "pose_delay is nan"),
-        ({"ground": "ice"}, "unknown ground 'ice'.*tyre-force, traction-law, contact-friction"),
+        ({"terrain": "ice"}, "unknown terrain 'ice'.*tyre-force, traction-law, contact-friction"),
         ({"drive": "rally"}, "unknown drive 'rally'.*thesis, steps, dull"),
     ],
 )

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from slipwise.simulation.land_tamer import LandTamer, mjcf
-from slipwise.simulation.tyre_force import TyreForceGround, TyreLaw, tyre_force
+from slipwise.simulation.tyre_force import TyreForceTerrain, TyreLaw, tyre_force
 
 LAW = TyreLaw()
 LOAD = np.full(1000, 1600.0)
@@ -76,7 +76,7 @@ def test_forces_act_at_the_contact_patches() -> None:
     mujoco.mj_step(model, data, nstep=1000)
     data.qvel[0] = 2.0
     mujoco.mj_step1(model, data)
-    TyreForceGround(partial(tyre_force, LAW), vehicle, model).apply(data)
+    TyreForceTerrain(partial(tyre_force, LAW), vehicle, model).apply(data)
     wrench = data.xfrc_applied[model.body("wheel_l1").id]
     assert wrench[0] == pytest.approx(-(LAW.friction + LAW.rolling_resistance) * 1635.0, rel=1e-3)
     np.testing.assert_allclose(np.delete(wrench, [0, 4]), 0, atol=1.0)
@@ -91,7 +91,7 @@ def test_yawing_hull_drags_the_outer_wheels_sideways() -> None:
     mujoco.mj_step(model, data, nstep=1000)
     data.qvel[5] = 1.0
     mujoco.mj_step1(model, data)
-    TyreForceGround(partial(tyre_force, LAW), vehicle, model).apply(data)
+    TyreForceTerrain(partial(tyre_force, LAW), vehicle, model).apply(data)
     left_force = {name: data.xfrc_applied[model.body(f"wheel_{name}").id, 1] for name in ("l0", "l1", "l2")}
     assert left_force["l0"] < -500
     assert left_force["l2"] > 500

@@ -22,8 +22,8 @@ pytestmark = pytest.mark.slow
 SLIP = _core.named_basis("full-linear-6")
 
 
-def quiet(_what: str, share: float) -> None:
-    assert 0.0 <= share < 1.0
+def quiet(_what: str, fraction: float) -> None:
+    assert 0.0 <= fraction < 1.0
 
 
 @pytest.fixture(scope="module")

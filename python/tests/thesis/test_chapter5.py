@@ -30,9 +30,9 @@ THESIS = _core.named_basis("thesis-15")
 @pytest.fixture(scope="module")
 def figures() -> Figures:
     reported: list[float] = []
-    made = chapter5_figures(Fixture(size=SMALL), lambda _what, share: reported.append(share))
+    made = chapter5_figures(Fixture(size=SMALL), lambda _what, fraction: reported.append(fraction))
     assert reported == sorted(reported)
-    assert all(0.0 <= share < 1.0 for share in reported)
+    assert all(0.0 <= fraction < 1.0 for fraction in reported)
     return {figure.key: figure for figure in made}
 
 

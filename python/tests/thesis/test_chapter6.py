@@ -17,7 +17,7 @@ from slipwise.thesis import SMALL, Fixture, Heat, Line, ThesisFigure
 from slipwise.thesis.chapter6 import chapter6_figures
 from slipwise.thesis.chapter6_circling import circling
 from slipwise.thesis.chapter6_convergence import without_slip
-from slipwise.thesis.chapter6_jacobian import shares_wrong
+from slipwise.thesis.chapter6_jacobian import fractions_wrong
 from slipwise.thesis.chapter6_recording import EXACT, Course, drive_windows, record
 from slipwise.thesis.chapter6_smoothing import drifting_drive
 from slipwise.thesis.chapter6_table import (
@@ -44,9 +44,9 @@ def fixture() -> Fixture:
 @pytest.fixture(scope="module")
 def figures(fixture: Fixture) -> Figures:
     reported: list[float] = []
-    made = chapter6_figures(fixture, lambda _what, share: reported.append(share))
+    made = chapter6_figures(fixture, lambda _what, fraction: reported.append(fraction))
     assert reported == sorted(reported)
-    assert all(0.0 <= share < 1.0 for share in reported)
+    assert all(0.0 <= fraction < 1.0 for fraction in reported)
     return {figure.key: figure for figure in made}
 
 
@@ -73,8 +73,8 @@ def test_slip_surfaces_bring_a_drive_near_to_physics(figures: Figures) -> None:
 
 
 def test_table_has_every_estimator_and_learning_beats_no_slip(figures: Figures) -> None:
-    for ground in ("tyre-force", "contact-friction"):
-        for grid in figures[f"table-6-2-{ground}"].grids[:2]:
+    for terrain in ("tyre-force", "contact-friction"):
+        for grid in figures[f"table-6-2-{terrain}"].grids[:2]:
             rows = {row[0]: row for row in grid.rows}
             assert set(METHODS) < set(rows)
             place = grid.columns.index("honest position [m]")
@@ -108,8 +108,8 @@ def test_what_agrees_and_what_does_not_follows_from_the_errors() -> None:
 
 def test_the_table_says_where_it_contradicts_the_thesis(figures: Figures) -> None:
     """Each in-sample comparison of its own rows stands once, on the side where it belongs."""
-    for ground in ("tyre-force", "contact-friction"):
-        figure = figures[f"table-6-2-{ground}"]
+    for terrain in ("tyre-force", "contact-friction"):
+        figure = figures[f"table-6-2-{terrain}"]
         for grid, name in zip(figure.grids, ("commands", "wheel speeds"), strict=False):
             rows = {row[0]: row for row in grid.rows}
             for what, unit in (("position", "m"), ("heading", "rad")):
@@ -149,7 +149,7 @@ def test_the_exact_jacobian_changes_what_the_filter_learns(circles: Log) -> None
     assert not np.allclose(thesis.mean[-1], exact.mean[-1])
 
 
-def test_residuals_without_slip_are_those_of_the_plain_model(circles: Log) -> None:
+def test_residuals_without_slip_are_those_of_the_baseline_model(circles: Log) -> None:
     recording = record(circles, Course("iekf"))
     baseline = baseline_predictor(recording.course.settings)
     predictions = predictions_of(baseline, recording.windows, recording.fed)
@@ -157,12 +157,12 @@ def test_residuals_without_slip_are_those_of_the_plain_model(circles: Log) -> No
 
 
 def test_the_thesis_jacobian_is_worse_over_longer_segments(circles: Log) -> None:
-    shares = [shares_wrong(circles, length)[0] for length in (0.5, 2.0, 5.0)]
-    assert shares == sorted(shares)
-    assert shares[-1] > 0.4
+    fractions = [fractions_wrong(circles, length)[0] for length in (0.5, 2.0, 5.0)]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] > 0.4
     windows = drive_windows(circles, Course("iekf"), 5.0)
     motion = _core.MotionModel(_core.named_basis("thesis-15"), False, False)
-    at = _core.linearize_segment(motion, np.zeros(15), windows.track(0), windows.segments[0])
+    at = _core.linearize_segment(motion, np.zeros(15), windows.input_history(0), windows.segments[0])
     thesis, exact = (
         np.array(_core.segment_jacobian(kind, motion, at, windows.segments[0]))
         for kind in (_core.SegmentJacobian.Thesis, EXACT)

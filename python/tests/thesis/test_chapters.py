@@ -29,9 +29,9 @@ def figures() -> Figures:
     made = [
         figure
         for make in (chapter2_figures, chapter3_figures, chapter4_figures)
-        for figure in make(fixture, lambda _what, share: reported.append(share))
+        for figure in make(fixture, lambda _what, fraction: reported.append(fraction))
     ]
-    assert all(0.0 <= share < 1.0 for share in reported)
+    assert all(0.0 <= fraction < 1.0 for fraction in reported)
     assert len({figure.key for figure in made}) == len(made)
     return {figure.key: figure for figure in made}
 

@@ -20,7 +20,7 @@ PLAN = FixturePlan(size=SMALL)
 def test_chapters_come_back_in_their_order_and_report_progress(tmp_path: Path) -> None:
     reported: list[tuple[str, float]] = []
     plan = FixturePlan(size=SMALL, data=tmp_path)
-    made = reproduce(plan, chapters=(TOY,), progress=lambda what, share: reported.append((what, share)))
+    made = reproduce(plan, chapters=(TOY,), progress=lambda what, fraction: reported.append((what, fraction)))
     assert [chapter.key for chapter in made] == ["toy"]
     assert [figure.key for figure in made[0].figures] == ["figure-9-1", "figure-9-2", "figure-9-3"]
     assert f"({tmp_path})" in made[0].figures[2].missing

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "gpu_peaks.hpp"
-#include "slipwise/rollout/gpu.hpp"
+#include "slipwise/rollout/gpu/gpu.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 
 namespace {
@@ -115,7 +115,7 @@ int main() {
   std::printf("%s\n", benchmarks::gpu_name().c_str());
   std::printf("  copies %.0f e9 bytes/s, multiply-adds %.2f e12/s, both measured now\n", bandwidth / 1e9,
               arithmetic / 1e12);
-  std::printf("  rollouts x %zu periods in float, best of %d [1e9 steps/s]; shares are those without copies\n",
+  std::printf("  rollouts x %zu periods in float, best of %d [1e9 steps/s]; coefficients are those without copies\n",
               kPeriods, kRuns);
   std::printf("  %-30s %8s %-5s %12s %12s %12s %12s\n", "", "rollouts", "", "no copies", "with copies", "% bandwidth",
               "% arithmetic");

@@ -7,33 +7,34 @@
 #include <optional>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/lie/body_twist.hpp"
 
 namespace slipwise {
 
 /// Parameters of the actuator; the defaults are the identity. vy goes the way of v.
-/// A channel's drive is gain * input, delayed; the share `slow_share` of it goes through the slow lag, the rest through
-/// the lag. Two lags side by side are a second-order response: what a velocity controller with an integral part does.
+/// A channel's drive is gain * input, delayed; the fraction `slow_fraction` of it goes through the slow lag, the rest
+/// through the lag. Two lags side by side are a second-order response: what a velocity controller with an integral part
+/// does.
 struct ActuatorModel {
-  double lag_v = 0.0;             ///< time constant of the speed [s]
-  double lag_omega = 0.0;         ///< time constant of the yaw rate [s]
-  double delay_v = 0.0;           ///< transport delay of the speed [s]
-  double delay_omega = 0.0;       ///< transport delay of the yaw rate [s]
-  double clock_offset = 0.0;      ///< poses are stamped this much later than the inputs [s]
-  double gain_v = 1.0;            ///< of the speed [-]
-  double gain_omega = 1.0;        ///< of the yaw rate [-]
-  double slow_share_v = 0.0;      ///< of the speed [-]
-  double slow_share_omega = 0.0;  ///< of the yaw rate [-]
-  double slow_lag_v = 0.0;        ///< slow time constant of the speed [s]; without one there is no slow part
-  double slow_lag_omega = 0.0;    ///< slow time constant of the yaw rate [s]
+  double time_constant_v = 0.0;           ///< time constant of the speed [s]
+  double time_constant_omega = 0.0;       ///< time constant of the yaw rate [s]
+  double delay_v = 0.0;                   ///< transport delay of the speed [s]
+  double delay_omega = 0.0;               ///< transport delay of the yaw rate [s]
+  double clock_offset = 0.0;              ///< poses are stamped this much later than the inputs [s]
+  double gain_v = 1.0;                    ///< of the speed [-]
+  double gain_omega = 1.0;                ///< of the yaw rate [-]
+  double slow_fraction_v = 0.0;           ///< of the speed [-]
+  double slow_fraction_omega = 0.0;       ///< of the yaw rate [-]
+  double slow_time_constant_v = 0.0;      ///< slow time constant of the speed [s]; without one there is no slow mode
+  double slow_time_constant_omega = 0.0;  ///< slow time constant of the yaw rate [s]
 };
 inline constexpr Eigen::Index kActuatorParameters = 11;  ///< in the order of the fields above
 
 /// What was measured of the drive: its twist until a moment in input stamps, such as wheel speeds until now.
 struct MeasuredActuator {
-  std::shared_ptr<const InputTrack> twist;  ///< measured, held between samples
-  double until;                             ///< [s] in input stamps; nothing later is used
+  std::shared_ptr<const InputHistory> twist;  ///< measured, held between samples
+  double until;                               ///< [s] in input stamps; nothing later is used
 };
 
 /// A stretch of time, in pose stamps, and what is known of the drive at its start.
@@ -62,9 +63,9 @@ struct ActuatorSteps {
 
 /// The drive over [start - clock_offset, end - clock_offset] of the inputs, split wherever a delayed input changes.
 /// What is known of it was measured; after that the actuator goes on from `initial`.
-ActuatorSteps actuator_steps(const InputTrack& inputs, const ActuatorModel& actuator, const ActuatorSpan& window);
+ActuatorSteps actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator, const ActuatorSpan& window);
 /// The same with exact sensitivities to the actuator's parameters.
-ActuatorSteps linearize_actuator_steps(const InputTrack& inputs, const ActuatorModel& actuator,
+ActuatorSteps linearize_actuator_steps(const InputHistory& inputs, const ActuatorModel& actuator,
                                        const ActuatorSpan& window);
 
 }  // namespace slipwise

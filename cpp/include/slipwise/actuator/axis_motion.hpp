@@ -6,7 +6,7 @@
 #include <span>
 
 #include "slipwise/actuator/axis_response.hpp"
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 
 namespace slipwise {
 
@@ -22,7 +22,7 @@ struct AxisState {
   double fast, slow;
 };
 
-/// Derivatives are by lag, delay [s], gain, slow share [-], slow lag [s], and by the fast and the slow state at the
+/// Derivatives are by lag, delay [s], gain, slow fraction [-], slow lag [s], and by the fast and the slow state at the
 /// start.
 inline constexpr int kAxisParameters = 7;
 
@@ -32,19 +32,19 @@ struct AxisMotion {
 };
 
 /// The state of an axis whose input at `time` [s] was held for long.
-AxisState settled_axis(const InputTrack& inputs, const ActuatorAxis& axis, double time);
+AxisState settled_axis(const InputHistory& inputs, const ActuatorAxis& axis, double time);
 
 /// The axis over the K intervals between `edges` [s, increasing, in input stamps], from `start` at the first of them.
-AxisMotion axis_motion(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+AxisMotion axis_motion(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                        std::span<const double> edges);
 
 /// Its values alone.
-Eigen::VectorXd axis_values(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+Eigen::VectorXd axis_values(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                             std::span<const double> edges);
 
 /// The speed of the axis at each of the `times` [s, increasing, in input stamps], as many as `speed` holds, from
 /// `start` at the first of them.
-void axis_speeds(const InputTrack& inputs, const ActuatorAxis& axis, const AxisState& start,
+void axis_speeds(const InputHistory& inputs, const ActuatorAxis& axis, const AxisState& start,
                  std::span<const double> times, std::span<double> speed);
 
 }  // namespace slipwise

@@ -10,23 +10,24 @@
 namespace slipwise {
 
 struct AxisResponse {
-  double gain, lag, slow_share, slow_lag;
+  double gain, time_constant, slow_fraction, slow_time_constant;
 
-  bool has_slow_part() const { return slow_lag > 0.0; }
+  bool has_slow_mode() const { return slow_time_constant > 0.0; }
   /// Of the input, what goes through the slow lag.
-  double share() const { return has_slow_part() ? slow_share : 0.0; }
+  double fraction() const { return has_slow_mode() ? slow_fraction : 0.0; }
   /// Of the input, what the fast lag goes towards.
-  double fast_share() const { return (1.0 - share()) * gain; }
-  double longest_lag() const { return std::max(lag, slow_lag); }
+  double fast_fraction() const { return (1.0 - fraction()) * gain; }
+  double longest_lag() const { return std::max(time_constant, slow_time_constant); }
   /// The input that keeps a channel at `drive`.
   double keeping_input(double drive) const { return gain != 0.0 ? drive / gain : 0.0; }
 };
 
 inline AxisResponse speed_response(const ActuatorModel& actuator) {
-  return {actuator.gain_v, actuator.lag_v, actuator.slow_share_v, actuator.slow_lag_v};
+  return {actuator.gain_v, actuator.time_constant_v, actuator.slow_fraction_v, actuator.slow_time_constant_v};
 }
 inline AxisResponse yaw_rate_response(const ActuatorModel& actuator) {
-  return {actuator.gain_omega, actuator.lag_omega, actuator.slow_share_omega, actuator.slow_lag_omega};
+  return {actuator.gain_omega, actuator.time_constant_omega, actuator.slow_fraction_omega,
+          actuator.slow_time_constant_omega};
 }
 
 inline constexpr double kSettledLags = 8.0;  ///< after this many time constants the start of a lag is forgotten (e^-8)
@@ -35,7 +36,7 @@ inline constexpr double kSettledLags = 8.0;  ///< after this many time constants
 /// it is divided between the fast and the slow mode [s].
 inline double parts_warm_up(const AxisResponse& speed, const AxisResponse& turn) {
   return kSettledLags *
-         std::max(speed.has_slow_part() ? speed.longest_lag() : 0.0, turn.has_slow_part() ? turn.longest_lag() : 0.0);
+         std::max(speed.has_slow_mode() ? speed.longest_lag() : 0.0, turn.has_slow_mode() ? turn.longest_lag() : 0.0);
 }
 
 }  // namespace slipwise

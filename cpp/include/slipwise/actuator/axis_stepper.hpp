@@ -36,7 +36,8 @@ Sensitive<N> operator-(double a, const Sensitive<N>& b) {
 /// Where an axis's parameters stand among the N; kNotAmong where nothing is differentiated by one.
 inline constexpr Eigen::Index kNotAmong = -1;
 struct AxisPlaces {
-  Eigen::Index lag = kNotAmong, delay = kNotAmong, gain = kNotAmong, slow_share = kNotAmong, slow_lag = kNotAmong;
+  Eigen::Index time_constant = kNotAmong, delay = kNotAmong, gain = kNotAmong, slow_fraction = kNotAmong,
+               slow_time_constant = kNotAmong;
 };
 
 /// How the gaps of an axis's two modes close over a step.
@@ -44,7 +45,7 @@ struct AxisDecay {
   LagDecay fast, slow;
 
   AxisDecay(const AxisResponse& response, double duration)
-      : fast(response.lag, duration), slow(response.slow_lag, duration) {}
+      : fast(response.time_constant, duration), slow(response.slow_time_constant, duration) {}
 };
 
 /// The axis under an input that is held until the next one.
@@ -80,7 +81,7 @@ class AxisStepper {
   /// An input that moves with no parameter.
   void hold(double input) {
     towards_fast_ = part(input, false);
-    if (response_.has_slow_part()) {
+    if (response_.has_slow_mode()) {
       towards_slow_ = part(input, true);
     }
     moves_ = moves_ || input != 0.0;
@@ -88,7 +89,7 @@ class AxisStepper {
 
   /// An input that moves with some of the N, which are none of the axis's own.
   void hold(const Value& input) {
-    const double fast = response_.fast_share(), slow = response_.share() * response_.gain;
+    const double fast = response_.fast_fraction(), slow = response_.fraction() * response_.gain;
     towards_fast_ = {fast * input.value, fast * input.derivative};
     towards_slow_ = {slow * input.value, slow * input.derivative};
     moves_ = moves_ || input.value != 0.0 || !input.derivative.isZero(0.0);
@@ -97,7 +98,7 @@ class AxisStepper {
   /// The whole was measured while the held input acts.
   void measure(double value) {
     moves_ = moves_ || value != 0.0;
-    if (!response_.has_slow_part()) {
+    if (!response_.has_slow_mode()) {
       fast_ = {.value = value};
       return;
     }
@@ -109,12 +110,12 @@ class AxisStepper {
   /// It was measured before any input acts: what it does is held.
   void keep(double value) {
     moves_ = value != 0.0;
-    fast_ = {.value = (1.0 - response_.share()) * value};
-    slow_ = {.value = response_.share() * value};
+    fast_ = {.value = (1.0 - response_.fraction()) * value};
+    slow_ = {.value = response_.fraction() * value};
     if constexpr (N > 0) {
-      if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
-        fast_.derivative[places_.slow_share] = -value;
-        slow_.derivative[places_.slow_share] = value;
+      if (places_.slow_fraction != kNotAmong && response_.has_slow_mode()) {
+        fast_.derivative[places_.slow_fraction] = -value;
+        slow_.derivative[places_.slow_fraction] = value;
       }
     }
     towards_fast_ = fast_;
@@ -127,7 +128,7 @@ class AxisStepper {
       return 0.0;
     }
     double integral = advance_value(fast_, towards_fast_, decay.fast);
-    if (response_.has_slow_part()) {
+    if (response_.has_slow_mode()) {
       integral += advance_value(slow_, towards_slow_, decay.slow);
     }
     return integral;
@@ -138,9 +139,9 @@ class AxisStepper {
     if (!moves_) {
       return {};
     }
-    const Value fast = advance(fast_, towards_fast_, decay.fast, places_.lag, duration_derivative);
-    return response_.has_slow_part()
-               ? fast + advance(slow_, towards_slow_, decay.slow, places_.slow_lag, duration_derivative)
+    const Value fast = advance(fast_, towards_fast_, decay.fast, places_.time_constant, duration_derivative);
+    return response_.has_slow_mode()
+               ? fast + advance(slow_, towards_slow_, decay.slow, places_.slow_time_constant, duration_derivative)
                : fast;
   }
 
@@ -149,11 +150,11 @@ class AxisStepper {
     if (!moves_) {
       return;
     }
-    follow(fast_, towards_fast_, linearize_lag_step(fast_.value, towards_fast_.value, decay.fast), places_.lag,
-           duration_derivative);
-    if (response_.has_slow_part()) {
-      follow(slow_, towards_slow_, linearize_lag_step(slow_.value, towards_slow_.value, decay.slow), places_.slow_lag,
-             duration_derivative);
+    follow(fast_, towards_fast_, linearize_lag_step(fast_.value, towards_fast_.value, decay.fast),
+           places_.time_constant, duration_derivative);
+    if (response_.has_slow_mode()) {
+      follow(slow_, towards_slow_, linearize_lag_step(slow_.value, towards_slow_.value, decay.slow),
+             places_.slow_time_constant, duration_derivative);
     }
   }
 
@@ -161,16 +162,16 @@ class AxisStepper {
   double by_gain(double duration) const { return towards_fast_.derivative[places_.gain] * duration; }
 
  private:
-  /// Of an input, what one of the modes goes towards: its share of gain * input.
+  /// Of an input, what one of the modes goes towards: its fraction of gain * input.
   Value part(double input, bool slow) const {
-    const double share = slow ? response_.share() : 1.0 - response_.share();
-    Value part{.value = share * response_.gain * input};
+    const double fraction = slow ? response_.fraction() : 1.0 - response_.fraction();
+    Value part{.value = fraction * response_.gain * input};
     if constexpr (N > 0) {
       if (places_.gain != kNotAmong) {
-        part.derivative[places_.gain] = share * input;
+        part.derivative[places_.gain] = fraction * input;
       }
-      if (places_.slow_share != kNotAmong && response_.has_slow_part()) {
-        part.derivative[places_.slow_share] = (slow ? 1.0 : -1.0) * response_.gain * input;
+      if (places_.slow_fraction != kNotAmong && response_.has_slow_mode()) {
+        part.derivative[places_.slow_fraction] = (slow ? 1.0 : -1.0) * response_.gain * input;
       }
     }
     return part;

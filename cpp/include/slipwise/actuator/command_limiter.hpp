@@ -11,7 +11,7 @@
 
 namespace slipwise {
 
-/// The set speed of one axis, which follows its target as fast as it may. A track holds thousands of pieces, so its
+/// The set speed of one axis, which follows its target as fast as it may. A history holds thousands of pieces, so its
 /// steps are inline.
 class AxisRamp {
  public:
@@ -19,7 +19,7 @@ class AxisRamp {
 
   /// What the axis makes of a command that is held for long.
   double limited(double command) const {
-    return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.top, limits_.top);
+    return std::abs(command) < limits_.dead_band ? 0.0 : std::clamp(command, -limits_.saturation, limits_.saturation);
   }
   void aim(double command) {
     target_ = limited(command);
@@ -39,13 +39,13 @@ class AxisRamp {
   /// Until it is there; 0 where it goes at once [s].
   double seconds_to(double target) const {
     const bool turns = state_ * target < 0.0;
-    return turns ? std::abs(state_) / limits_.braking + std::abs(target) / limits_.acceleration
+    return turns ? std::abs(state_) / limits_.slew_rate_down + std::abs(target) / limits_.slew_rate_up
                  : std::abs(target - state_) / rate_towards(target);
   }
   /// Whether that takes any time.
   bool ramps_to(double target) const {
     const bool turns = state_ * target < 0.0;
-    return state_ != target && (turns ? std::isfinite(limits_.braking) || std::isfinite(limits_.acceleration)
+    return state_ != target && (turns ? std::isfinite(limits_.slew_rate_down) || std::isfinite(limits_.slew_rate_up)
                                       : std::isfinite(rate_towards(target)));
   }
   /// The mean over a piece, of which `taken` seconds pass [s].
@@ -63,7 +63,7 @@ class AxisRamp {
 
  private:
   double rate_towards(double goal) const {
-    return std::abs(goal) < std::abs(state_) ? limits_.braking : limits_.acceleration;
+    return std::abs(goal) < std::abs(state_) ? limits_.slew_rate_down : limits_.slew_rate_up;
   }
   /// Where it turns, zero comes first.
   double next_goal() const { return state_ * target_ < 0.0 ? 0.0 : target_; }

@@ -6,16 +6,16 @@
 #include <compare>
 #include <limits>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 
 namespace slipwise {
 
 /// Limits of one axis of the drive, the same for both signs; the defaults are the identity.
 struct AxisLimits {
   double dead_band = 0.0;  ///< what is slower gives zero, the rest passes as it is [m/s or rad/s]
-  double top = std::numeric_limits<double>::infinity();           ///< no faster [m/s or rad/s]
-  double acceleration = std::numeric_limits<double>::infinity();  ///< away from zero no quicker [m/s^2 or rad/s^2]
-  double braking = std::numeric_limits<double>::infinity();       ///< towards zero no quicker [m/s^2 or rad/s^2]
+  double saturation = std::numeric_limits<double>::infinity();      ///< no faster [m/s or rad/s]
+  double slew_rate_up = std::numeric_limits<double>::infinity();    ///< away from zero no quicker [m/s^2 or rad/s^2]
+  double slew_rate_down = std::numeric_limits<double>::infinity();  ///< towards zero no quicker [m/s^2 or rad/s^2]
 
   auto operator<=>(const AxisLimits&) const = default;
 };
@@ -25,23 +25,24 @@ struct AxisLimits {
 struct CommandLimits {
   AxisLimits speed = {};
   AxisLimits yaw_rate = {};
-  AxisLimits side = {};     ///< of each side's speed, v -+ omega * track / 2
-  double track = 1.0;       ///< [m] between the sides
-  double gain_v = 1.0;      ///< of the speed that is asked of the sides over the limited command [-]
-  double gain_omega = 1.0;  ///< of the yaw rate [-]
+  AxisLimits side = {};           ///< of each side's speed, v -+ omega * wheel_separation / 2
+  double wheel_separation = 1.0;  ///< [m] between the sides
+  double gain_v = 1.0;            ///< of the speed that is asked of the sides over the limited command [-]
+  double gain_omega = 1.0;        ///< of the yaw rate [-]
 
   bool operator==(const CommandLimits&) const = default;
 };
 
 /// Whether nothing is limited.
 bool unlimited(const CommandLimits& limits);
-/// Whether the sides are limited; if not, track and gains have no effect.
+/// Whether the sides are limited; if not, wheel_separation and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
 /// Whether an axis, or some axis, ramps.
 bool limits_rates(const AxisLimits& limits);
 bool limits_rates(const CommandLimits& limits);
-/// \throws std::invalid_argument when a limit is negative or not a number, or a rate, top, track or gain not positive.
+/// \throws std::invalid_argument when a limit is negative or not a number, or a rate, saturation, wheel_separation or
+/// gain not positive.
 void check(const CommandLimits& limits);
 
 /// The commands behind the limits of speed and yaw rate alone, in front of those of the sides.
@@ -53,7 +54,7 @@ struct SideSpeeds {
 };
 inline SideSpeeds side_speeds(const CommandLimits& limits, const BodyTwist& twist) {
   const double v = limits.gain_v * twist.v;
-  const double half = 0.5 * limits.gain_omega * twist.omega * limits.track;
+  const double half = 0.5 * limits.gain_omega * twist.omega * limits.wheel_separation;
   return {v - half, v + half};
 }
 
@@ -68,6 +69,7 @@ int ramp_pieces(double hold, double longest_piece = kRampPiece);
 /// equal intervals are cut exactly. A piece that a command cuts short keeps the mean of the whole one: its distance
 /// errs by no more than rate * longest_piece^2 / 8.
 /// \throws std::invalid_argument as `check` does, and when the longest piece is not positive.
-InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, double longest_piece = kRampPiece);
+InputHistory limited_inputs(const InputHistory& commands, const CommandLimits& limits,
+                            double longest_piece = kRampPiece);
 
 }  // namespace slipwise

@@ -27,8 +27,8 @@ struct LagStepLinearization {
 struct LagDecay {
   double time_constant;  ///< [s]; zero follows the input at once
   double duration;       ///< [s]
-  double gone = 1.0;     ///< the share of the gap that has closed, 1 - a of derivations.md
-  double left = 0.0;     ///< the share that is left, a
+  double gone = 1.0;     ///< the fraction of the gap that has closed, 1 - a of derivations.md
+  double left = 0.0;     ///< the fraction that is left, a
   double by_rate = 0.0;  ///< a * duration / time_constant
 
   LagDecay(double time_constant_s, double duration_s) : time_constant(time_constant_s), duration(duration_s) {

@@ -17,10 +17,10 @@ struct MeasuredStart {
 /// The drive did `measured` at `time` [s], in the stamps of the commands.
 MeasuredStart measured_start(const ActuatorModel& actuator, double time, const BodyTwist& measured);
 
-/// The limited track of a drive that was measured. A channel in which no command acts by then starts from what keeps
+/// The limited history of a drive that was measured. A channel in which no command acts by then starts from what keeps
 /// the measured speed. In the others a ramp that the measured speed has overtaken has come as far as that speed.
 /// \throws std::invalid_argument as `check` does.
-InputTrack limited_track(const InputTrack& commands, const CommandLimits& limits, const MeasuredStart& start,
-                         double longest_piece = kRampPiece);
+InputHistory limited_inputs(const InputHistory& commands, const CommandLimits& limits, const MeasuredStart& start,
+                            double longest_piece = kRampPiece);
 
 }  // namespace slipwise

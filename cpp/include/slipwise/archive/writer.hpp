@@ -16,7 +16,7 @@
 
 namespace slipwise::archive {
 
-/// Appends each value that it is called with. An object that several pointers share is written once. The values must
+/// Appends each value that it is called with. An object that several pointers fraction is written once. The values must
 /// live as long as the writer.
 class Writer {
  public:

@@ -21,7 +21,7 @@ struct DisturbanceSettings {
   std::vector<double> fractions = {0.1, 0.3};
   std::vector<double> time_constants = {5.0, 20.0};  ///< candidates [s]
   double white = 0.5;                                ///< prior weight of no slip disturbance [-]
-  WeightingSettings weighting{.learning_rate = 1.0, .share = 0.01};
+  WeightingSettings weighting{.learning_rate = 1.0, .fraction = 0.01};
 };
 
 /// Where a segment is expected to end: chart (x, y, theta) of T_start_end and its covariance.
@@ -41,9 +41,9 @@ struct ExpectedPoses {
   ExpectedPose nominal;
 };
 
-/// Adds to the shares of V and w in the slip rates a deviation that decays, follows it through the last segments, and
-/// carries it into a prediction. How large and how slow the disturbance is is weighted among candidates by what they
-/// predict; the first candidate is that it does not (derivations.md, section 18).
+/// Adds to the fractions of V and w in the slip rates a deviation that decays, follows it through the last segments,
+/// and carries it into a prediction. How large and how slow the disturbance is is weighted among candidates by what
+/// they predict; the first candidate is that it does not (derivations.md, section 18).
 class DisturbanceFilter {
  public:
   /// \throws std::invalid_argument when a fraction or a time constant is not positive and finite.

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/estimate.hpp"
 #include "slipwise/linear/gauss_newton.hpp"
 #include "slipwise/motion/motion_model.hpp"
@@ -28,7 +28,7 @@ struct BatchSettings {
 
 /// A segment, the inputs that it belongs to, and the covariance R of its measured chart.
 struct BatchDatum {
-  InputTrack inputs;
+  InputHistory inputs;
   Segment segment;
   Eigen::Matrix3d noise;
   /// Covariance of its error with that of the datum before.
@@ -81,7 +81,7 @@ class BatchSearch {
   }
 
  private:
-  /// Finds what the data share, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
+  /// Finds what the data fraction, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
   /// datum, or a noise is none.
   void check_data();
   BatchPoint point(std::vector<SegmentLinearization> at) const;

@@ -14,7 +14,7 @@ namespace slipwise {
 struct RegressionPrior {
   Eigen::VectorXd weight_std;  ///< [d], each in the unit of the output over that of its feature
   double noise_std = 1.0;      ///< of one example, in the unit of the output
-  /// How many examples the stated noise is worth; infinite: it is known (thesis 5.11), else learned with the weights.
+  /// How many examples the reported noise is worth; infinite: it is known (thesis 5.11), else learned with the weights.
   double noise_examples = std::numeric_limits<double>::infinity();
 };
 

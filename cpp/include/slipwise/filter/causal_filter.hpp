@@ -27,15 +27,15 @@ class CausalFilter {
   /// Learns one segment. `speeds` are those driven up to the segment's end. After 8, 11, 16, ... 256 segments a refit
   /// of all of them begins; it takes effect a sixteenth as many segments later, whether `refit_slice` was called
   /// meanwhile or not. The update returned is that of the segment alone.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment, const ReferenceSpeeds& speeds);
   /// Does a bounded slice of the refit's work; false where there is none to do now. Results do not depend on it.
   bool refit_slice();
   /// Whether a refit took effect with the last segment.
   bool refitted() const { return refitted_; }
 
-  /// Gives the slip parameters `share` of their prior variance back and keeps their mean. Lag, delay and clock are the
-  /// robot's, not the ground's: they stay as learned.
-  void forget(double share);
+  /// Gives the slip parameters `fraction` of their prior variance back and keeps their mean. Lag, delay and clock are
+  /// the robot's, not the terrain's: they stay as learned.
+  void forget(double fraction);
 
   const MotionModel& model() const { return model_; }
   /// What learning goes on from: the noise is taken to be of the shape given.
@@ -58,7 +58,7 @@ class CausalFilter {
 
  private:
   void follow(const ReferenceSpeeds& speeds);
-  void keep(const InputTrack& inputs, const Segment& segment);
+  void keep(const InputHistory& inputs, const Segment& segment);
   void end_refit();
 
   /// A refit that is under way.

@@ -2,7 +2,7 @@
 // The speeds that the robot was driven at so far, as references of the priors.
 #pragma once
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/filter/speed_range.hpp"
 #include "slipwise/segment/segment.hpp"
@@ -12,7 +12,7 @@ namespace slipwise {
 class DrivenSpeeds {
  public:
   /// Adds the inputs of one segment.
-  void see(const InputTrack& inputs, const Segment& segment);
+  void see(const InputHistory& inputs, const Segment& segment);
   /// The 90th percentiles so far, at least 0.05.
   ReferenceSpeeds reference() const;
 

@@ -26,7 +26,7 @@ inline std::string_view advice(Status status) {
     case Status::Downweighted:
       return "the residual was larger than its noise explains and counted for less";
     case Status::Rejected:
-      return "the residual was far beyond its noise and was rejected; look for pose jumps or a change of ground";
+      return "the residual was far beyond its noise and was rejected; look for pose jumps or a change of terrain";
     case Status::NotConverged:
       break;
   }

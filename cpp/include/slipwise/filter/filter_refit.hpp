@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/batch.hpp"
 #include "slipwise/filter/causal_filter_settings.hpp"
 #include "slipwise/filter/filter_state.hpp"

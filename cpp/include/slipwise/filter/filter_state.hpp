@@ -17,7 +17,7 @@ struct FilterState {
   FilterState(const MotionModel& model, const NoiseSettings& noise) : estimate{}, noise_scale(noise), scores(model) {}
 
   /// Learns one segment.
-  IekfUpdate learn(const MotionModel& model, const InputTrack& inputs, const Segment& segment,
+  IekfUpdate learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                    const NoiseSettings& noise, const IekfSettings& iekf);
 
   /// Names what is saved.

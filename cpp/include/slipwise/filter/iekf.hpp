@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/estimate.hpp"
 #include "slipwise/filter/map_update.hpp"
 #include "slipwise/motion/motion_model.hpp"
@@ -34,10 +34,10 @@ struct IekfUpdate {
 };
 
 /// `noise` is the covariance R of the segment's measured chart. \throws std::invalid_argument when sizes do not fit.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings = {});
 /// The same where the segment is linearised at the prior's mean already, as its noise may need.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputTrack& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
                        const IekfSettings& settings = {});
 

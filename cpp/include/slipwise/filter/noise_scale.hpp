@@ -18,7 +18,8 @@ struct NoiseSettings {
                     .pose_std_yaw = 0.01};
   bool adapt = true;            ///< learn the factor from the residuals
   double prior_segments = 5.0;  ///< the shape counts as much as this many segments [-]
-  double memory = 40.0;  ///< the factor is a mean over about this many segments, so that it follows the ground [-]
+  double forgetting_time =
+      40.0;              ///< the factor is a mean over about this many segments, so that it follows the terrain [-]
   double largest = 9.0;  ///< a squared residual counts at most this many times its expected value [-]
 };
 

@@ -22,7 +22,7 @@ class PredictiveScore {
   explicit PredictiveScore(const NoiseSettings& settings) : settings_(settings), noise_scale_(settings) {}
 
   /// Scores the prediction of a segment, then learns the noise from its residual.
-  ScoredSegment score(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
+  ScoredSegment score(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
                       const Segment& segment);
   /// Learned factor of the noise variances of (x, y, theta).
   const Eigen::Vector3d& noise_scale() const { return noise_scale_.value(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Priors in physical units: what share of the motion a term may explain, and plausible lags, delays, offsets and
-// mounts.
+// Priors in physical units: what fraction of the motion a term may explain, and plausible lags, delays, offsets and
+// sensor extrinsics.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,17 +19,17 @@ struct ReferenceSpeeds {
 };
 
 struct PriorSettings {
-  double slip_fraction = 0.3;     ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
-  double clock_offset_std = 0.2;  ///< about 0, also of delays without an actuator model [s]
-  double lag = 0.3;               ///< median time constant [s]
-  double delay = 0.1;             ///< median transport delay [s]
-  double log_std = 0.8;           ///< standard deviation of the logarithms of lags and delays [-]
-  double gain_std = 0.2;          ///< of the drive over the input, about 1 [-]
-  double slow_share_std = 0.3;    ///< of the share of the drive that follows slowly, about 0 [-]
-  double slow_lag = 2.0;          ///< median slow time constant [s]
-  Pose2 sensor = {};              ///< where the pose sensor is thought to sit in base_link
-  double lever_std = 1.0;         ///< of its x and y about that [m]
-  double sensor_yaw_std = 0.1;    ///< of its yaw about that [rad]
+  double slip_fraction = 0.3;       ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
+  double clock_offset_std = 0.2;    ///< about 0, also of delays without an actuator model [s]
+  double time_constant = 0.3;       ///< median time constant [s]
+  double delay = 0.1;               ///< median transport delay [s]
+  double log_std = 0.8;             ///< standard deviation of the logarithms of lags and delays [-]
+  double gain_std = 0.2;            ///< of the drive over the input, about 1 [-]
+  double slow_fraction_std = 0.3;   ///< of the fraction of the drive that follows slowly, about 0 [-]
+  double slow_time_constant = 2.0;  ///< median slow time constant [s]
+  Pose2 sensor = {};                ///< where the pose sensor is thought to sit in base_link
+  double extrinsics_std = 1.0;      ///< of its x and y about that [m]
+  double sensor_yaw_std = 0.1;      ///< of its yaw about that [rad]
 };
 
 /// Standard deviation of each slip parameter: fraction * reference of its channel / |term at the reference speeds|.

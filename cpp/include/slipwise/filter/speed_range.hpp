@@ -12,8 +12,8 @@ class SpeedRange {
  public:
   /// Adds `seconds` at magnitude |value|; standstill does not count.
   void add(double value, double seconds);
-  /// The magnitude below which `share` of the moving time lies; `floor` where nothing moved yet.
-  double quantile(double share, double floor) const;
+  /// The magnitude below which `fraction` of the moving time lies; `floor` where nothing moved yet.
+  double quantile(double fraction, double floor) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weighting candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a share that
+// Weighting candidates by how well they predict: a tempered predictive density (Gruenwald 2012) after a fraction that
 // falls with time (Herbster and Warmuth 1998; van Erven, Gruenwald and de Rooij 2012).
 #pragma once
 
@@ -11,9 +11,9 @@ namespace slipwise {
 
 struct WeightingSettings {
   double learning_rate =
-      0.5;              ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
-  double share = 0.05;  ///< part of the weight that segment n redistributes, 1/n where that is less: poor candidates
-                        ///< lead while data are few, and the longer one has led, the less is a change expected [-]
+      0.5;                 ///< power of the predictive density: below 1, since no model is true (tempered Bayes) [-]
+  double fraction = 0.05;  ///< part of the weight that segment n redistributes, 1/n where that is less: poor candidates
+                           ///< lead while data are few, and the longer one has led, the less is a change expected [-]
 };
 
 /// The weights after candidates predicted a segment with these log scores, `observed` segments having spoken before;

@@ -16,8 +16,8 @@ namespace slipwise {
 
 /// A stretch of commands and of the wheel speeds that follow them.
 struct WheelSegment {
-  InputTrack commands;
-  InputTrack wheels;
+  InputHistory commands;
+  InputHistory wheels;
   double start;  ///< [s] in input stamps
   double end;    ///< [s]
 };

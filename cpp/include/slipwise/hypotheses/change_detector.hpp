@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding a change of ground: whether the last segments prefer other slip parameters than those learned before.
+// Finding a change of terrain: whether the last segments prefer other slip parameters than those learned before.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +12,13 @@ struct ChangeSettings {
   bool detect = true;
   double threshold = 9.5;  ///< log odds of a change against none beyond which there is an alarm [-]
   double suspicion = 3.0;  ///< log odds beyond which models that forgot are tried, without an alarm [-]
-  int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a ground
+  int shortest = 2;        ///< segments that must agree: one alone is an outlier, not a terrain
   int longest = 8;         ///< segments that are tested together, at most
   double fraction = 0.1;   ///< nominal size of a change of a term's slip, as a fraction of the driven twist [-]
   double forget = 0.1;     ///< on a suspicion, part of the prior variance that the slip parameters get back [-]
   int trial = 20;    ///< segments after a suspicion in which the models as they were compete with those that forgot
   int warm_up = 20;  ///< segments before the first test, in which the size of the noise is learned
-  double memory = 100.0;  ///< segments over which the nominal size and likeness of residuals are averaged [-]
+  double forgetting_time = 100.0;  ///< segments over which the nominal size and likeness of residuals are averaged [-]
 };
 
 /// The test of one segment together with those just before it.
@@ -29,30 +29,30 @@ struct ChangeTest {
   bool alarm = false;      ///< a change was found: by the test, or since models that forgot predicted better
 };
 
-/// Log odds that a change explains residuals, and what the fit of the change expects of unchanged ground.
+/// Log odds that a change explains residuals, and what the fit of the change expects of unchanged terrain.
 struct ChangeFit {
   double log_odds;
   double gain;           ///< of the log likelihood, less what the change costs
-  double expected_gain;  ///< of white residuals on unchanged ground
+  double expected_gain;  ///< of white residuals on unchanged terrain
 };
 
 /// `residuals` are whitened, [3 n]; the columns of `by_change` are their derivatives by independent changes in units of
 /// their nominal size, [3 n, changes]. Residuals and changes have heavy tails (derivations.md, section 17).
 ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change);
 
-/// The ways in which a ground may come to differ: each a list of changes that come together.
+/// The ways in which a terrain may come to differ: each a list of changes that come together.
 using ChangeKinds = std::vector<std::vector<Eigen::Index>>;
 
 /// A Bayesian likelihood ratio over the last segments, averaged over the kinds of change and weighted against what is
-/// nominal on this ground: residuals that are always small tell of a change sooner, and neighbouring residuals that are
-/// always alike (a slip disturbance) are no change.
+/// nominal on this terrain: residuals that are always small tell of a change sooner, and neighbouring residuals that
+/// are always alike (a slip disturbance) are no change.
 class ChangeDetector {
  public:
   /// `kinds` are lists of columns of the `by_change` that `see` is given. Without any, nothing is ever found.
   /// \throws std::invalid_argument when the settings test no segment, or a kind is empty.
   ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds);
 
-  /// Tests whether the ground changed before this segment or one of the last. `innovation` had covariance `covariance`
+  /// Tests whether the terrain changed before this segment or one of the last. `innovation` had covariance `covariance`
   /// under what was learned before; `by_change` is its derivative by changes in units of their nominal size. After an
   /// alarm the test starts again.
   ChangeTest see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,

@@ -42,12 +42,12 @@ class ModelAverage {
   ModelAverage(std::string name, const std::vector<Basis>& bases, ActuatorParameters learned,
                const CausalFilterSettings& filter, const ModelAverageSettings& settings);
 
-  /// Learns one segment with every model, after a test whether the ground changed. Returns the update of the model that
-  /// weighted most before.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  /// Learns one segment with every model, after a test whether the terrain changed. Returns the update of the model
+  /// that weighted most before.
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
 
   /// The same in pieces: takes the segment, which `advance` then learns. What is left of the one before is learned now.
-  void start(const InputTrack& inputs, const Segment& segment);
+  void start(const InputHistory& inputs, const Segment& segment);
 
   /// One bounded piece: the test for a change, or the update of one filter. False when the segment is learned.
   bool advance();
@@ -64,7 +64,7 @@ class ModelAverage {
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;
-  /// The test of the last segment for a change of ground.
+  /// The test of the last segment for a change of terrain.
   const ChangeTest& change() const { return change_; }
   ReferenceSpeeds reference_speeds() const { return speeds_.reference(); }
 
@@ -80,7 +80,7 @@ class ModelAverage {
  private:
   /// A segment that is being learned, and the updates so far.
   struct Learning {
-    InputTrack inputs;
+    InputHistory inputs;
     Segment segment;
     bool tested = false;
     std::vector<IekfUpdate> updates = {};
@@ -91,7 +91,7 @@ class ModelAverage {
   void look_for_change();
   void update_next_filter();
   void reweigh();
-  ChangeTest test_for_change(const InputTrack& inputs, const Segment& segment);
+  ChangeTest test_for_change(const InputHistory& inputs, const Segment& segment);
   void branch();
   void resolve();
   Eigen::VectorXd basis_weights() const;
@@ -105,7 +105,7 @@ class ModelAverage {
   Eigen::VectorXd weights_;   ///< one per filter
   std::size_t observed_ = 0;  ///< segments weighted by
   DrivenSpeeds speeds_;
-  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of ground is looked for
+  std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of terrain is looked for
   std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;

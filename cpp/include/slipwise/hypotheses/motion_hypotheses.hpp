@@ -25,7 +25,7 @@ struct HypothesisSettings {
   std::vector<Basis> bases = averaged_bases();  ///< averaged, or one
   bool dynamics = true;                         ///< inputs are commands: lag and delay are learned
   bool clock_offset = true;                     ///< learned, where inputs are wheel speeds
-  bool mount = false;                           ///< where the pose sensor sits is learned
+  bool sensor_extrinsics = false;               ///< where the pose sensor sits is learned
   bool cascaded = true;  ///< from commands, once wheel speeds come: also learn the actuator from these
   bool direct = true;    ///< from commands: also try slip and delays, no lag
   bool baseline = true;  ///< also try the kinematic baseline

@@ -21,7 +21,7 @@ struct ChannelUpdate {
   Status status = Status::Converged;
 };
 
-/// State [parameters; per axis that is followed: fast part, slow part, deviation from the actuator].
+/// State [parameters; per axis that is followed: fast mode, slow mode, deviation from the actuator].
 class ActuatorChannel {
  public:
   ActuatorChannel() = default;
@@ -46,7 +46,7 @@ class ActuatorChannel {
  private:
   ActuatorAxis axis(const Eigen::VectorXd& state, std::size_t i) const;
   bool begin(const ChannelWindow& window);
-  void lose_track();
+  void lose_state();
   WindowModel predict(const ChannelWindow& window, const ActuatorNoiseMeans& noise, const Eigen::VectorXd& state) const;
   Eigen::VectorXd predict_values(const ChannelWindow& window, const ActuatorNoiseMeans& noise,
                                  const Eigen::VectorXd& state) const;

@@ -32,7 +32,7 @@ class ActuatorFilter {
   /// \throws std::invalid_argument when the end is not after the start.
   /// After 3, 4, 5, 7, ... 256 windows a refit of all of them begins, which takes effect a thirty-second as many
   /// windows later.
-  ActuatorUpdate learn(const InputTrack& inputs, const InputTrack& wheels, double start, double end);
+  ActuatorUpdate learn(const InputHistory& inputs, const InputHistory& wheels, double start, double end);
   /// Does a bounded slice of the refit's work; whether there was any to do. Results do not depend on it.
   bool refit_slice();
   /// A refit that is under way takes effect now.

@@ -12,9 +12,9 @@
 
 namespace slipwise {
 
-/// Log lag, log delay [ln s], gain, slow share [-], log slow lag [ln s].
+/// Log lag, log delay [ln s], gain, slow fraction [-], log slow lag [ln s].
 inline constexpr int kChannelParameters = 5;
-/// Fast part, slow part, deviation from the actuator.
+/// Fast part, slow mode, deviation from the actuator.
 inline constexpr int kAxisStates = 3;
 
 using ChannelParameters = Eigen::Matrix<double, kChannelParameters, 1>;
@@ -22,7 +22,7 @@ using AxisVector = Eigen::Matrix<double, kAxisStates, 1>;
 
 /// A window of wheel speeds and the inputs that they follow.
 struct ChannelWindow {
-  InputTrack inputs;
+  InputHistory inputs;
   WheelMeans observed;
 };
 
@@ -38,7 +38,7 @@ struct FirstAxisState {
 /// move. `deviation` is the variance of its deviation.
 std::optional<FirstAxisState> first_state(const ChannelWindow& window, const ActuatorAxis& axis, double deviation);
 
-/// The axis through the window from the fast and the slow part at its start; derivatives by lags and delay are by their
+/// The axis through the window from the fast and the slow mode at its start; derivatives by lags and delay are by their
 /// logarithms, as the channel's parameters are.
 AxisMotion axis_through(const ChannelWindow& window, const ActuatorAxis& axis, const AxisState& start);
 

@@ -36,13 +36,13 @@ struct AxisReach {
 struct LimitSearch {
   LimitedActuator drive;          ///< with the found limits alone
   std::vector<FoundLimit> found;  ///< empty: the data show none
-  double track_std;               ///< [m] of the track between the sides; zero where these have no limits
+  double wheel_separation_std;    ///< [m] of the separation of the sides; zero where these have no limits
   std::array<AxisReach, kLimitedAxes.size()> reach;
 };
 
 /// The limits that the wheels show. The search goes on from `before`, such as what was found in earlier records.
 /// \throws std::invalid_argument when there are fewer than 20 twists to explain.
-LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSettings& prior, double track,
+LimitSearch find_limits(std::span<const WheelRecord> records, const PriorSettings& prior, double wheel_separation,
                         const LimitSearchSettings& settings,
                         const std::optional<LimitedActuator>& before = std::nullopt);
 

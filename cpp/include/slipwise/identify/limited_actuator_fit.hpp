@@ -22,14 +22,14 @@ namespace slipwise {
 /// A stretch of one run over which the commands were known without a gap: the commands, and the wheels' twist beside
 /// them. The first twist is where the drive starts; only the others are explained.
 struct WheelRecord {
-  InputTrack commands;
+  InputHistory commands;
   std::vector<double> t;          ///< [s], increasing, in the stamps of the commands
   std::vector<BodyTwist> wheels;  ///< [t]
 };
 
-enum class LimitKind : std::uint8_t { DeadBand, Top, Acceleration, Braking };
-inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Top, LimitKind::Acceleration,
-                                        LimitKind::Braking};
+enum class LimitKind : std::uint8_t { DeadBand, Saturation, SlewRateUp, SlewRateDown };
+inline constexpr std::array kLimitKinds{LimitKind::DeadBand, LimitKind::Saturation, LimitKind::SlewRateUp,
+                                        LimitKind::SlewRateDown};
 double& limit_of(AxisLimits& limits, LimitKind kind);
 double limit_of(const AxisLimits& limits, LimitKind kind);
 /// Whether it limits anything.
@@ -41,7 +41,7 @@ inline constexpr std::array kLimitedAxes{LimitedAxis::Speed, LimitedAxis::YawRat
 AxisLimits& axis_of(CommandLimits& limits, LimitedAxis axis);
 const AxisLimits& axis_of(const CommandLimits& limits, LimitedAxis axis);
 
-/// A command as one side sees it: its speed is |gain_v * v + gain_omega * omega * track / 2|.
+/// A command as one side sees it: its speed is |gain_v * v + gain_omega * omega * wheel_separation / 2|.
 struct SideCommand {
   double v, omega;
 };
@@ -52,8 +52,8 @@ double speed_of_side(const CommandLimits& limits, const SideCommand& command);
 struct LimitedActuator {
   CommandLimits limits;
   ActuatorModel actuator;
-  /// The fastest command that the sides' dead-band blocks and the slowest that it lets through: while track and gains
-  /// are fitted, it stays between them.
+  /// The fastest command that the sides' dead-band blocks and the slowest that it lets through: while wheel_separation
+  /// and gains are fitted, it stays between them.
   std::optional<std::array<SideCommand, 2>> edge = {};
 };
 
@@ -72,8 +72,8 @@ struct ScoredActuator {
 /// alone. So it is for one thread.
 class LimitedActuatorFit {
  public:
-  /// `prior` is of gain, delay and lag; the track between the sides is near `track` [m].
-  LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior, double track);
+  /// `prior` is of gain, delay and lag; the separation of the sides is near `wheel_separation` [m].
+  LimitedActuatorFit(std::span<const WheelRecord> records, const PriorSettings& prior, double wheel_separation);
 
   /// No limits, and the actuator of the prior.
   LimitedActuator start() const;
@@ -82,12 +82,12 @@ class LimitedActuatorFit {
   /// where all that are left, if they gained as much as the last, came to no less than `wanted`.
   ScoredActuator refine(const LimitedActuator& drive, int steps,
                         double wanted = std::numeric_limits<double>::infinity()) const;
-  /// Standard deviation of each smooth limit of each axis (top, acceleration, braking), robust against residuals that
-  /// are alike or of unequal size; zero for what limits nothing, and for dead-bands.
+  /// Standard deviation of each smooth limit of each axis (saturation, slew_rate_up, braking), robust against residuals
+  /// that are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
     std::array<std::array<double, kLimitKinds.size()>, kLimitedAxes.size()> std;  ///< by axis and kind
-    double track_std;                                                             ///< [m]
-    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log track
+    double wheel_separation_std;                                                  ///< [m]
+    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log wheel_separation
   };
   Spread spread(const LimitedActuator& drive) const;
 
@@ -103,10 +103,10 @@ class LimitedActuatorFit {
   };
   /// One channel of a drive, and all that its loss was made of.
   struct FittedChannel {
-    std::vector<InputTrack> tracks;  ///< the commands of each record that it follows
-    Eigen::VectorXd error;           ///< measured less explained [samples]
-    double scale;                    ///< of the errors
-    Eigen::VectorXd weight;          ///< of each
+    std::vector<InputHistory> inputs;  ///< the commands of each record that it follows
+    Eigen::VectorXd error;             ///< measured less explained [samples]
+    double scale;                      ///< of the errors
+    Eigen::VectorXd weight;            ///< of each
     ActuatorLoss loss;
   };
   struct FittedActuator : ScoredActuator {
@@ -116,9 +116,9 @@ class LimitedActuatorFit {
   using Slopes = std::array<Eigen::MatrixXd, 2>;
   static AxisActuator channel_drive(const LimitedActuator& drive, int c);
   /// The commands of each record that channel `c` follows.
-  const std::vector<InputTrack>& tracks_of(const CommandLimits& limits, int c) const;
-  /// Measured less explained in channel `c`, which follows the `tracks`.
-  void put_errors(const LimitedActuator& drive, std::span<const InputTrack> tracks, int c,
+  const std::vector<InputHistory>& inputs_of(const CommandLimits& limits, int c) const;
+  /// Measured less explained in channel `c`, which follows the `inputs`.
+  void put_errors(const LimitedActuator& drive, std::span<const InputHistory> inputs, int c,
                   Eigen::Ref<Eigen::VectorXd> errors) const;
   FittedChannel fitted_channel(const LimitedActuator& drive, int c) const;
   FittedActuator fitted(const LimitedActuator& drive) const;
@@ -129,11 +129,11 @@ class LimitedActuatorFit {
 
   std::span<const WheelRecord> records_;
   PriorSettings prior_;
-  double track_;
+  double wheel_separation_;
   std::size_t samples_ = 0;
   struct {
     CommandLimits limits;
-    std::vector<InputTrack> tracks;
+    std::vector<InputHistory> inputs;
   } mutable last_;                                                     ///< asked for
   mutable std::array<std::map<AxisActuator, ActuatorLoss>, 2> known_;  ///< of speed and yaw rate
 };

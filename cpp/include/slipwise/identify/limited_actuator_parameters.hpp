@@ -9,9 +9,10 @@
 
 namespace slipwise {
 
-/// In a row: gain, log lag and log delay per channel, log track, and per axis log top, acceleration, braking.
+/// In a row: gain, log lag and log delay per channel, log wheel_separation, and per axis log saturation, slew_rate_up,
+/// braking.
 inline constexpr int kActuatorPart = 6;
-inline constexpr int kTrackPlace = 6;
+inline constexpr int kSeparationPlace = 6;
 inline constexpr int kFirstLimit = 7;
 inline constexpr int kLimitsPerAxis = 3;  ///< dead-bands are no smooth parameters
 using LimitParameters = Eigen::Matrix<double, kFirstLimit + 3 * kLimitsPerAxis, 1>;
@@ -27,12 +28,12 @@ bool acts_behind(int parameter, const CommandLimits& limits);
 /// Whether a parameter has an effect on the speed (channel 0) or on the yaw rate (channel 1) of the drive.
 bool acts_on(int parameter, const CommandLimits& limits, int channel);
 
-inline constexpr double kTrackLogStd = 0.5;  ///< of the track between the sides about the one given
+inline constexpr double kSeparationLogStd = 0.5;  ///< of the separation of the sides about the one given
 
 /// Prior precision of a parameter, and how far it lies from its prior mean.
 struct PriorPull {
   double precision, gap;
 };
-PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSettings& prior, double track);
+PriorPull prior_pull(int parameter, const LimitParameters& p, const PriorSettings& prior, double wheel_separation);
 
 }  // namespace slipwise

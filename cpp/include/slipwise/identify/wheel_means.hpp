@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 
 namespace slipwise {
 
@@ -17,6 +17,6 @@ struct WheelMeans {
 
 /// The intervals end where wheel speeds are stamped, so that no two share a sample, and last `shortest` [s] at least
 /// or one sample. \throws std::invalid_argument when the stretch does not end after it starts.
-WheelMeans wheel_means(const InputTrack& wheels, double start, double end, double shortest);
+WheelMeans wheel_means(const InputHistory& wheels, double start, double end, double shortest);
 
 }  // namespace slipwise

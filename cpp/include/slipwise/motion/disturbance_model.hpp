@@ -11,8 +11,8 @@ namespace slipwise {
 
 /// One candidate of the slip disturbance: first-order Gauss-Markov processes of one time constant.
 struct SlipDisturbance {
-  double drift;          ///< of the forward and sideways terms, as a fraction of their prior std [-]
-  double turn;           ///< of the angular terms [-]
+  double linear;         ///< of the forward and sideways terms, as a fraction of their prior std [-]
+  double angular;        ///< of the angular terms [-]
   double time_constant;  ///< [s]
 };
 
@@ -22,13 +22,13 @@ struct DisturbanceModel {
   Eigen::VectorXd weights;  ///< not negative, their sum is 1
 };
 
-/// The terms that may have a disturbance: the shares of V in the forward and sideways slip rates, of V and w in the
+/// The terms that may have a disturbance: the fractions of V in the forward and sideways slip rates, of V and w in the
 /// angular one.
 struct DisturbedTerms {
   std::vector<Eigen::Index> places;  ///< of their parameters
   Eigen::VectorXd prior_std;         ///< [places]
   std::vector<Channel> channels;     ///< [places]
-  std::vector<bool> of_turn;         ///< [places]; shares of w, the others of V
+  std::vector<bool> of_turn;         ///< [places]; fractions of w, the others of V
 
   Eigen::Index size() const { return prior_std.size(); }
   /// Variances of the terms under one guess, before anything recent is known.

@@ -17,28 +17,28 @@ namespace slipwise {
 
 /// Which parts of the actuator, and of what measures its poses, are parameters. What is not learned is the identity.
 struct ActuatorParameters {
-  bool dynamics = false;      ///< lag and delay per channel
-  bool clock_offset = false;  ///< offset between inputs and poses
-  bool response = false;      ///< gain, and a slow part with its share and time constant, per channel
-  bool mount = false;         ///< where the pose sensor sits on the robot
-  bool delays = false;        ///< delay per channel alone: no actuator model follows it
+  bool dynamics = false;           ///< lag and delay per channel
+  bool clock_offset = false;       ///< offset between inputs and poses
+  bool response = false;           ///< gain, and a slow mode with its fraction and time constant, per channel
+  bool sensor_extrinsics = false;  ///< where the pose sensor sits on the robot
+  bool delays = false;             ///< delay per channel alone: no actuator model follows it
 };
 
-inline constexpr Eigen::Index kMountParameters = 3;
+inline constexpr Eigen::Index kExtrinsicsParameters = 3;
 
 /// Derivative, by its logarithm, of a coordinate of a time in which motion is nearly linear (derivations.md, section
 /// 6): (s + 0.03) / (s + 0.3) for s [s].
 double log_time_derivative(double seconds);
 
-/// Parameter vector: slip (basis order), then log lag_v, log lag_omega, log delay_v, log delay_omega [ln s], then
-/// gain_v, gain_omega, slow_share_v, slow_share_omega [-], log slow_lag_v, log slow_lag_omega [ln s], then clock offset
-/// [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms keep lags and delays positive. Delays alone are
-/// delay_v, delay_omega [s] in place of the four logarithms: a robot that obeys at once has none, which no logarithm
-/// reaches, and stamps may make them negative.
+/// Parameter vector: slip (basis order), then log time_constant_v, log time_constant_omega, log delay_v, log
+/// delay_omega [ln s], then gain_v, gain_omega, slow_fraction_v, slow_fraction_omega [-], log slow_time_constant_v, log
+/// slow_time_constant_omega [ln s], then clock offset [s], then sensor_x, sensor_y [m], sensor_yaw [rad]. Logarithms
+/// keep lags and delays positive. Delays alone are delay_v, delay_omega [s] in place of the four logarithms: a robot
+/// that obeys at once has none, which no logarithm reaches, and stamps may make them negative.
 class MotionModel {
  public:
   MotionModel();  ///< the kinematic baseline: no slip, nothing learned
-  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow part.
+  /// \throws std::invalid_argument when delays alone are wanted together with lags, gains or a slow mode.
   MotionModel(Basis basis, ActuatorParameters learned);
 
   /// What the constructor takes.
@@ -47,13 +47,13 @@ class MotionModel {
   ActuatorParameters learned() const { return learned_; }
   Eigen::Index slip_size() const { return static_cast<Eigen::Index>(basis_.size()); }
   Eigen::Index actuator_size() const { return static_cast<Eigen::Index>(actuator_places_.size()); }
-  Eigen::Index mount_size() const { return learned_.mount ? kMountParameters : 0; }
-  Eigen::Index size() const { return slip_size() + actuator_size() + mount_size(); }
+  Eigen::Index extrinsics_size() const { return learned_.sensor_extrinsics ? kExtrinsicsParameters : 0; }
+  Eigen::Index size() const { return slip_size() + actuator_size() + extrinsics_size(); }
   std::vector<ParameterInfo> parameters() const;
 
   ActuatorModel actuator(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
   /// Pose of the sensor in base_link; the identity where it is not learned.
-  Pose2 mount(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
+  Pose2 sensor_extrinsics(const Eigen::Ref<const Eigen::VectorXd>& parameters) const;
   /// Which of the actuator's parameters (in ActuatorModel's order) the model's actuator parameters are, one after the
   /// other.
   const std::vector<Eigen::Index>& actuator_places() const { return actuator_places_; }

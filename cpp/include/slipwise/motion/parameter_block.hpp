@@ -7,7 +7,7 @@
 namespace slipwise {
 
 struct ParameterInfo {
-  std::string name;         ///< `ang.w`, `log_lag_v`, `clock_offset`, ...
+  std::string name;         ///< `ang.w`, `log_time_constant_v`, `clock_offset`, ...
   std::string unit;         ///< SI; logarithms of seconds are in "ln s"
   std::string description;  ///< one plain sentence
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "slipwise/filter/speed_range.hpp"
-#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 
 namespace slipwise {
@@ -38,9 +38,9 @@ struct GatedPoses {
 class PoseGate {
  public:
   /// Takes a pose; `inputs` are known until its stamp. Nothing that was measured later is used.
-  GatedPoses push(const MeasuredPose& pose, const InputHistory& inputs);
+  GatedPoses push(const MeasuredPose& pose, const InputBuffer& inputs);
   /// No pose follows: what waits is decided.
-  GatedPoses finish(const InputHistory& inputs);
+  GatedPoses finish(const InputBuffer& inputs);
   /// Another run begins.
   void restart();
 
@@ -51,12 +51,12 @@ class PoseGate {
   }
 
  private:
-  bool jumps(const MeasuredPose& from, const MeasuredPose& to, const InputHistory& inputs) const;
+  bool jumps(const MeasuredPose& from, const MeasuredPose& to, const InputBuffer& inputs) const;
   bool returns(const MeasuredPose& to) const;
   void accept(const MeasuredPose& pose, GatedPoses& out);
-  void give_up(const InputHistory& inputs, GatedPoses& out);
+  void give_up(const InputBuffer& inputs, GatedPoses& out);
   void begin_frame(const MeasuredPose& pose, GatedPoses& out);
-  void take(const MeasuredPose& pose, const InputHistory& inputs, GatedPoses& out);
+  void take(const MeasuredPose& pose, const InputBuffer& inputs, GatedPoses& out);
   void learn_noise(const MeasuredPose& pose);
 
   std::vector<MeasuredPose> accepted_;  ///< the last three of the frame

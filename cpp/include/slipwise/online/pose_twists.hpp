@@ -7,7 +7,7 @@
 
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/lie/se2.hpp"
-#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/segment_cutter.hpp"
 
 namespace slipwise {
@@ -28,9 +28,9 @@ class PoseTwists {
   PoseTwists(const SegmentRules& rules, const Pose2& sensor);
 
   /// Takes a pose that is not late; `commands` are known until its stamp. Returns the stretches that it ends.
-  std::vector<TwistStretch> push(const TimedPose& pose, const InputHistory& commands);
+  std::vector<TwistStretch> push(const TimedPose& pose, const InputBuffer& commands);
   /// No pose of the run follows.
-  std::vector<TwistStretch> finish(const InputHistory& commands);
+  std::vector<TwistStretch> finish(const InputBuffer& commands);
   /// From which stamp on commands are needed [s]; infinity where there is no need.
   double begins() const;
 

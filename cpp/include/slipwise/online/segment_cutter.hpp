@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/segment/segment.hpp"
@@ -88,9 +88,9 @@ class SegmentCutter {
   SegmentCutter(double length, SegmentRules rules, bool whole_frames, std::optional<double> stride = {});
 
   /// Takes a pose; `inputs` are known until its stamp. Returns the segments that it ends.
-  std::vector<SegmentCut> push(const TimedPose& pose, const InputHistory& inputs);
+  std::vector<SegmentCut> push(const TimedPose& pose, const InputBuffer& inputs);
   /// No pose of the run follows.
-  std::vector<SegmentCut> finish(const InputHistory& inputs);
+  std::vector<SegmentCut> finish(const InputBuffer& inputs);
   double length() const { return length_; }
   /// Stamp of the pose from which on the next segment may begin [s]; infinity where none came.
   double begins() const { return poses_.empty() ? std::numeric_limits<double>::infinity() : poses_.front().pose.t; }
@@ -102,11 +102,11 @@ class SegmentCutter {
   }
 
  private:
-  void cut(double length, bool last, const InputHistory& inputs, std::vector<SegmentCut>& out);
+  void cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out);
   std::optional<std::size_t> nearest(double wanted, double tolerance, bool last) const;
-  std::optional<Reason> problem(std::size_t end, const InputHistory& inputs) const;
-  std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputHistory& inputs);
-  void end_frame(const InputHistory& inputs, std::vector<SegmentCut>& out);
+  std::optional<Reason> problem(std::size_t end, const InputBuffer& inputs) const;
+  std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs);
+  void end_frame(const InputBuffer& inputs, std::vector<SegmentCut>& out);
 
   double length_ = 0.0;
   SegmentRules rules_;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
-#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/pose_twists.hpp"
@@ -82,8 +82,8 @@ class SegmentStream {
 
   /// The newest stamp of the run [s]; minus infinity before the first.
   double newest() const { return newest_; }
-  const InputHistory& commands() const { return commands_; }
-  const InputHistory& wheels() const { return wheels_; }
+  const InputBuffer& commands() const { return commands_; }
+  const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
   bool wheels_known() const { return wheels_ever_; }
   /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
@@ -126,8 +126,8 @@ class SegmentStream {
   void emit_wheel_segments(const std::vector<SegmentCut>& cuts);
   void finish_cutters();
   void trim();
-  const InputHistory& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
-  const InputHistory& gate_inputs(double t) const;
+  const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
+  const InputBuffer& gate_inputs(double t) const;
   std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
   DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;
   void set_actuator_state(Segment& segment) const;
@@ -140,8 +140,8 @@ class SegmentStream {
   double newest_;
   std::array<StampGate, kStreams> stamps_;
   std::array<std::array<SpeedGate, 3>, 2> speeds_;
-  InputHistory commands_;
-  InputHistory wheels_;
+  InputBuffer commands_;
+  InputBuffer wheels_;
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
   std::deque<Tilt> tilts_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Student's t around a predicted pose: which fraction its ellipsoids hold.
+// Student's t around a predicted pose: which share its ellipsoids hold.
 #pragma once
 
 namespace slipwise {

@@ -45,9 +45,9 @@ struct HeldCommands {
 /// The commands of a manoeuvre: the mean speed of each interval, and the curvature at its middle.
 HeldCommands held_commands(const ManoeuvreFrame& frame, const ManoeuvreVector& parameters);
 
-/// The commands behind limits of the drive, in pieces as limited_track cuts them. Before, `commanded` was commanded for
-/// long. The manoeuvre then settles for as long as ramps take at its end, too. Where dead-band or top hold a command,
-/// its derivative is zero; a ramp passes the derivative of what it goes to.
+/// The commands behind limits of the drive, in pieces as limited_inputs cuts them. Before, `commanded` was commanded
+/// for long. The manoeuvre then settles for as long as ramps take at its end, too. Where dead-band or top hold a
+/// command, its derivative is zero; a ramp passes the derivative of what it goes to.
 HeldCommands limited_commands(const HeldCommands& held, const CommandLimits& limits, const BodyTwist& commanded);
 
 }  // namespace slipwise

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "slipwise/actuator/actuator_model.hpp"
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/planning/drive_limits.hpp"
@@ -29,7 +29,7 @@ struct ManoeuvrePath {
   BodyTwist fast = {};  ///< of the drive, what the lags hold beside the slow ones
 };
 
-/// A motion model as a planner uses it, on flat ground. A clock offset is one of measured poses; plans have none.
+/// A motion model as a planner uses it, on flat terrain. A clock offset is one of measured poses; plans have none.
 class PlanningModel {
  public:
   /// The limits lie in front of the actuator.

@@ -26,7 +26,7 @@ struct MppiCosts {
   double across = 20.0;      ///< per squared metre beside the reference
   double along = 2.0;        ///< per squared metre ahead of or behind it
   double heading = 1.0;      ///< per squared radian off its heading
-  double smoothness = 0.05;  ///< per squared change of a command, each as a share of its largest change
+  double smoothness = 0.05;  ///< per squared change of a command, each as a fraction of its largest change
   double obstacle = 1.0;     ///< per unit of the costmap's value
   double collision = 1e4;    ///< once, where the costmap's highest value reaches `lethal`
   double lethal = 100.0;     ///< value of the costmap that counts as a collision
@@ -39,7 +39,7 @@ struct MppiSettings {
   double speed_std = 0.3;     ///< of the sampled speeds [m/s]
   double yaw_rate_std = 0.4;  ///< of the sampled yaw rates [rad/s]
   double colour = 0.3;        ///< time over which the noise changes [s]; 0 is white
-  double temperature = 0.3;   ///< share of the best quarter's excess cost at which a rollout weighs e^-1
+  double temperature = 0.3;   ///< fraction of the best quarter's excess cost at which a rollout weighs e^-1
   double risk = 0.0;          ///< 0 counts the mean cost over the models, 1 the worst
   std::uint64_t seed = 1;
   MppiLimits limits = {};

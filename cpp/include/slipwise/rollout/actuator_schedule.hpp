@@ -11,15 +11,15 @@ namespace slipwise {
 
 /// How a lag moves over a part: with gap = output - input, the mean output is input + gap * mean_gap, and the output at
 /// the end is input + gap * end_gap. Both are 0 without lag.
-struct LagShare {
+struct LagFraction {
   double mean_gap;
   double end_gap;
 };
 
 /// The two lags of a channel over a part.
-struct ChannelShare {
-  LagShare fast;
-  LagShare slow;
+struct ChannelFraction {
+  LagFraction fast;
+  LagFraction slow;
 };
 
 /// A stretch of time over which the delayed commands are constant.
@@ -27,8 +27,8 @@ struct PeriodPart {
   double duration;  ///< [s]
   bool next_v;      ///< the next command's speed begins to act where this part begins
   bool next_omega;  ///< the same for the yaw rate
-  ChannelShare v;
-  ChannelShare omega;
+  ChannelFraction v;
+  ChannelFraction omega;
 };
 
 /// When a channel's commands begin to act, and how it answers them: command i is sent at i * period and acts at
@@ -47,7 +47,7 @@ struct ActuatorSchedule {
   ChannelTiming v;
   ChannelTiming omega;
   bool lags;                        ///< some channel lags
-  bool responds;                    ///< some channel has a gain or a slow part
+  bool responds;                    ///< some channel has a gain or a slow mode
   std::vector<PeriodPart> lead_in;  ///< from the start to the first cycle
   std::vector<PeriodPart> cycle;
   std::size_t branch;            ///< the part of the cycle in place of which the tail leads to the period's end

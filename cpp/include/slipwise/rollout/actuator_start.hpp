@@ -60,19 +60,20 @@ ActuatorStart actuator_start(const ActuatorSchedule& actuator, const ChannelTimi
                              std::ptrdiff_t oldest, const Command& command) {
   const AxisResponse& response = channel.response;
   const double keeping = response.keeping_input(drive);
-  if (!response.has_slow_part()) {
+  if (!response.has_slow_mode()) {
     return {.commanded = keeping, .fast = drive, .slow = 0.0};
   }
   if (oldest == 0 && acts_at(channel, actuator.period, oldest) > 0.0) {
-    return {.commanded = keeping, .fast = (1.0 - response.share()) * drive, .slow = response.share() * drive};
+    return {.commanded = keeping, .fast = (1.0 - response.fraction()) * drive, .slow = response.fraction() * drive};
   }
   const double warm_up = parts_warm_up(actuator.v.response, actuator.omega.response);
   const StartInputs<Command> inputs{channel, actuator.period, oldest, keeping, command};
-  const double settled = response.gain * inputs.now(), share = response.share();
-  const MeasuredChannel<double> measured{.left = drive - response.fast_share() * inputs.lagged(response.lag, warm_up),
-                                         .modelled = share * response.gain * inputs.lagged(response.slow_lag, warm_up),
-                                         .settled = share * settled,
-                                         .carried = drive - (1.0 - share) * settled};
+  const double settled = response.gain * inputs.now(), fraction = response.fraction();
+  const MeasuredChannel<double> measured{
+      .left = drive - response.fast_fraction() * inputs.lagged(response.time_constant, warm_up),
+      .modelled = fraction * response.gain * inputs.lagged(response.slow_time_constant, warm_up),
+      .settled = fraction * settled,
+      .carried = drive - (1.0 - fraction) * settled};
   const double slow = slow_mode(measured);
   return {.commanded = keeping, .fast = drive - slow, .slow = slow};
 }

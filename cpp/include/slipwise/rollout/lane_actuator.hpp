@@ -61,7 +61,7 @@ SLIPWISE_LANES void read_commands(const LaneJob<Scalar>& job, const LaneBlock<Sc
   }
 }
 
-/// What a kernel is made for. None: every period is one part without lag. Response: gains and slow parts as well.
+/// What a kernel is made for. None: every period is one part without lag. Response: gains and slow modes as well.
 enum class Actuator : std::uint8_t { None, Delays, Lags, Response };
 
 /// One channel of the drive: the input that acts, and what its lags hold.

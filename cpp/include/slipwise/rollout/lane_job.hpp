@@ -38,28 +38,28 @@ struct LaneLag {
 /// A part of the control period (chain_schedule.hpp) in the kernel's numbers.
 template <typename Scalar>
 struct LanePart {
-  std::size_t first_share;  ///< its shares stand from here on in the job's
+  std::size_t first_coefficient;  ///< its coefficients stand from here on in the job's
   Scalar duration;
   LaneLag<Scalar> v, omega;
   bool next_v, next_omega;
 };
 
 /// Limits of one lane of the drive (command_limits.hpp) in the kernel's numbers. What is not limited has no dead-band,
-/// and the largest top and rates.
+/// and the largest saturation and rates.
 template <typename Scalar>
 struct RampLimits {
-  Scalar dead_band, top;
-  Scalar acceleration, braking;          ///< over a piece of the period
-  Scalar per_acceleration, per_braking;  ///< one over these; zero where they are not limited
-  bool ramps;                            ///< some rate is limited
+  Scalar dead_band, saturation;
+  Scalar slew_rate_up, slew_rate_down;  ///< over a piece of the period
+  Scalar per_slew_up, per_slew_down;    ///< one over these; zero where they are not limited
+  bool ramps;                           ///< some rate is limited
 };
 
 /// Limits of the commands, and of the two sides behind them.
 template <typename Scalar>
 struct DriveRamps {
   RampLimits<Scalar> speed, yaw_rate, side;
-  Scalar gain_v, half_track;  ///< from a command to its sides; with the gain of the yaw rate
-  Scalar per_track;
+  Scalar gain_v, half_separation;  ///< from a command to its sides; with the gain of the yaw rate
+  Scalar per_separation;
   bool sides;  ///< some limit of the sides
 };
 
@@ -76,7 +76,7 @@ struct LaneMap {
 template <typename Scalar>
 struct LaneJob {
   const LanePart<Scalar>* parts;  ///< those of the lead-in, the cycle and the tail (chain_schedule.hpp)
-  const Scalar* shares;           ///< [parts][products * 3], times the part's duration: from products to a tangent
+  const Scalar* coefficients;     ///< [parts][products * 3], times the part's duration: from products to a tangent
   std::size_t cycle, branch, tail, part_end;  ///< where these begin in the parts
   const LaneProduct* products;
   std::size_t product_count;
@@ -86,7 +86,7 @@ struct LaneJob {
   Scalar squared_curvature_speed;
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
-  bool responds;  ///< some channel has a gain or a slow part
+  bool responds;  ///< some channel has a gain or a slow mode
 
   const DriveRamps<Scalar>* limits;  ///< null where the commands pass as they are
   /// Limited commands are cut into so many pieces each and stand side by side, those before the start first; what

@@ -43,9 +43,9 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
   advance<L, kActuator, true>(part.v, robot.v, mean_v);
   advance<L, kActuator, false>(part.omega, robot.omega, mean_omega);
   if constexpr (kQuadratic) {
-    quadratic_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    quadratic_tangent<L>(job, job.coefficients + part.first_coefficient, mean_v, mean_omega, tangent);
   } else {
-    slip_tangent<L>(job, job.shares + part.first_share, mean_v, mean_omega, tangent);
+    slip_tangent<L>(job, job.coefficients + part.first_coefficient, mean_v, mean_omega, tangent);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits of the drive in lanes: what dead-band, top and ramps leave of the commands of a block, piece by piece.
+// Limits of the drive in lanes: what dead-band, saturation and ramps leave of the commands of a block, piece by piece.
 #pragma once
 
 #include "slipwise/rollout/lane_actuator.hpp"
@@ -8,12 +8,12 @@
 
 namespace slipwise {
 
-/// What is slower than the dead-band gives zero, what is faster than the top gives the top.
+/// What is slower than the dead-band gives zero, what is faster than the saturation gives the saturation.
 template <typename Scalar, class Vector>
 SLIPWISE_LANES Vector aim(const RampLimits<Scalar>& limits, const Vector& command) {
-  const Vector top = Vector{} + limits.top;
+  const Vector saturation = Vector{} + limits.saturation;
   const Vector passed = magnitude(command) < Vector{} + limits.dead_band ? Vector{} : command;
-  return larger(smaller(passed, top), -top);
+  return larger(smaller(passed, saturation), -saturation);
 }
 template <typename Scalar, class Half>
 SLIPWISE_LANES Pair<Half> aim(const RampLimits<Scalar>& limits, const Pair<Half>& command) {
@@ -31,11 +31,11 @@ SLIPWISE_LANES Vector ramp_piece(const RampLimits<Scalar>& limits, const Vector&
   const Vector from = state * up;
   const Vector to = target * up;
   const Vector stop = larger(from, smaller(to, zero));  // where braking ends
-  const Vector slower = smaller(stop - from, zero + limits.braking);
-  const Vector in_braking = slower * limits.per_braking;
+  const Vector slower = smaller(stop - from, zero + limits.slew_rate_down);
+  const Vector in_braking = slower * limits.per_slew_down;
   const Vector left = slower < stop - from ? zero : to - stop;
-  const Vector faster = smaller(left, larger(one - in_braking, zero) * limits.acceleration);
-  const Vector in_speeding = faster * limits.per_acceleration;
+  const Vector faster = smaller(left, larger(one - in_braking, zero) * limits.slew_rate_up);
+  const Vector in_speeding = faster * limits.per_slew_up;
   const Vector moved = slower + faster;
   const Vector end = moved < to - from ? from + moved : to;
   state = end * up;
@@ -64,7 +64,7 @@ SLIPWISE_LANES void limit_piece(const DriveRamps<Scalar>& limits, RampLanes<L>& 
   }
   if (limits.sides) {
     const typename L::Vector asked = v * limits.gain_v;
-    const typename L::Vector apart = omega * limits.half_track;
+    const typename L::Vector apart = omega * limits.half_separation;
     typename L::Vector left = aim(limits.side, asked - apart);
     typename L::Vector right = aim(limits.side, asked + apart);
     if (limits.side.ramps) {
@@ -72,7 +72,7 @@ SLIPWISE_LANES void limit_piece(const DriveRamps<Scalar>& limits, RampLanes<L>& 
       right = ramp_piece(limits.side, right, ramps.right);
     }
     v = (left + right) * static_cast<Scalar>(0.5);
-    omega = (right - left) * limits.per_track;
+    omega = (right - left) * limits.per_separation;
   }
 }
 

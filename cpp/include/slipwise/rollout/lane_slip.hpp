@@ -52,8 +52,8 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::V
 
 /// Adds a product to the channels that it has a share in: bits 1, 2 and 4.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& product, const Scalar* share,
-                               TangentLanes<L>& tangent) {
+SLIPWISE_LANES void add_product(unsigned channels, const typename L::Vector& product, const Scalar* share,
+                                TangentLanes<L>& tangent) {
   switch (channels) {  // the same way in every period: one well-predicted jump
     case 1:
       tangent.forward = tangent.forward + product * share[0];
@@ -89,24 +89,25 @@ SLIPWISE_LANES void add_shares(unsigned channels, const typename L::Vector& prod
 /// A program of second degree in speed and curvature (thesis 5.1), nested so that no product is needed by itself:
 /// kappa (kappa a + (V b + c)) + V (V d + e), with the yaw rate in the turn.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
-                                      const typename L::Vector& omega, TangentLanes<L>& tangent) {
+SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients,
+                                      const typename L::Vector& v, const typename L::Vector& omega,
+                                      TangentLanes<L>& tangent) {
   using Vector = L::Vector;
   const Vector kappa = (omega * v) / (v * v + job.squared_curvature_speed);
-  const Scalar* a = shares + 3 * job.quadratic.curvature_squared;
-  const Scalar* b = shares + 3 * job.quadratic.speed_by_curvature;
-  const Scalar* c = shares + 3 * job.quadratic.curvature;
-  const Scalar* d = shares + 3 * job.quadratic.speed_squared;
-  const Scalar* e = shares + 3 * kProductV;
+  const Scalar* a = coefficients + 3 * job.quadratic.curvature_squared;
+  const Scalar* b = coefficients + 3 * job.quadratic.speed_by_curvature;
+  const Scalar* c = coefficients + 3 * job.quadratic.curvature;
+  const Scalar* d = coefficients + 3 * job.quadratic.speed_squared;
+  const Scalar* e = coefficients + 3 * kProductV;
   tangent.forward = kappa * (kappa * a[0] + (v * b[0] + c[0])) + v * (v * d[0] + e[0]);
   tangent.left = kappa * (kappa * a[1] + (v * b[1] + c[1])) + v * (v * d[1] + e[1]);
-  tangent.turn =
-      kappa * (kappa * a[2] + (v * b[2] + c[2])) + (v * (v * d[2] + e[2]) + omega * shares[3 * kProductOmega + 2]);
+  tangent.turn = kappa * (kappa * a[2] + (v * b[2] + c[2])) +
+                 (v * (v * d[2] + e[2]) + omega * coefficients[3 * kProductOmega + 2]);
 }
 
-/// Runs the program: each product is an earlier one times a factor, and has its shares in the tangent.
+/// Runs the program: each product is an earlier one times a factor, and has its coefficients in the tangent.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* shares, const typename L::Vector& v,
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients, const typename L::Vector& v,
                                  const typename L::Vector& omega, TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
   find_factors<L>(job, v, omega, factors);
@@ -114,14 +115,14 @@ SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* share
   copy(v, products[kProductV]);
   copy(omega, products[kProductOmega]);
   fill(static_cast<Scalar>(1), products[kProductOne]);
-  tangent.forward = v * shares[3 * kProductV] + omega * shares[3 * kProductOmega];
-  tangent.left = v * shares[3 * kProductV + 1] + omega * shares[3 * kProductOmega + 1];
-  tangent.turn = v * shares[3 * kProductV + 2] + omega * shares[3 * kProductOmega + 2];
+  tangent.forward = v * coefficients[3 * kProductV] + omega * coefficients[3 * kProductOmega];
+  tangent.left = v * coefficients[3 * kProductV + 1] + omega * coefficients[3 * kProductOmega + 1];
+  tangent.turn = v * coefficients[3 * kProductV + 2] + omega * coefficients[3 * kProductOmega + 2];
   for (std::size_t i = kFirstProduct; i < job.product_count; ++i) {
     const LaneProduct code = job.products[i];
     const typename L::Vector product = products[code.parent] * factors.value[code.factor];
     copy(product, products[i]);
-    add_shares<L>(code.channels, product, shares + 3 * i, tangent);
+    add_product<L>(code.channels, product, coefficients + 3 * i, tangent);
   }
 }
 

@@ -19,7 +19,7 @@ struct ModelUncertainty {
   Eigen::MatrixXd covariance;                       ///< of the parameters
   MotionNoise noise;                                ///< its pose noise is not used: a rollout starts at a given pose
   Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< learned factor of the variances of (x, y, theta)
-  double growth = 1.0;                              ///< factor of all variances at the horizon in question
+  double inflation = 1.0;                           ///< factor of all variances at the horizon in question
   DisturbanceModel disturbance{};                   ///< of slip about the parameters
   Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip has a disturbance
 };

@@ -26,7 +26,7 @@ struct RolloutSetting {
 template <typename Scalar>
 struct LaneConstants {
   std::vector<LanePart<Scalar>> parts;  ///< lead-in, cycle, tail
-  std::vector<Scalar> shares;
+  std::vector<Scalar> coefficients;
   DriveRamps<Scalar> limits;
 };
 

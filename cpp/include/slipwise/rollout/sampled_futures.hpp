@@ -17,7 +17,7 @@ struct FutureOutputs {
   std::span<double> theta;  ///< [rad], not wrapped
 };
 
-/// Parameters drawn from their distribution, [parameters, samples]; the growth widens it.
+/// Parameters drawn from their distribution, [parameters, samples]; the inflation widens it.
 Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples, std::uint64_t seed);
 
 /// Each sample drives all commands with parameters of its own, and each of its rollouts has slip noise of its own. The

@@ -9,8 +9,8 @@
 
 namespace slipwise {
 
-/// `Moving` is 1, and 0 where a robot is parked: gravity is constant over a rollout and goes into a product's shares,
-/// but must not move a parked robot.
+/// `Moving` is 1, and 0 where a robot is parked: gravity is constant over a rollout and goes into a product's
+/// fractions, but must not move a parked robot.
 enum class SlipFactor : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, Moving };
 inline constexpr std::size_t kSlipFactors = 7;
 

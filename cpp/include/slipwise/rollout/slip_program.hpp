@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slip basis with its parameters as a short program: products that build on each other, and their shares per channel.
+// A slip basis with its parameters as a short program: products that build on each other, and their fractions per
+// channel.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@ class Basis;
 struct SlipProduct {
   std::size_t parent;  ///< its place in the program
   SlipFactor factor;
-  std::array<double, 3> share{};  ///< coefficient in the rates (forward [m/s], left [m/s], yaw [rad/s])
+  std::array<double, 3> fraction{};  ///< coefficient in the rates (forward [m/s], left [m/s], yaw [rad/s])
 };
 
 /// The robot's twist as a sum of products: the slip, and the drive itself.
@@ -31,7 +32,7 @@ struct SlipProgram {
 /// Where the program's products stand if it is of second degree in speed and curvature (thesis 5.1), beside the drive.
 std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program);
 
-/// Products that several terms share are computed once.
+/// Products that several terms fraction are computed once.
 /// \param alpha the slip parameters in basis order. \param gx, gy body-frame gravity [m/s^2].
 /// \throws std::invalid_argument when the basis needs more products than a kernel has room for.
 SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha, double gx, double gy);

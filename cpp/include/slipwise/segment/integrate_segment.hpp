@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/segment/segment.hpp"
@@ -36,7 +36,7 @@ struct SegmentPath {
 /// A model that learns where the sensor sits says so itself; otherwise the segment does.
 /// \throws std::invalid_argument when the parameters do not fit the model.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                              const InputTrack& inputs, const Segment& segment,
+                              const InputHistory& inputs, const Segment& segment,
                               Integrator integrator = Integrator::Exact);
 
 struct SegmentLinearization {
@@ -47,15 +47,15 @@ struct SegmentLinearization {
 
 /// Value and exact derivative in one pass (prefix scan of derivations.md, section 3).
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                       const InputTrack& inputs, const Segment& segment);
+                                       const InputHistory& inputs, const Segment& segment);
 /// The same by the slip parameters alone, which come first: cheaper where the actuator is learned too.
 SegmentLinearization linearize_slip(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                    const InputTrack& inputs, const Segment& segment);
+                                    const InputHistory& inputs, const Segment& segment);
 /// As `linearize_segment`, of the segment's beginnings: up to the first step's end after each `parts`-th of its time,
 /// the last up to its own end.
 std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                                                       const InputTrack& inputs, const Segment& segment,
+                                                       const InputHistory& inputs, const Segment& segment,
                                                        std::size_t parts);
 
 }  // namespace slipwise

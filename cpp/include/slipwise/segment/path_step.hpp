@@ -11,7 +11,7 @@
 
 namespace slipwise {
 
-/// Body-frame gravity [m/s^2], zero on flat ground.
+/// Body-frame gravity [m/s^2], zero on flat terrain.
 struct BodyGravity {
   double gx = 0.0;
   double gy = 0.0;

@@ -23,7 +23,7 @@ inline Eigen::Matrix3d sensor_by_robot(const Pose2& robot, const Pose2& sensor) 
 }
 
 /// Derivative of the chart of the sensor's motion by where the sensor sits (x, y, yaw).
-inline Eigen::Matrix3d sensor_by_mount(const Pose2& robot, const Pose2& sensor) {
+inline Eigen::Matrix3d sensor_by_extrinsics(const Pose2& robot, const Pose2& sensor) {
   const Pose2 motion = sensor_motion(robot, sensor);
   Eigen::Matrix3d derivative = Eigen::Matrix3d::Zero();
   derivative.topLeftCorner<2, 2>() = rotation(-sensor.theta) * (rotation(robot.theta) - rotation(0.0));

@@ -12,7 +12,7 @@
 
 namespace slipwise {
 
-/// What a slip term may be made of; the body-frame gravity (gx, gy) [m/s^2] is zero on flat ground.
+/// What a slip term may be made of; the body-frame gravity (gx, gy) [m/s^2] is zero on flat terrain.
 enum class Quantity : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, GravityX, GravityY };
 inline constexpr std::size_t kQuantities = 8;
 

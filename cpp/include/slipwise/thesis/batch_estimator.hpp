@@ -15,7 +15,7 @@ class BatchEstimator {
   BatchEstimator(MotionModel model, Estimate prior, const EstimatorSettings& settings);
 
   /// Keeps the segment; the update is that of the filter that runs along.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
   const MotionModel& model() const { return filter_.model(); }
   /// The MAP fit over all segments, made again by each call; before the first segment, the prior.
   Estimate estimate() const;
@@ -29,7 +29,7 @@ class BatchEstimator {
 
  private:
   struct Kept {
-    InputTrack inputs;
+    InputHistory inputs;
     Segment segment;
   };
 

@@ -27,7 +27,7 @@ class DelayedState {
   /// X_now = a measured pose, with its noise; what was known of earlier poses is dropped.
   void start(double time, const Pose2& measured);
   /// Predicts X_now to the end of the leg with slip noise.
-  void advance(const InputTrack& inputs, const Leg& leg);
+  void advance(const InputHistory& inputs, const Leg& leg);
   /// X_delayed = X_now. A pose measured now may then arrive late.
   void clone();
   /// Takes in the pose measured when clone() was called.
@@ -37,7 +37,7 @@ class DelayedState {
 
   /// The same by segments: one that begins where the last ended shares its pose; any other begins again. Predicts from
   /// the clone at the start, linearised again where the update settles. The innovation is that of the pose at the end.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
 
   const MotionModel& model() const { return model_; }
   Estimate estimate() const;                            ///< of the parameters
@@ -56,11 +56,11 @@ class DelayedState {
 
   Pose2 at_row(Eigen::Index row) const { return Pose2::from_vector(joint_.mean.segment<3>(row)); }
   Eigen::Matrix3d pose_noise() const;
-  void advance_at(const Point& point, const InputTrack& inputs, const Leg& leg, double inflation);
+  void advance_at(const Point& point, const InputHistory& inputs, const Leg& leg, double inflation);
   void update(Eigen::Index row, const Pose2& measured, const Eigen::Matrix3d& noise);
   IekfUpdate judge(const Pose2& end) const;
-  Eigen::VectorXd settled(const InputTrack& inputs, const Segment& segment, const Pose2& end) const;
-  void learn_weighted(const InputTrack& inputs, const Segment& segment, const Pose2& end, double weight);
+  Eigen::VectorXd settled(const InputHistory& inputs, const Segment& segment, const Pose2& end) const;
+  void learn_weighted(const InputHistory& inputs, const Segment& segment, const Pose2& end, double weight);
 
   MotionModel model_;
   MotionNoise noise_;

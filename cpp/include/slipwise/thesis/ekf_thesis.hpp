@@ -14,7 +14,7 @@ class EkfThesis {
  public:
   EkfThesis(MotionModel model, Estimate prior, const EstimatorSettings& settings);
 
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
   const MotionModel& model() const { return model_; }
   Estimate estimate() const { return estimate_; }
   /// The same data under another slip prior; false, and nothing done, where the posterior is too ill-conditioned.

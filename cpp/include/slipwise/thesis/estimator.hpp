@@ -20,7 +20,7 @@ namespace slipwise {
 /// What an estimator is: it learns segments in the order of time, and reports its posterior.
 template <typename T>
 concept SegmentEstimator =
-    std::copyable<T> && requires(T estimator, const T& known, const InputTrack& inputs, const Segment& segment,
+    std::copyable<T> && requires(T estimator, const T& known, const InputHistory& inputs, const Segment& segment,
                                  const Eigen::VectorXd& std, const Eigen::Vector3d& scale) {
       { estimator.learn(inputs, segment) } -> std::same_as<IekfUpdate>;
       { known.estimate() } -> std::same_as<Estimate>;
@@ -37,7 +37,7 @@ class Estimator {
     requires(!std::same_as<T, Estimator>)
   explicit Estimator(T estimator) : estimator_(std::move(estimator)) {}
 
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment) {
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment) {
     return std::visit([&](auto& e) { return e.learn(inputs, segment); }, estimator_);
   }
   Estimate estimate() const {

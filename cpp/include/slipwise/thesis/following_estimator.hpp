@@ -17,7 +17,7 @@ class FollowingEstimator {
   FollowingEstimator(std::string_view name, const MotionModel& model, const CausalFilterSettings& filter,
                      EstimatorSettings settings = {});
 
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
 
   const MotionModel& model() const { return estimator_.model(); }
   Estimate estimate() const { return estimator_.estimate(); }

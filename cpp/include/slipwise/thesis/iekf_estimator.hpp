@@ -13,7 +13,7 @@ class IekfEstimator {
   IekfEstimator(MotionModel model, Estimate prior, const EstimatorSettings& settings);
 
   /// Segments must not overlap. That neighbours share a pose is not modelled; `delayed-state` does.
-  IekfUpdate learn(const InputTrack& inputs, const Segment& segment);
+  IekfUpdate learn(const InputHistory& inputs, const Segment& segment);
   const MotionModel& model() const { return model_; }
   Estimate estimate() const { return estimate_; }
   /// The same data under another slip prior; false, and nothing done, where the posterior is too ill-conditioned.

@@ -13,12 +13,12 @@ struct LeastSquaresFit {
   Eigen::VectorXd coefficients;  ///< [d], the smallest in units of the columns where not all are determined
   Eigen::MatrixXd covariance;    ///< [d, d] within the determined directions, from the residuals
   Eigen::MatrixXd
-      undetermined;          ///< [d, d - rank]: directions that no example tells of, sparse, in units of the columns
+      not_identifiable;      ///< [d, d - rank]: directions that no example tells of, sparse, in units of the columns
   Eigen::VectorXd scale;     ///< [d] root mean square of each column; 1 where it is zero
   Eigen::VectorXd residual;  ///< [n] output minus fit
-  Eigen::VectorXd leverage;  ///< [n] share of each example in its own fit, 0..1
+  Eigen::VectorXd leverage;  ///< [n] fraction of each example in its own fit, 0..1
 
-  Eigen::Index rank() const { return coefficients.size() - undetermined.cols(); }
+  Eigen::Index rank() const { return coefficients.size() - not_identifiable.cols(); }
   /// Variance of the fitted mean at one state; infinite where the features leave the determined directions.
   double mean_variance(const Eigen::Ref<const Eigen::VectorXd>& features) const;
 };
@@ -29,7 +29,7 @@ LeastSquaresFit fit_least_squares(const Eigen::Ref<const Eigen::MatrixXd>& desig
                                   const Eigen::Ref<const Eigen::VectorXd>& output,
                                   const Eigen::Ref<const Eigen::VectorXd>& relative_std);
 
-/// The undetermined directions in words: "V and V^2 cannot be distinguished", "w is zero in all examples".
+/// The not_identifiable directions in words: "V and V^2 cannot be distinguished", "w is zero in all examples".
 std::vector<std::string> undetermined_directions(const LeastSquaresFit& fit, std::span<const std::string> terms);
 
 /// Thesis (5.6-5.8): |r| regressed on the same terms. It reads 20 % low, and can be negative.

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/estimate.hpp"
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/segment/segment.hpp"
@@ -13,7 +13,8 @@
 
 namespace slipwise {
 
-inline constexpr double kNominalTrack = 0.6;  ///< where nobody says the track: of a robot the size of a Husky [m]
+inline constexpr double kNominalWheelSeparation =
+    0.6;  ///< where nobody says the wheel_separation: of a robot the size of a Husky [m]
 
 /// full-linear-6 behind an identity actuator: what slip ratios are predicted with.
 MotionModel slip_ratio_model();
@@ -24,17 +25,17 @@ struct SlipRatioLinearization {
 };
 
 /// A segment as predicted from wheel speeds with constant slip ratios, and its derivative.
-SlipRatioLinearization linearize_slip_ratios(const InputTrack& wheels, const Segment& segment, const SlipRatios& slip,
-                                             double track);
+SlipRatioLinearization linearize_slip_ratios(const InputHistory& wheels, const Segment& segment, const SlipRatios& slip,
+                                             double wheel_separation);
 
 struct SlipRatioFilterSettings {
-  double track = kNominalTrack;  ///< between the two sides [m]
-  double prior_ratio_std = 0.3;  ///< of each slip ratio before any data [-]
-  double prior_angle_std = 0.2;  ///< of the slip angle before any data [rad]
-  double walk_ratio = 0.01;      ///< random walk of each slip ratio while driving [1/sqrt(s)]
-  double walk_angle = 0.005;     ///< random walk of the slip angle while driving [rad/sqrt(s)]
-  double huber = 2.5;            ///< a residual of more than this many sigma counts for less [-]
-  MotionNoise noise = {};        ///< of a segment's measurement
+  double wheel_separation = kNominalWheelSeparation;  ///< between the two sides [m]
+  double prior_ratio_std = 0.3;                       ///< of each slip ratio before any data [-]
+  double prior_angle_std = 0.2;                       ///< of the slip angle before any data [rad]
+  double walk_ratio = 0.01;                           ///< random walk of each slip ratio while driving [1/sqrt(s)]
+  double walk_angle = 0.005;                          ///< random walk of the slip angle while driving [rad/sqrt(s)]
+  double huber = 2.5;                                 ///< a residual of more than this many sigma counts for less [-]
+  MotionNoise noise = {};                             ///< of a segment's measurement
 };
 
 /// One segment's update.
@@ -47,12 +48,12 @@ struct SlipRatioUpdate {
 
 class SlipRatioFilter {
  public:
-  /// \throws std::invalid_argument when the track, a standard deviation or the pose noise is not positive.
+  /// \throws std::invalid_argument when the wheel separation, a standard deviation or the pose noise is not positive.
   explicit SlipRatioFilter(const SlipRatioFilterSettings& settings);
 
   /// Lets the slip walk for the segment's duration, then learns it. Only time inside segments counts, so that a parked
   /// robot forgets nothing. \throws std::invalid_argument when the segment ends before it starts or is not finite.
-  SlipRatioUpdate learn(const InputTrack& wheels, const Segment& segment);
+  SlipRatioUpdate learn(const InputHistory& wheels, const Segment& segment);
 
   SlipRatios slip() const { return SlipRatios::from_vector(estimate_.mean); }
   /// Posterior of (left, right, angle).

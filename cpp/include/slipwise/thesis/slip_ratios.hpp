@@ -10,7 +10,7 @@
 
 namespace slipwise {
 
-/// A side with rim speed s moves over the ground at s (1 - i); the robot drifts sideways by vy = -vx tan(angle), so
+/// A side with rim speed s moves over the terrain at s (1 - i); the robot drifts sideways by vy = -vx tan(angle), so
 /// that a positive angle is a drift to the right. The chart of the estimators is (left, right, angle).
 struct SlipRatios {
   double left = 0.0;   ///< i_L [-]: positive where the side spins, negative where it is dragged
@@ -31,13 +31,13 @@ inline SlipRatios bounded(const SlipRatios& slip) {
           .angle = std::clamp(slip.angle, -kLargestSlipAngle, kLargestSlipAngle)};
 }
 
-/// The robot's twist from that at the wheels (2.2), its sides `track` = 2c apart [m].
-inline BodyTwist slipping_twist(const BodyTwist& wheels, const SlipRatios& slip, double track) {
-  const double c = track / 2.0;
+/// The robot's twist from that at the wheels (2.2), its sides `wheel_separation` = 2c apart [m].
+inline BodyTwist slipping_twist(const BodyTwist& wheels, const SlipRatios& slip, double wheel_separation) {
+  const double c = wheel_separation / 2.0;
   const double left = (wheels.v - c * wheels.omega) * (1.0 - slip.left);
   const double right = (wheels.v + c * wheels.omega) * (1.0 - slip.right);
   const double vx = (left + right) / 2.0;
-  return {.v = vx, .vy = wheels.vy - vx * std::tan(slip.angle), .omega = (right - left) / track};
+  return {.v = vx, .vy = wheels.vy - vx * std::tan(slip.angle), .omega = (right - left) / wheel_separation};
 }
 
 struct LinearSlip {
@@ -46,8 +46,8 @@ struct LinearSlip {
 };
 
 /// The same slip as parameters of the basis full-linear-6: lon.V, lon.w, lat.V, lat.w, ang.V, ang.w.
-inline LinearSlip linear_slip(const SlipRatios& slip, double track) {
-  const double c = track / 2.0;
+inline LinearSlip linear_slip(const SlipRatios& slip, double wheel_separation) {
+  const double c = wheel_separation / 2.0;
   const double mean = (slip.left + slip.right) / 2.0;
   const double half = (slip.right - slip.left) / 2.0;
   const double tangent = std::tan(slip.angle);

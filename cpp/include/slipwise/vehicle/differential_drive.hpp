@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Differential and skid-steer drives: body twist from wheel speeds and back (thesis 2.2, with track = 2c).
+// Differential and skid-steer drives: body twist from wheel speeds and back (thesis 2.2, with wheel_separation = 2c).
 #pragma once
 
 #include <Eigen/Core>
@@ -16,31 +16,33 @@ struct WheelSpeeds {
 
 /// A vehicle steered by the difference of its side speeds.
 struct DifferentialDrive {
-  double wheel_radius;  ///< [m]
-  double track;         ///< distance between the left and the right wheels [m]
+  double wheel_radius;      ///< [m]
+  double wheel_separation;  ///< distance between the left and the right wheels [m]
 
   /// \throws std::invalid_argument when a dimension is not positive.
-  DifferentialDrive(double wheel_radius_m, double track_m) : wheel_radius(wheel_radius_m), track(track_m) {
-    if (!(wheel_radius > 0.0) || !(track > 0.0)) {
+  DifferentialDrive(double wheel_radius_m, double wheel_separation_m)
+      : wheel_radius(wheel_radius_m), wheel_separation(wheel_separation_m) {
+    if (!(wheel_radius > 0.0) || !(wheel_separation > 0.0)) {
       throw std::invalid_argument(
-          "wheel radius and track must be positive [m]; measure them or take the maker's figures");
+          "wheel radius and wheel_separation must be positive [m]; measure them or take the maker's figures");
     }
   }
 
   BodyTwist twist(const WheelSpeeds& wheels) const {
     return {.v = wheel_radius * (wheels.left + wheels.right) / 2.0,
             .vy = 0.0,
-            .omega = wheel_radius * (wheels.right - wheels.left) / track};
+            .omega = wheel_radius * (wheels.right - wheels.left) / wheel_separation};
   }
 
   WheelSpeeds wheel_speeds(const BodyTwist& twist) const {
-    const double difference = twist.omega * track / 2.0;
+    const double difference = twist.omega * wheel_separation / 2.0;
     return {.left = (twist.v - difference) / wheel_radius, .right = (twist.v + difference) / wheel_radius};
   }
 
   /// Derivative of (v, omega) by (left, right); it is constant.
   Eigen::Matrix2d twist_jacobian() const {
-    return (Eigen::Matrix2d() << wheel_radius / 2.0, wheel_radius / 2.0, -wheel_radius / track, wheel_radius / track)
+    return (Eigen::Matrix2d() << wheel_radius / 2.0, wheel_radius / 2.0, -wheel_radius / wheel_separation,
+            wheel_radius / wheel_separation)
         .finished();
   }
 };

@@ -12,7 +12,7 @@ from slipwise.calibration.result import History
 from slipwise.models.parameter_table import IDENTIFIED_FRACTION, physical_parameters
 from slipwise.number_text import estimate_text
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import MINUS, details, legend, missing, paragraph, table
 from slipwise.reporting.palette import ALARM_COLOUR, Stroke, stroke_of, transparent
 from slipwise.reporting.parameter_figures import parameter_figures
@@ -72,13 +72,13 @@ def _values(contents: Contents) -> str:
     note = (
         f"Identified: known to {100.0 * IDENTIFIED_FRACTION:.0f} % of the value, or known to be negligible."
     )
-    pairs = ", ".join(map(str, contents.calibration.verdict.look_alikes))
+    pairs = ", ".join(map(str, contents.calibration.verdict.confounded))
     confounded = paragraph(f"Confounded parameters (correlation of their errors): {pairs}.") if pairs else ""
     return html + paragraph(f"{note} {contents.calibration.verdict.timing}".strip()) + confounded
 
 
 def _alarms(contents: Contents, history: History) -> str:
-    """Say when the ground seemed to change."""
+    """Say when the terrain seemed to change."""
     alarms = history.alarms()
     if not alarms:
         return paragraph("No change of terrain was found.", kind="note")
@@ -93,7 +93,7 @@ def _alarms(contents: Contents, history: History) -> str:
 
 
 def _alarm_marks(timeline: Timeline, history: History) -> list[dict[str, Any]]:
-    """Return a vertical line where each change of ground was found."""
+    """Return a vertical line where each change of terrain was found."""
     at = np.flatnonzero(history.alarm)
     line = {"color": ALARM_COLOUR, "width": 1.5}
     return [
@@ -155,7 +155,7 @@ def _weights_figure(
         {
             "type": "scatter",
             "mode": "lines",
-            "name": plain_label(_NO_SLIP if name == PLAIN else name),
+            "name": baseline_label(_NO_SLIP if name == PLAIN else name),
             "x": numbers(timeline.at(history.run[keep], history.t[keep])),
             "y": numbers(weights[keep, place]),
             "stackgroup": "weights",

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.contents import PLAIN, SIMPLE, Contents
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import legend, missing
 from slipwise.reporting.method_names import label
 from slipwise.reporting.palette import stroke_of
@@ -80,7 +80,7 @@ def _trace(contents: Contents, part: Predictions, what: str, timeline: Timeline)
     return {
         "type": "scatter",
         "mode": "lines+markers",
-        "name": plain_label(label(part.method, contents)),
+        "name": baseline_label(label(part.method, contents)),
         "x": numbers(with_breaks(run, timeline.at(run, t))),
         "y": numbers(with_breaks(run, np.asarray(errors[keep]))),
         "line": {"color": stroke.colour, "dash": stroke.dash, "width": 1.5},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether the stated uncertainty is true: the normalised innovation squared over time."""
+"""Whether the reported uncertainty is true: the normalised innovation squared over time."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 class NisSection:
     """Is the predicted covariance true?"""
 
-    title = "Is the stated uncertainty true?"
+    title = "Is the reported uncertainty true?"
     explanation = (
         "NIS, the normalised innovation squared, is 3 on average where the covariance is true, more "
         "where it is too small."
@@ -86,7 +86,7 @@ def _legend() -> str:
 
 def _band_of(predictions: Predictions) -> tuple[float, float]:
     """Where the NIS of 95 % of the windows should lie, for the middle of their degrees of freedom."""
-    low, high = (ellipsoid_squared(share, float(np.median(predictions.dof))) for share in _BAND_ENDS)
+    low, high = (ellipsoid_squared(fraction, float(np.median(predictions.dof))) for fraction in _BAND_ENDS)
     return low, high
 
 
@@ -118,8 +118,8 @@ def _figure(timeline: Timeline, series: _Series) -> Figure | None:
     low, high = nis_band(min(_MEAN_OVER, len(y)))
     outside = float(np.mean((y < band[0]) | (y > band[1])))
     exponents = np.log10([min(float(y.min()), 0.1), max(float(y.max()), 20.0)])
-    share = f"{100.0 * outside:.0f} % lie outside their band (5 % expected)"
-    caption = f"Mean of all {len(y)} windows {y.mean():.2f}; {share}."
+    fraction = f"{100.0 * outside:.0f} % lie outside their band (5 % expected)"
+    caption = f"Mean of all {len(y)} windows {y.mean():.2f}; {fraction}."
     return Figure(
         key=f"nis-{series.key}",
         label=f"{heading}: normalised innovation squared over time",

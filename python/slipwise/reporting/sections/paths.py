@@ -15,7 +15,7 @@ from slipwise.ellipse import ellipse
 from slipwise.evaluation.result import Predictions
 from slipwise.reporting.chosen_windows import ChosenWindow, choose_windows
 from slipwise.reporting.contents import PLAIN, Contents
-from slipwise.reporting.figure import Figure, axis, numbers, plain_label
+from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import details, legend, missing, number, paragraph
 from slipwise.reporting.method_names import BASELINE, label
 from slipwise.reporting.palette import MEASURED, stroke_of, transparent
@@ -110,7 +110,7 @@ def _figure(
     contents: Contents, window: ChosenWindow, path: WindowPaths, known: tuple[Predictions, Timeline]
 ) -> Figure:
     predictions, timeline = known
-    methods, name = contents.evaluation.methods, plain_label(label(predictions.method, contents))
+    methods, name = contents.evaluation.methods, baseline_label(label(predictions.method, contents))
     plain, ours = stroke_of(PLAIN, methods), stroke_of(predictions.method, methods)
     end, measured = predictions.pose[window.row], predictions.measured[window.row]
     traces = [

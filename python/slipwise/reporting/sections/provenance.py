@@ -28,7 +28,7 @@ class ProvenanceSection:
             ("slip basis", model.content.slip.basis),
             (
                 "learned from",
-                f"{provenance.learned_seconds:.1f} s of driving, {provenance.learned_windows} windows",
+                f"{provenance.learned_seconds:.1f} s of driving, {provenance.learned_segments} windows",
             ),
             ("scored methods", ", ".join(contents.evaluation.methods) or DASH),
         ]

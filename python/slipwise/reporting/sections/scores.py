@@ -143,7 +143,7 @@ def _cells(score: Score) -> tuple[str, ...]:
         _interval(score.heading_ratio),
         number(score.heading_to_rival, 2),
         number(score.nis) + _small(f"{number(score.nis_band[0])} to {number(score.nis_band[1])}"),
-        ", ".join(_percent(share) for share in score.coverage) + " %",
+        ", ".join(_percent(fraction) for fraction in score.coverage) + " %",
         f'<span class="caution">{escape(in_sample)}</span>',
     )
 
@@ -164,8 +164,8 @@ def _small(text: str) -> str:
     return f"<small>{escape(text)}</small>"
 
 
-def _percent(share: float) -> str:
-    return f"{100.0 * share:.0f}" if math.isfinite(share) else DASH
+def _percent(fraction: float) -> str:
+    return f"{100.0 * fraction:.0f}" if math.isfinite(fraction) else DASH
 
 
 def _notes() -> str:

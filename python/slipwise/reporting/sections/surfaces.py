@@ -21,7 +21,7 @@ class SurfacesSection:
 
     title = "Learned slip, and the speeds and yaw rates driven"
     explanation = (
-        "Rates added to the motion on level ground: red takes away, blue adds. Not known outside the dashed "
+        "Rates added to the motion on level terrain: red takes away, blue adds. Not known outside the dashed "
         "box."
     )
 

@@ -48,7 +48,7 @@ def _state(verdict: Verdict) -> str:
         return "bad"
     if verdict.reservations:
         return "reserved"
-    return "partly" if verdict.undetermined else "good"
+    return "partly" if verdict.not_identifiable else "good"
 
 
 def _tiles(contents: Contents) -> str:
@@ -72,7 +72,7 @@ def _tiles(contents: Contents) -> str:
     ]
     honesty = honesty_of(learned)
     if honesty is not None:
-        tiles.append(_tile("Is the stated uncertainty true?", honesty.answer, honesty.short))
+        tiles.append(_tile("Is the reported uncertainty true?", honesty.answer, honesty.short))
     return f'<div class="tiles">{"".join(tiles)}</div>'
 
 
@@ -99,8 +99,8 @@ def _column(heading: str, html: str) -> str:
 def _learned(contents: Contents) -> str:
     verdict = contents.calibration.verdict
     sentences = list(summarise(contents.calibration.model).sentences)
-    if verdict.undetermined:
-        sentences.append(f"Not identifiable from this log: {', '.join(verdict.undetermined)}.")
+    if verdict.not_identifiable:
+        sentences.append(f"Not identifiable from this log: {', '.join(verdict.not_identifiable)}.")
     return (
         bullets(sentences) if sentences else paragraph("The model has nothing to say: it has no parameters.")
     )

@@ -57,9 +57,9 @@ def _integrate(start: Floats, rates: Floats, times: Floats) -> Floats:
     """Return the poses [K, 3] of twists [K - 1, 3], each held for one step, from a start [3]."""
     model = _core.MotionModel(_core.named_basis("edd-2"), False, False)
     columns = (np.ascontiguousarray(column) for column in rates.T)
-    track = _core.InputTrack(times[:-1], *columns)
+    history = _core.InputHistory(times[:-1], *columns)
     segment = _core.Segment(0.0, float(times[-1]), _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-    path = _core.integrate_segment(model, np.zeros(2), track, segment, _core.Integrator.Exact)
+    path = _core.integrate_segment(model, np.zeros(2), history, segment, _core.Integrator.Exact)
     origin = _core.Pose2(*start.tolist())
     knots = np.searchsorted(path.times, times - 1e-9)
     moved = [_core.compose(origin, _core.Pose2(*pose)).vector() for pose in path.poses[knots].tolist()]

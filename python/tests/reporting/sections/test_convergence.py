@@ -55,9 +55,12 @@ def test_weights_of_both_ways_to_learn_are_drawn_with_one_basis_or_many() -> Non
 
 
 def test_lag_is_shown_in_seconds() -> None:
-    lag = Parameter(name="log_lag_v", unit="ln s", value=np.log(0.8), std=0.1, prior_std=1.0, determined=True)
+    lag = Parameter(
+        name="log_time_constant_v", unit="ln s", value=np.log(0.8), std=0.1, prior_std=1.0, identifiable=True
+    )
     rest = [
-        lag.model_copy(update={"name": f"log_{name}"}) for name in ("lag_omega", "delay_v", "delay_omega")
+        lag.model_copy(update={"name": f"log_{name}"})
+        for name in ("time_constant_omega", "delay_v", "delay_omega")
     ]
     results = make_results()
     parameters = [*results.calibration.model.content.parameters, lag, *rest]
@@ -77,7 +80,7 @@ def test_lag_is_shown_in_seconds() -> None:
     )
     learned = replace(learned, calibration=replace(learned.calibration, history=six))
     html = ConvergenceSection().html(contents_of(learned))
-    assert "lag_v" in html
+    assert "time_constant_v" in html
     assert np.allclose(figures_of(html)["figure-parameter-3"]["data"][1]["y"], 0.8)
     assert "0.800 s, ± 1 sigma: 0.724 to 0.884" in text_of(html)
 

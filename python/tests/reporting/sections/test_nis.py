@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The section of the stated uncertainty."""
+"""The section of the reported uncertainty."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from reporting.synthetic_results import make_results, without_history
 
 from slipwise.calibration.statistics import nis_band
 from slipwise.reporting.sections.nis import NisSection
-from slipwise.student import share_inside
+from slipwise.student import fraction_inside
 
 
 def test_predictions_and_learning_windows_are_shown_with_both_bands() -> None:
@@ -36,7 +36,7 @@ def test_band_of_predictions_is_that_of_their_t() -> None:
     contents = contents_of(make_results())
     figure = figures_of(NisSection().html(contents))["figure-nis-predictions"]
     window = figure["layout"]["shapes"][0]
-    assert np.allclose(share_inside([window["y0"], window["y1"]], 5.0), [0.025, 0.975], atol=1e-4)
+    assert np.allclose(fraction_inside([window["y0"], window["y1"]], 5.0), [0.025, 0.975], atol=1e-4)
 
 
 def test_moving_mean_is_that_of_the_last_twenty() -> None:

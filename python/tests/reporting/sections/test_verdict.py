@@ -19,7 +19,7 @@ from slipwise.reporting.sections.verdict import VerdictSection
     [
         (Verdict(True, "Fine."), "good"),
         (Verdict(True, "Fine.", ("lat.w",), ("Turn on the spot.",)), "partly"),
-        (Verdict(True, "Fine.", reservations=("Its stated uncertainty is too small.",)), "reserved"),
+        (Verdict(True, "Fine.", reservations=("Its reported uncertainty is too small.",)), "reserved"),
         (Verdict(False, "No.", ("lat.w",)), "bad"),
     ],
 )
@@ -35,7 +35,7 @@ def test_verdict_names_what_is_not_determined_and_the_drive_that_would() -> None
     assert "What to do Turn on the spot. Check it on another day" in text
 
 
-def test_errors_stand_beside_those_of_the_plain_model() -> None:
+def test_errors_stand_beside_those_of_the_baseline_model() -> None:
     results = make_results()
     contents = contents_of(results)
     plain, auto = (results.evaluation.score(name, 5.0) for name in ("none", "auto"))
@@ -75,7 +75,7 @@ def test_bad_model_is_not_to_be_used_or_exported() -> None:
 
 def test_truth_of_the_stated_uncertainty_is_answered() -> None:
     text = text_of(VerdictSection().html(contents_of(make_results())))
-    assert "Is the stated uncertainty true? Yes" in text
+    assert "Is the reported uncertainty true? Yes" in text
 
 
 def test_verdict_without_scores_is_still_a_verdict() -> None:

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/lie/body_twist.hpp"
 
@@ -28,9 +28,9 @@ enum class SliceKind : std::uint8_t {
 
 /// The samples of the last seconds of a run. Each is held until the next one, and unknown once it is older than
 /// `unknown_after`.
-class InputHistory {
+class InputBuffer {
  public:
-  explicit InputHistory(double unknown_after) : unknown_after_(unknown_after) {}
+  explicit InputBuffer(double unknown_after) : unknown_after_(unknown_after) {}
 
   /// Adds a sample, whose stamp is later than those before.
   void push(const InputSample& sample);
@@ -67,7 +67,7 @@ class InputHistory {
   Driven driven(double start, double end) const;
 
   /// The samples that act in [start, end], then `future` ones up to `end`, as the core's inputs.
-  InputTrack slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future = {}) const;
+  InputHistory slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future = {}) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

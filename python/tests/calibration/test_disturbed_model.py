@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model file holds the slip disturbance, so that predictions from it hold the share that they state."""
+"""A model file holds the slip disturbance, so that predictions from it hold the fraction that they state."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from slipwise.calibration.predictions import normalised_squared, residual
 from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.models import Model, load_model
 from slipwise.prediction import predict
-from slipwise.student import share_inside
+from slipwise.student import fraction_inside
 
 SETTINGS = Settings(basis="edd-2", learn_clock_offset=False)
 
 
 def drive(seed: int, seconds: float) -> Drive:
-    """A drive whose shares of V and w disturbance by 0.1, over some 8 s."""
+    """A drive whose fractions of V and w disturbance by 0.1, over some 8 s."""
     return Drive(
         seconds=seconds,
         seed=seed,
@@ -49,10 +49,10 @@ def held_out(seed: int, seconds: float) -> list[WindowSet]:
 @pytest.mark.slow
 def test_the_file_says_that_slip_wanders_and_how_far(models: dict[int, Model]) -> None:
     for model in models.values():
-        coloured = model.content.coloured
-        assert coloured is not None
-        assert coloured.window == SETTINGS.window_length("wheel")
-        assert coloured.candidates[0].weight < 0.01  # of slip that does not
+        disturbance = model.content.slip_disturbance
+        assert disturbance is not None
+        assert disturbance.segment == SETTINGS.segment_length("wheel")
+        assert disturbance.candidates[0].weight < 0.01  # of slip that does not
         stds = np.sqrt(np.diag(model.covariance_over(0.01) - model.covariance))
         assert stds == pytest.approx(0.1, rel=0.4)
 
@@ -62,17 +62,17 @@ def test_the_file_says_that_slip_wanders_and_how_far(models: dict[int, Model]) -
 def test_held_out_ellipsoids_hold_their_share(models: dict[int, Model], seconds: float) -> None:
     inside, without = [], []
     for seed, model in models.items():
-        still = Model(model.content.model_copy(update={"coloured": None}))
+        still = Model(model.content.model_copy(update={"slip_disturbance": None}))
         for windows in held_out(seed, seconds):
             inside += shares_inside(model, windows).tolist()
             without += shares_inside(still, windows).tolist()
-    for share, tolerance in ((0.5, 0.04), (0.9, 0.03), (0.95, 0.02)):
-        assert np.mean(np.array(inside) <= share) == pytest.approx(share, abs=tolerance)
-        assert np.mean(np.array(without) <= share) < share - 0.15
+    for fraction, tolerance in ((0.5, 0.04), (0.9, 0.03), (0.95, 0.02)):
+        assert np.mean(np.array(inside) <= fraction) == pytest.approx(fraction, abs=tolerance)
+        assert np.mean(np.array(without) <= fraction) < fraction - 0.15
 
 
 def shares_inside(model: Model, windows: WindowSet) -> np.ndarray:
-    """Share of the smallest ellipsoid of each prediction from the file that holds where the robot was."""
+    """Fraction of the smallest ellipsoid of each prediction from the file that holds where the robot was."""
     nis, dof = [], []
     for i in range(len(windows)):
         inputs = windows.drive[int(windows.position[i])].inputs
@@ -81,4 +81,4 @@ def shares_inside(model: Model, windows: WindowSet) -> np.ndarray:
         missed = residual(windows.measured[i : i + 1], path.poses[-1:])
         nis.append(normalised_squared(missed, path.covariance[-1:])[0])
         dof.append(path.dof[-1])
-    return share_inside(np.array(nis), np.array(dof))
+    return fraction_inside(np.array(nis), np.array(dof))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sample-and-hold inputs.
-#include "slipwise/actuator/input_track.hpp"
+#include "slipwise/actuator/input_history.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -28,18 +28,18 @@ std::vector<BodyTwist> joined(std::span<const double> t, std::span<const double>
 
 }  // namespace
 
-InputTrack::InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
-                       std::span<const double> omega)
-    : InputTrack({t.begin(), t.end()}, joined(t, v, vy, omega)) {}
+InputHistory::InputHistory(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
+                           std::span<const double> omega)
+    : InputHistory({t.begin(), t.end()}, joined(t, v, vy, omega)) {}
 
-InputTrack::InputTrack() : samples_(std::make_shared<const Samples>()) {}
+InputHistory::InputHistory() : samples_(std::make_shared<const Samples>()) {}
 
-InputTrack::InputTrack(std::vector<double> t, std::vector<BodyTwist> twist)
+InputHistory::InputHistory(std::vector<double> t, std::vector<BodyTwist> twist)
     : samples_(std::make_shared<const Samples>(Samples{std::move(t), std::move(twist)})) {
   check_samples();
 }
 
-void InputTrack::check_samples() const {
+void InputHistory::check_samples() const {
   if (!samples_) {
     throw std::invalid_argument("inputs without samples");
   }
@@ -58,11 +58,11 @@ void InputTrack::check_samples() const {
   }
 }
 
-std::size_t InputTrack::count_until(double t) const {
+std::size_t InputHistory::count_until(double t) const {
   return static_cast<std::size_t>(std::ranges::upper_bound(samples_->t, t) - samples_->t.begin());
 }
 
-BodyTwist InputTrack::at(double t) const {
+BodyTwist InputHistory::at(double t) const {
   const std::size_t count = count_until(t);
   return count == 0 ? BodyTwist{} : samples_->twist[count - 1];
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // CUDA: memory, copies, and the kernel, in which one thread drives one rollout.
-#include "slipwise/rollout/gpu_device.hpp"
+#include "slipwise/rollout/gpu/gpu_device.hpp"
 
 #include <cuda_runtime.h>
 

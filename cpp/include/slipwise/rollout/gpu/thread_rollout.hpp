@@ -17,14 +17,14 @@ struct OneLane {
 };
 
 inline constexpr std::size_t kMostThreadParts = 48;             ///< of a control period
-inline constexpr std::size_t kThreadShareBytes = 16384;         ///< of all parts' shares
+inline constexpr std::size_t kThreadCoefficientBytes = 16384;   ///< of all parts' coefficients
 inline constexpr std::size_t kMostThreadJobBytes = 32764 - 16;  ///< what a kernel may be given directly (CUDA 12.1)
 
 /// All that the threads of a batch share. It is passed as a kernel's parameter, which lies in constant memory: every
 /// thread reads the same number of it at the same time. Pointers are those of the GPU's memory.
 template <typename Scalar>
 struct ThreadJob {
-  LaneJob<Scalar> job;       ///< its parts, shares and products are those below
+  LaneJob<Scalar> job;       ///< its parts, coefficients and products are those below
   const Scalar* starts;      ///< [kStartRows][rollouts]; null where all start alike
   Scalar start[kStartRows];  ///< where all start alike
   const DriveCommand* past;
@@ -32,7 +32,7 @@ struct ThreadJob {
   std::size_t past_stride;  ///< from one rollout's to the next one's
   std::size_t used;         ///< periods from which on no pose depends on a command
   LanePart<Scalar> parts[kMostThreadParts];
-  Scalar shares[kThreadShareBytes / sizeof(Scalar)];
+  Scalar coefficients[kThreadCoefficientBytes / sizeof(Scalar)];
   LaneProduct products[kMostProducts];
 };
 static_assert(sizeof(ThreadJob<double>) <= kMostThreadJobBytes);
@@ -55,7 +55,7 @@ template <Actuator kActuator, bool kQuadratic, bool kWide, typename Scalar>
 SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t rollout) {
   LaneJob<Scalar> job = given.job;
   job.parts = given.parts;
-  job.shares = given.shares;
+  job.coefficients = given.coefficients;
   job.products = given.products;
   Scalar rows[kStartRows];
   for (std::size_t i = 0; i < kStartRows; ++i) {

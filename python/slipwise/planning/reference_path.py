@@ -16,7 +16,7 @@ SEARCH = 3.0  # m ahead, and a third of it behind, within which the robot is loo
 
 
 @dataclass(eq=False)
-class Track:
+class ReferencePath:
     """Points that are joined by straight lines; it remembers how far along the robot has come.
 
     Raises:
@@ -60,9 +60,9 @@ class Track:
         """
         begin, end = self.points[:-1], self.points[1:]
         step = end - begin
-        share = np.clip(((np.asarray(point) - begin) * step).sum(axis=1) / (step**2).sum(axis=1), 0.0, 1.0)
-        offset = np.asarray(point) - (begin + share[:, None] * step)
-        place = self._along[:-1] + share * np.diff(self._along)
+        fraction = np.clip(((np.asarray(point) - begin) * step).sum(axis=1) / (step**2).sum(axis=1), 0.0, 1.0)
+        offset = np.asarray(point) - (begin + fraction[:, None] * step)
+        place = self._along[:-1] + fraction * np.diff(self._along)
         far = (place < self.progress - SEARCH / 3.0) | (place > self.progress + SEARCH)
         squared = (offset**2).sum(axis=1) + np.where(far, 1e12, 0.0)
         best = int(np.argmin(squared))

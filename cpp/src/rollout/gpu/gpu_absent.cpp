@@ -2,7 +2,7 @@
 // What stands in for a GPU where the library was built without one: the reason, and nothing that can be called.
 #include <stdexcept>
 
-#include "slipwise/rollout/gpu_device.hpp"
+#include "slipwise/rollout/gpu/gpu_device.hpp"
 
 namespace slipwise {
 namespace {

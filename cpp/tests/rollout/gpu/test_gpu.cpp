@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "rollout/sample_rollouts.hpp"
-#include "slipwise/rollout/gpu.hpp"
+#include "slipwise/rollout/gpu/gpu.hpp"
 
 namespace slipwise {
 namespace {
@@ -210,7 +210,7 @@ TEST_CASE("what cannot be rolled out on a GPU is refused and named") {
   CHECK_THROWS_WITH_AS(tests::roll(slow, commands.batch(kStart), {.gpu = &gpu}), doctest::Contains("shorter periods"),
                        std::invalid_argument);
   RolloutSetting setting{.period = kPeriod};
-  setting.limits.speed.top = 0.5;
+  setting.limits.speed.saturation = 0.5;
   const RolloutProgram limited(model, tests::sample_parameters(model, actuator), setting);
   CHECK_THROWS_WITH_AS(tests::roll(limited, commands.batch(kStart), {.gpu = &gpu}),
                        doctest::Contains("on the processor only"), std::invalid_argument);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bringing a batch to the GPU and its results back.
-#include "slipwise/rollout/gpu.hpp"
+#include "slipwise/rollout/gpu/gpu.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -25,15 +25,15 @@ ThreadJob<Scalar> thread_job(const GpuBatch<Scalar>& batch) {
   given.past_count = batch.past_count;
   given.past_stride = batch.past_stride;
   given.used = batch.used;
-  const std::size_t shares = job.part_end * job.product_count * 3;
-  if (job.part_end > std::size(given.parts) || shares > std::size(given.shares)) {
+  const std::size_t coefficients = job.part_end * job.product_count * 3;
+  if (job.part_end > std::size(given.parts) || coefficients > std::size(given.coefficients)) {
     throw std::invalid_argument(
-        "a period of this model is " + std::to_string(job.part_end) + " steps with " + std::to_string(shares) +
+        "a period of this model is " + std::to_string(job.part_end) + " steps with " + std::to_string(coefficients) +
         " numbers, and a GPU has room for " + std::to_string(std::size(given.parts)) + " with " +
-        std::to_string(std::size(given.shares)) + "; use shorter periods, fewer terms, or the processor");
+        std::to_string(std::size(given.coefficients)) + "; use shorter periods, fewer terms, or the processor");
   }
   std::copy_n(job.parts, job.part_end, given.parts);
-  std::copy_n(job.shares, shares, given.shares);
+  std::copy_n(job.coefficients, coefficients, given.coefficients);
   std::copy_n(job.products, job.product_count, given.products);
   return given;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of an input, and what holds between them.
-#include "slipwise/online/input_history.hpp"
+#include "slipwise/online/input_buffer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +35,7 @@ class Thinned {
     t_.push_back(sample.t);
     twist_.push_back(sample.twist);
   }
-  InputTrack track() && { return {std::move(t_), std::move(twist_)}; }
+  InputHistory inputs() && { return {std::move(t_), std::move(twist_)}; }
 
  private:
   std::vector<double> t_;
@@ -48,7 +48,7 @@ double speed(const BodyTwist& twist) { return std::hypot(twist.v, twist.vy); }
 
 }  // namespace
 
-void InputHistory::push(const InputSample& sample) {
+void InputBuffer::push(const InputSample& sample) {
   if (samples_.empty()) {
     first_ = sample.t;
   }
@@ -59,37 +59,37 @@ void InputHistory::push(const InputSample& sample) {
                       .omega = std::max(before.omega, std::abs(sample.twist.omega))});
 }
 
-void InputHistory::clear() { *this = InputHistory(unknown_after_); }
+void InputBuffer::clear() { *this = InputBuffer(unknown_after_); }
 
-void InputHistory::drop_before(double t) {
+void InputBuffer::drop_before(double t) {
   while (samples_.size() > 1 && samples_[1].t <= t) {
     samples_.pop_front();
     fastest_.pop_front();
   }
 }
 
-BodyTwist InputHistory::fastest_until(double t) const {
+BodyTwist InputBuffer::fastest_until(double t) const {
   const std::size_t count = count_until(t);
   return count == 0 ? BodyTwist{} : fastest_[count - 1];
 }
 
-std::size_t InputHistory::count_until(double t) const {
+std::size_t InputBuffer::count_until(double t) const {
   const auto after = std::ranges::upper_bound(samples_, t, {}, &InputSample::t);
   return static_cast<std::size_t>(std::distance(samples_.begin(), after));
 }
 
-std::optional<BodyTwist> InputHistory::held_at(double t) const {
+std::optional<BodyTwist> InputBuffer::held_at(double t) const {
   const std::size_t count = count_until(t);
   return count == 0 ? std::nullopt : std::optional(samples_[count - 1].twist);
 }
 
-std::optional<BodyTwist> InputHistory::known_at(double t) const {
+std::optional<BodyTwist> InputBuffer::known_at(double t) const {
   const std::size_t count = count_until(t);
   const bool known = count > 0 && t - samples_[count - 1].t <= unknown_after_;
   return known ? std::optional(samples_[count - 1].twist) : std::nullopt;
 }
 
-std::optional<double> InputHistory::unknown_since(double start, double end) const {
+std::optional<double> InputBuffer::unknown_since(double start, double end) const {
   std::size_t next = count_until(start);
   if (next == 0) {
     return start;
@@ -107,12 +107,12 @@ std::optional<double> InputHistory::unknown_since(double start, double end) cons
   return std::nullopt;
 }
 
-std::optional<double> InputHistory::first_after(double t) const {
+std::optional<double> InputBuffer::first_after(double t) const {
   const std::size_t count = count_until(t);
   return count < samples_.size() ? std::optional(samples_[count].t) : std::nullopt;
 }
 
-BodyTwist InputHistory::fastest(double start, double end) const {
+BodyTwist InputBuffer::fastest(double start, double end) const {
   BodyTwist most{};
   for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
        ++i) {
@@ -122,7 +122,7 @@ BodyTwist InputHistory::fastest(double start, double end) const {
   return most;
 }
 
-InputHistory::Driven InputHistory::driven(double start, double end) const {
+InputBuffer::Driven InputBuffer::driven(double start, double end) const {
   Driven sum{0.0, 0.0, 0.0};
   for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
        ++i) {
@@ -136,7 +136,8 @@ InputHistory::Driven InputHistory::driven(double start, double end) const {
   return sum;
 }
 
-InputTrack InputHistory::slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future) const {
+InputHistory InputBuffer::slice(double start, double end, SliceKind kind,
+                                const std::vector<InputSample>& future) const {
   Thinned thinned;
   const auto add = [&](const InputSample& sample) {
     if (kind == SliceKind::Commands) {
@@ -158,7 +159,7 @@ InputTrack InputHistory::slice(double start, double end, SliceKind kind, const s
       add(sample);
     }
   }
-  return std::move(thinned).track();
+  return std::move(thinned).inputs();
 }
 
 }  // namespace slipwise

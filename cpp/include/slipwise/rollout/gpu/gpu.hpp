@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "slipwise/rollout/gpu_device.hpp"
+#include "slipwise/rollout/gpu/gpu_device.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 
 namespace slipwise {

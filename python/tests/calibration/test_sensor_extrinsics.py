@@ -23,9 +23,11 @@ DRIVE = Drive(seconds=150.0, basis=_core.named_basis("edd-2"), alpha=SLIP)
 def seen_by_sensor(log: Log, sensor: tuple[float, float, float] = SENSOR) -> Log:
     """The same drive with the poses of a sensor away from base_link."""
     (run,) = log.runs
-    mount = _core.Pose2(*sensor)
+    sensor_extrinsics = _core.Pose2(*sensor)
     columns = (run.poses.x.tolist(), run.poses.y.tolist(), run.poses.yaw.tolist())
-    path = [_core.compose(_core.Pose2(*pose), mount).vector() for pose in zip(*columns, strict=True)]
+    path = [
+        _core.compose(_core.Pose2(*pose), sensor_extrinsics).vector() for pose in zip(*columns, strict=True)
+    ]
     return replace(log, runs=(replace(run, poses=poses_of(run.poses.t, np.array(path))),))
 
 
@@ -35,9 +37,9 @@ def log() -> Log:
 
 
 def calibrated(
-    log: Log, mount: dict[str, object], *, basis: str = "edd-2", source: str = "wheel"
+    log: Log, sensor_extrinsics: dict[str, object], *, basis: str = "edd-2", source: str = "wheel"
 ) -> Calibration:
-    settings = make_settings({"basis": basis, "mount": mount})
+    settings = make_settings({"basis": basis, "sensor_extrinsics": sensor_extrinsics})
     return calibrate(log, input=source, settings=settings)
 
 
@@ -56,26 +58,29 @@ def test_the_place_of_the_sensor_is_learned(log: Log, source: str) -> None:
         found, std, prior_std = value(result, name)
         assert abs(found - true) < 3.0 * std, name
         assert std < 0.2 * prior_std, name
-    assert result.model.content.mount
+    assert result.model.content.sensor_extrinsics
 
 
 def test_a_known_place_gives_the_slip_of_base_link(log: Log) -> None:
-    mount = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
-    known, ignored = calibrated(log, mount, basis="full-linear-6"), calibrated(log, {}, basis="full-linear-6")
+    sensor_extrinsics = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    known, ignored = (
+        calibrated(log, sensor_extrinsics, basis="full-linear-6"),
+        calibrated(log, {}, basis="full-linear-6"),
+    )
     at_base = calibrated(simulated_log(DRIVE), {}, basis="full-linear-6")
     for name in ("lon.V", "ang.w", "lat.w", "lat.V"):
         assert value(known, name)[0] == pytest.approx(value(at_base, name)[0], abs=0.03), name
     taken_for_slip = SENSOR[0] * (1.0 + SLIP[1])  # the lever arm, times the true yaw rate over the wheels'
     assert value(ignored, "lat.w")[0] == pytest.approx(taken_for_slip, abs=0.1)
-    assert not known.model.content.mount
-    assert known.model.content.provenance.settings["mount"] == mount
+    assert not known.model.content.sensor_extrinsics
+    assert known.model.content.provenance.settings["sensor_extrinsics"] == sensor_extrinsics
 
 
 def test_evaluation_compares_the_poses_of_the_sensor(log: Log) -> None:
-    mount = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    sensor_extrinsics = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
     errors = []
-    for given, drive in ((mount, log), ({}, simulated_log(DRIVE)), ({"learn": True}, log)):
-        settings = make_settings({"basis": "edd-2", "mount": given})
+    for given, drive in ((sensor_extrinsics, log), ({}, simulated_log(DRIVE)), ({"learn": True}, log)):
+        settings = make_settings({"basis": "edd-2", "sensor_extrinsics": given})
         options = EvaluationOptions(horizons=(2.0,), methods=("none", "edd-2", "iekf"))
         scores = evaluate(drive, input="wheel", settings=settings, options=options).scores
         errors.append({score.method: score.position.mean for score in scores})
@@ -85,7 +90,7 @@ def test_evaluation_compares_the_poses_of_the_sensor(log: Log) -> None:
     assert learned["edd-2"] < 1.3 * at_base["edd-2"]
 
 
-def test_a_lever_and_a_slip_that_look_alike_are_both_left_open(log: Log) -> None:
+def test_a_lever_and_a_slip_that_confounded_are_both_left_open(log: Log) -> None:
     result = calibrated(log, {"learn": True}, basis="full-linear-6")
     for one, other in (("sensor_x", "lat.w"), ("sensor_y", "lon.w"), ("sensor_yaw", "lat.V")):
         names = [p.name for p in result.model.content.parameters]
@@ -99,5 +104,5 @@ def test_a_lever_and_a_slip_that_look_alike_are_both_left_open(log: Log) -> None
 
 
 def test_a_sensor_far_from_any_robot_is_refused() -> None:
-    with pytest.raises(SettingsError, match=r"mount\.x"):
-        make_settings({"mount": {"x": 1500.0}})
+    with pytest.raises(SettingsError, match=r"sensor_extrinsics\.x"):
+        make_settings({"sensor_extrinsics": {"x": 1500.0}})

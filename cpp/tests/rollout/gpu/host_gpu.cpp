@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "slipwise/rollout/gpu_device.hpp"
+#include "slipwise/rollout/gpu/gpu_device.hpp"
 
 namespace slipwise {
 namespace {

@@ -13,15 +13,15 @@ namespace slipwise {
 
 /// Sample-and-hold inputs. Before the first sample the robot is taken to be at rest. Copies share their samples, which
 /// never change.
-class InputTrack {
+class InputHistory {
  public:
   /// No samples: at rest.
-  InputTrack();
+  InputHistory();
   /// Equal lengths, strictly increasing finite times [s]. \throws std::invalid_argument otherwise.
-  InputTrack(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
-             std::span<const double> omega);
+  InputHistory(std::span<const double> t, std::span<const double> v, std::span<const double> vy,
+               std::span<const double> omega);
   /// The same, taken over. \throws std::invalid_argument as above.
-  InputTrack(std::vector<double> t, std::vector<BodyTwist> twist);
+  InputHistory(std::vector<double> t, std::vector<BodyTwist> twist);
 
   std::size_t size() const { return samples_->t.size(); }
   double time(std::size_t i) const { return samples_->t[i]; }

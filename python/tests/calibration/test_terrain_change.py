@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A change of ground is found while learning, told, and learned; without one nothing is forgotten."""
+"""A change of terrain is found while learning, commanded, and learned; without one nothing is forgotten."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from slipwise.calibration import calibrate, make_settings
 from slipwise.logs import Log
-from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
+from slipwise.simulation import Scenario, TerrainChange, TyreLaw, simulate
 
 pytest.importorskip("mujoco")
 
@@ -20,7 +20,7 @@ OTHER_GROUND = TyreLaw(slip_stiffness=7.0, cornering_stiffness=8.5)  # yaw slip 
 
 @pytest.fixture(scope="module")
 def changing() -> Log:
-    scenario = Scenario(duration=CHANGE + 25.0, change=GroundChange(CHANGE, OTHER_GROUND))
+    scenario = Scenario(duration=CHANGE + 25.0, change=TerrainChange(CHANGE, OTHER_GROUND))
     return simulate(scenario, seed=1).log
 
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "slipwise/rollout/thread_rollout.hpp"
+#include "slipwise/rollout/gpu/thread_rollout.hpp"
 
 namespace slipwise {
 

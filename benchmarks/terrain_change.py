@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How soon a change of ground is found, and how often one is found where there is none.
+"""How soon a change of terrain is found, and how often one is found where there is none.
 
-False alarms are counted on simulated drives over one ground, with white, heavy-tailed and coloured
+False alarms are counted on simulated drives over one terrain, with white, heavy-tailed and coloured
 noise. Steps (yaw slip times 1.5 and times 1.25) are simulated with rigid-body physics; they can show only
 while the robot turns, so that windows are counted from the first that turns by at least 0.2 rad/s. From
 commands the actuator is learned along with the slip, without the wheel speeds that the log has beside them.
@@ -29,14 +29,14 @@ from slipwise.calibration.estimators import learned_parts
 from slipwise.calibration.prepared_run import WindowSet, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.logs import Log
-from slipwise.simulation import GroundChange, Scenario, TyreLaw, simulate
+from slipwise.simulation import Scenario, TerrainChange, TyreLaw, simulate
 
 Floats = NDArray[np.float64]
 
 SLIP_STD = np.array([0.03, 0.03, 0.04])  # m/s, m/s, rad/s, of heavy-tailed and the slip disturbance
 SLIP_PSD = np.array([4e-4, 4e-4, 1e-4])  # m^2/s, m^2/s, rad^2/s, of white slip
 COLOUR_SECONDS, DRAW_SECONDS, DEGREES = 3.0, 1.0, 3
-OTHER_GROUNDS = {  # yaw slip over that of the first ground, -0.37
+OTHER_GROUNDS = {  # yaw slip over that of the first terrain, -0.37
     1.5: TyreLaw(slip_stiffness=7.0, cornering_stiffness=8.5),
     1.25: TyreLaw(slip_stiffness=9.0, cornering_stiffness=7.6),
 }
@@ -45,7 +45,7 @@ TURNING = 0.2  # rad/s
 
 @dataclass(frozen=True)
 class Count:
-    """Alarms on one kind of ground."""
+    """Alarms on one kind of terrain."""
 
     name: str
     windows: int
@@ -85,13 +85,13 @@ def tests_of(log: Log, input_name: str) -> tuple[WindowSet, list[_core.ChangeTes
     filters = (settings.filter_settings(), settings.average_settings())
     average = _core.ModelAverage("auto", settings.bases(), dynamics, offset, False, *filters)
     for i in range(len(windows)):
-        average.learn(windows.track(i), windows.segments[i])
+        average.learn(windows.input_history(i), windows.segments[i])
         tests.append(average.change)
     return windows, tests
 
 
 def count_simulated(job: tuple[str, int, float]) -> Count:
-    """Count the alarms of one drive over one ground: noise, seed, minutes."""
+    """Count the alarms of one drive over one terrain: noise, seed, minutes."""
     noise, seed, minutes = job
     log = simulated_log(minutes, seed=seed, slip_noise=NOISES[noise])
     _, tests = tests_of(log, "wheel")
@@ -102,7 +102,7 @@ def windows_until_found(job: tuple[int, str, float]) -> int | None:
     """Return after how many turning windows a step is found, None where it is not: seed, input, step."""
     seed, input_name, step = job
     at = 75.0 + 7.0 * (seed % 4)
-    log = simulate(Scenario(duration=at + 45.0, change=GroundChange(at, OTHER_GROUNDS[step])), seed=seed).log
+    log = simulate(Scenario(duration=at + 45.0, change=TerrainChange(at, OTHER_GROUNDS[step])), seed=seed).log
     windows, tests = tests_of(log, input_name)
     wheels = log.runs[0].wheels
     if wheels is None:
@@ -165,7 +165,7 @@ def main() -> int:
             for part in pool.map(count_real, [d.path for d in data_sets(folder)] if folder else [])
             for r in part
         ]
-    print("One ground, simulated:\n")
+    print("One terrain, simulated:\n")
     print_counts(counts)
     print("\nSteps of yaw slip, simulated: windows from the first that turns until it is found\n")
     for name, found in steps.items():
