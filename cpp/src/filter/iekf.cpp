@@ -51,8 +51,8 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
 }
 
 /// How far the segment's chart bends away from its linearisation over what is left open of the actuator: the covariance
-/// of the second-order term along the actuator's principal directions (derivations.md, section 6). The slip is linear
-/// enough.
+/// of the second-order term along the actuator's principal directions (derivations/iterated-filter.md). The slip is
+/// linear enough.
 Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputTrack& inputs,
                              const Segment& segment, const Eigen::Vector3d& predicted) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();

@@ -76,7 +76,7 @@ void DelayedState::advance(const InputTrack& inputs, const Leg& leg) {
 }
 
 /// X_now <- X_now exp-path(p) with the first-order expansion about `point`: F = [blkdiag(R, 1) J, Phi] of
-/// derivations.md, section 6.
+/// derivations/delayed-state.md.
 void DelayedState::advance_at(const Point& point, const InputTrack& inputs, const Leg& leg, double inflation) {
   if (!started_ || !(leg.end > time_)) {
     throw std::invalid_argument("a delayed-state filter must be started, and advances to later times only");
@@ -191,7 +191,7 @@ IekfUpdate DelayedState::learn(const InputTrack& inputs, const Segment& segment)
   return result;
 }
 
-/// Information added to single parameters, negative where the prior widens (derivations.md, section 10); the clone
+/// Information added to single parameters, negative where the prior widens (derivations/priors.md); the clone
 /// makes the covariance singular, so that it is never inverted.
 bool DelayedState::change_prior(const Eigen::VectorXd& old_std, const Eigen::VectorXd& new_std) {
   Estimate changed = joint_;
