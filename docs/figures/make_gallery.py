@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from slipwise.cli.main import run
@@ -102,6 +103,11 @@ def trimmed(picture: Path) -> bytes:
     return small.getvalue()
 
 
+def save(content: bytes, path: Path) -> None:
+    """Write the bytes of a picture."""
+    path.write_bytes(content)
+
+
 def pictures_of(shown: Shown, data: Path, browser: str, folder: Path) -> None:
     """Calibrate one log and write its pictures into `folder`."""
     with tempfile.TemporaryDirectory() as name:
@@ -118,7 +124,7 @@ def pictures_of(shown: Shown, data: Path, browser: str, folder: Path) -> None:
             content = trimmed(drawn)
             if len(content) > LARGEST:
                 sys.exit(f"{picture} has {len(content)} bytes, more than {LARGEST}")
-            write_whole(folder / picture, lambda target, content=content: target.write_bytes(content))
+            write_whole(folder / picture, partial(save, content))
 
 
 def main(folder: Path) -> None:
