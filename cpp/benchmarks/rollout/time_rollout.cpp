@@ -81,7 +81,7 @@ struct Case {
   const char* basis;
   ActuatorParameters learned;
   std::vector<double> actuator;
-  double operations;  ///< per period in float, as docs/derivations.md counts them; 0: not counted
+  double operations;  ///< per period in float, as docs/derivations/rollouts.md counts them; 0: not counted
   CommandLimits limits = {};
 };
 

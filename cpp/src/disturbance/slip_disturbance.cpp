@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bank of small Kalman filters over the deviation of slip from what was learned (derivations.md, section 18).
+// A bank of small Kalman filters over the deviation of slip from what was learned (derivations/slip-disturbance.md).
 #include "slipwise/disturbance/slip_disturbance.hpp"
 
 #include <algorithm>

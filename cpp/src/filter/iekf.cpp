@@ -27,7 +27,7 @@ struct MeasuredSegment {
   using Innovation = Eigen::Vector3d;
 
   const MotionModel& model;
-  const InputHistory& inputs;
+  const InputBuffer& inputs;
   const Segment& segment;
   const Eigen::Matrix3d& covariance;
 
@@ -51,8 +51,8 @@ Eigen::MatrixXd joseph_form(const Eigen::MatrixXd& prior, const Jacobian& jacobi
 }
 
 /// How far the segment's chart bends away from its linearisation over what is left open of the actuator: the covariance
-/// of the second-order term along the actuator's principal directions (derivations.md, section 6). The slip is linear
-/// enough.
+/// of the second-order term along the actuator's principal directions (derivations/iterated-filter.md). The slip is
+/// linear enough.
 Eigen::Matrix3d second_order(const MotionModel& model, const Estimate& estimate, const InputHistory& inputs,
                              const Segment& segment, const Eigen::Vector3d& predicted) {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
@@ -91,7 +91,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and the settings.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputBuffer& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
   return iekf_update(model, prior, inputs, segment, linearize_segment(model, prior.mean, inputs, segment), noise,
@@ -99,7 +99,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
 }
 
 // NOLINTNEXTLINE(readability-function-size): the same, and what is at hand already.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputBuffer& inputs,
                        const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
                        const IekfSettings& settings) {
   check(model, prior, segment, noise);

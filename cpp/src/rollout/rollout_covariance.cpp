@@ -82,7 +82,8 @@ class ParameterPart {
   std::span<double> out_;
 };
 
-/// Noise of one rollout as it goes along (derivations.md, sections 3 and 5): sums carried back to the world's origin.
+/// Noise of one rollout as it goes along (derivations/jacobians.md and uncertainty.md): sums carried back to the
+/// world's origin.
 class NoiseSums {
  public:
   /// One period from `before` to `after`, in which the drive alone moves by `drive`.

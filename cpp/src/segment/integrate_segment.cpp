@@ -75,7 +75,7 @@ class GrowingPath {
 };
 
 /// Appends an exact step; returns the derivative of the pose by the step's tangent, carried back to the path's start:
-/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations.md, section 3.
+/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/jacobians.md.
 Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
   const auto arc = arc_functions(tangent.z());
   const Eigen::Matrix2d heading = path.heading();
@@ -83,7 +83,7 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
   return start_by_tangent(heading, tangent, arc, path.pose());
 }
 
-/// Sums of derivations.md, section 3: the steps' derivatives carried back to the path's start, one column per
+/// Sums of derivations/jacobians.md: the steps' derivatives carried back to the path's start, one column per
 /// parameter.
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;

@@ -16,7 +16,7 @@ Eigen::Matrix3d end_by_tangent(const SegmentPath& path, std::size_t k) {
   return transition(path.poses[k + 1], path.poses.back()) * world;
 }
 
-/// H of derivations.md, section 5: a start measured too far left and turned too far left moves the end right and back.
+/// H of derivations/uncertainty.md: a start measured too far left and turned too far left moves the end right and back.
 Eigen::Matrix3d end_by_start(const Pose2& measured) {
   Eigen::Matrix3d by_start = -Eigen::Matrix3d::Identity();
   by_start(0, 2) = measured.y;

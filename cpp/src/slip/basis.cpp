@@ -14,7 +14,7 @@ struct NamedTerms {
   std::vector<std::string> lon, lat, ang;
 };
 
-/// The table of derivations.md, section 1, from few parameters to many.
+/// The table of derivations/model.md, from few parameters to many.
 const std::vector<NamedTerms>& shipped() {
   static const std::vector<std::string> thesis{"kappa", "V", "kappa*V", "kappa^2", "V^2"};  // thesis 5.1
   static const std::vector<NamedTerms> bases{

@@ -40,7 +40,7 @@ SlidingModeObserver::SlidingModeObserver(const SlidingModeSettings& settings) : 
                              settings.drift_layer, settings.slowest}) {
     if (!(value > 0.0) || !std::isfinite(value)) {
       throw std::invalid_argument(
-          "wheel_separation, gains, layers and the slowest speed of the observer must be positive");
+          "wheel separation, gains, layers and the slowest speed of the observer must be positive");
     }
   }
 }

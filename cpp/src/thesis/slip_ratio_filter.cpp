@@ -18,7 +18,7 @@ void check(const SlipRatioFilterSettings& settings) {
                              settings.huber, settings.noise.pose_std_xy, settings.noise.pose_std_yaw}) {
     if (!(value > 0.0) || !std::isfinite(value)) {
       throw std::invalid_argument(
-          "the slip-ratio filter needs a positive wheel_separation [m], prior standard deviations, Huber threshold and "
+          "the slip-ratio filter needs a positive wheel separation [m], prior standard deviations, Huber threshold and "
           "pose "
           "noise");
     }

@@ -117,7 +117,7 @@ TEST_CASE("the linear posterior predicts what the slip ratios predict") {
 TEST_CASE("senseless settings and segments are refused") {
   CHECK_THROWS_AS(SlipRatioFilter({.wheel_separation = 0.0, .noise = kNoise}), std::invalid_argument);
   CHECK_THROWS_AS(SlipRatioFilter({.walk_ratio = -0.1, .noise = kNoise}), std::invalid_argument);
-  CHECK_THROWS_WITH_AS(SlipRatioFilter({}), doctest::Contains("positive history"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(SlipRatioFilter({}), doctest::Contains("positive wheel separation"), std::invalid_argument);
   SlipRatioFilter filter(constant_slip());
   const InputHistory history = tests::straight_inputs(1.0);
   CHECK_THROWS_AS(filter.learn(history, {.start = 2.0, .end = 1.0}), std::invalid_argument);

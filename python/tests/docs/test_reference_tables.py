@@ -22,6 +22,11 @@ def read(name: str) -> str:
     return (DOCS / name).read_text(encoding="utf-8")
 
 
+def read_derivations() -> str:
+    """Return all pages of derivations one after the other."""
+    return "\n".join(path.read_text(encoding="utf-8") for path in sorted((DOCS / "derivations").glob("*.md")))
+
+
 def keys(table: dict[str, Any], prefix: str = "") -> set[str]:
     """Return the dotted names of all values in nested tables."""
     found: set[str] = set()
@@ -129,7 +134,7 @@ def test_the_readme_table_of_real_logs_has_its_columns() -> None:
 
 
 def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
-    derivations, settings = read("derivations.md"), " ".join(read("settings.md").split())
+    derivations, settings = read_derivations(), " ".join(read("settings.md").split())
     header = (ROOT / "cpp/include/slipwise/motion/motion_noise.hpp").read_text(encoding="utf-8")
     turn, straight = (
         re.search(rf"{name}(?: =|,) ([\d.]+)", header) for name in ("kTurnRadius", "kStraightRadius")
@@ -156,7 +161,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
 
 
 def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
-    derivations = read("derivations.md")
+    derivations = read_derivations()
     flowing = " ".join(derivations.split())
     scale_std, dof, dof_std = constants(
         "online/student_calibration", "PriorScaleStd", "PriorDof", "PriorDofStd"

@@ -76,7 +76,7 @@ def with_tails(model: Model) -> Model:
     """The model with noise of all kinds, and students that differ between horizons."""
     noise = model.content.noise.model_dump()
     noise |= {
-        "scale": [1.5, 0.7, 2.0],
+        "variance_scale": [1.5, 0.7, 2.0],
         "student_t": {1.0: {"inflation": 1.4, "dof": 5.0}, 5.0: {"inflation": 2.6, "dof": 3.0}},
     }
     content = model.content.model_copy(update={"noise": type(model.content.noise).model_validate(noise)})

@@ -119,7 +119,7 @@ def test_twist_covariance_gives_the_models_covariance_after_the_horizon() -> Non
     """Messages with this variance, each as new, spread as much after the horizon as `predict` says."""
     made = replace(EDD_2, speed=(-1.0, 1.0), yaw_rate=(-1.0, 1.0), inflation={1.0: 1.5}, fraction=0.1)
     parameters = written(make_model(made), ExportOptions(horizon=2.0))
-    motion = np.array([0.5 + 0.3 * 0.5, 0.5 + 0.3 * 0.5, 0.5 + 0.5 / 5.0])  # derivations.md, section 5
+    motion = np.array([0.5 + 0.3 * 0.5, 0.5 + 0.3 * 0.5, 0.5 + 0.5 / 5.0])  # derivations/uncertainty.md
     lasting = np.square(0.1 * motion) + np.square([0.01 * 0.5, 0.0, 0.01 * 0.5])  # slip, and parameters
     variance = 1.5 * (1e-3 * motion * 2.0 + lasting * 4.0)
     stated = np.array(parameters["twist_covariance_diagonal"])[[0, 1, 5]]

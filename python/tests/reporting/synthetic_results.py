@@ -114,7 +114,7 @@ def _calibration(runs: int) -> Calibration:
                 "fraction": [0.01, 0.01, 0.01],
                 "pose_std_xy": 0.01,
                 "pose_std_yaw": 0.005,
-                "scale": [1.0, 1.0, 1.0],
+                "variance_scale": [1.0, 1.0, 1.0],
             },
             "range": {"speed": [0.2, 1.8], "yaw_rate": [-0.7, 0.7], "slope": 0.0},
             "provenance": {

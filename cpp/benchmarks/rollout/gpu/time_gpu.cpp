@@ -24,7 +24,7 @@ constexpr int kRuns = 30;
 constexpr double kRead = 2.0 * sizeof(float);         // bytes of a step's commands
 constexpr double kWrittenPath = 3.0 * sizeof(float);  // bytes of a step's pose, where all are wanted
 
-/// A model to time; `operations` per period are those of docs/derivations.md, section 16. 0: not counted.
+/// A model to time; `operations` per period are those of derivations/rollouts.md. 0: not counted.
 struct Case {
   const char* words;
   const char* basis;

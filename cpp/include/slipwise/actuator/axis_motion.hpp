@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one actuator axis does from a known state on, with exact derivatives (derivations.md, section 4).
+// What one actuator axis does from a known state on, with exact derivatives (derivations/actuator.md).
 #pragma once
 
 #include <Eigen/Core>

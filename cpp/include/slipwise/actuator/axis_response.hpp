@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How one channel of the drive answers its delayed input: two lags side by side, behind a gain (derivations.md, section
-// 4).
+// How one channel of the drive answers its delayed input: two lags side by side, behind a gain
+// (derivations/actuator.md).
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One actuator axis from step to step: a fast and a slow first-order mode side by side behind a gain, with derivatives
-// by whatever its inputs, its durations and its own parameters move with (derivations.md, section 4).
+// by whatever its inputs, its durations and its own parameters move with (derivations/actuator.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// First-order lag under a held input: the exact step, its mean, and exact sensitivities (derivations.md, section 4;
+// First-order lag under a held input: the exact step, its mean, and exact sensitivities (derivations/actuator.md;
 // thesis 8.1).
 #pragma once
 
@@ -27,7 +27,7 @@ struct LagStepLinearization {
 struct LagDecay {
   double time_constant;  ///< [s]; zero follows the input at once
   double duration;       ///< [s]
-  double gone = 1.0;     ///< the fraction of the gap that has closed, 1 - a of derivations.md
+  double gone = 1.0;     ///< the fraction of the gap that has closed, 1 - a of derivations/actuator.md
   double left = 0.0;     ///< the fraction that is left, a
   double by_rate = 0.0;  ///< a * duration / time_constant
 

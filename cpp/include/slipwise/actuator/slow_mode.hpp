@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which part of a measured speed a channel's slow mode holds (derivations.md, section 4).
+// Which part of a measured speed a channel's slow mode holds (derivations/actuator.md).
 #pragma once
 
 #include <algorithm>

@@ -17,7 +17,7 @@ struct WeightingSettings {
 };
 
 /// The weights after candidates predicted a segment with these log scores, `observed` segments having spoken before;
-/// what is redistributed is spread by `prior`, their prior weights (derivations.md, section 7).
+/// what is redistributed is spread by `prior`, their prior weights (derivations/averaging.md).
 /// \throws std::invalid_argument when there is not one score and one prior weight per weight.
 Eigen::VectorXd updated_weights(const Eigen::VectorXd& weights, const Eigen::VectorXd& log_scores,
                                 const Eigen::VectorXd& prior, const WeightingSettings& settings, std::size_t observed);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stretch of a process observed from its start: what is measured on the way and where it ends, with common noise
-// (derivations.md, section 6).
+// (derivations/iterated-filter.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much the slip rates and the measured poses scatter (derivations.md, section 5).
+// How much the slip rates and the measured poses scatter (derivations/uncertainty.md).
 #pragma once
 
 #include <array>

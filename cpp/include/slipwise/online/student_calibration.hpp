@@ -17,7 +17,7 @@ struct StudentT {
 /// Fits a Student t to the errors of predictions, one after another. The posterior over a grid of variance scale and
 /// degrees of freedom is a mixture of t; the t reported is the one with the mixture's 50 % and 95 % ellipsoids. How
 /// fast older errors are forgotten is weighted by how well each forgetting time predicted the errors so far
-/// (derivations.md, section 5).
+/// (derivations/uncertainty.md).
 class StudentCalibration {
  public:
   StudentCalibration();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How uncertain the poses of rollouts are: parameters, the slip disturbance and slip noise (derivations.md, section
-// 16).
+// How uncertain the poses of rollouts are: parameters, the slip disturbance and slip noise (derivations/rollouts.md).
 #pragma once
 
 #include <span>

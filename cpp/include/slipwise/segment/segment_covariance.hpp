@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How uncertain a segment's last pose is because of slip noise and pose noise (derivations.md, section 5).
+// How uncertain a segment's last pose is because of slip noise and pose noise (derivations/uncertainty.md).
 #pragma once
 
 #include <Eigen/Core>

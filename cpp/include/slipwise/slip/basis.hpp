@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A slip basis: the terms of the forward, sideways and angular slip rates (derivations.md, section 1).
+// A slip basis: the terms of the forward, sideways and angular slip rates (derivations/model.md).
 #pragma once
 
 #include <Eigen/Core>

@@ -65,7 +65,7 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
       const RolloutProgram program(model, tests::sample_parameters(model, actuator), {kPeriod, 0.3, -0.2});
       const auto expected = tests::roll(program, commands.batch(kStart, kPast));
       CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
-      // In float, a few are more than 1e-5 m off where a lagging speed passes zero (derivations.md, section 16).
+      // In float, a few are more than 1e-5 m off where a lagging speed passes zero (derivations/rollouts.md).
       CHECK(apart(tests::roll(program, in_float.batch(kStart, kPast), {.gpu = &gpu}), expected) < 2.5e-5);
       CHECK(apart(tests::roll(program, in_float.batch(kStart, kPast)), expected) < 2.5e-5);
     }
