@@ -38,7 +38,7 @@ class Shown:
     pictures: dict[str, str]
 
 
-PATHS, TRUTH = "Where the robot drove, and what was predicted", "Is the stated uncertainty true?"
+PATHS, TRUTH = "Where the robot drove, and what was predicted", "Is the reported uncertainty true?"
 COMMANDS, WHEELS = ("--input", "command"), ("--input", "wheel")
 REPORTS = (
     Shown(

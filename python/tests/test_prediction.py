@@ -119,7 +119,7 @@ def test_tails_are_interpolated_and_held_beyond_the_judged_horizons(model: Model
 
 def test_model_without_judged_horizons_is_nearly_normal_as_stated(model: Model) -> None:
     bare = Model(
-        model.content.model_copy(update={"noise": model.content.noise.model_copy(update={"students": {}})})
+        model.content.model_copy(update={"noise": model.content.noise.model_copy(update={"student_t": {}})})
     )
     assert student_at(bare, 2.0) == StudentT(inflation=1.0, dof=MOST_DOF)
 

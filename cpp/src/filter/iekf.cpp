@@ -27,7 +27,7 @@ struct MeasuredSegment {
   using Innovation = Eigen::Vector3d;
 
   const MotionModel& model;
-  const InputBuffer& inputs;
+  const InputHistory& inputs;
   const Segment& segment;
   const Eigen::Matrix3d& covariance;
 
@@ -91,7 +91,7 @@ void check(const MotionModel& model, const Estimate& prior, const Segment& segme
 }  // namespace
 
 // NOLINTNEXTLINE(readability-function-size): what is known (model, prior), what was observed, and the settings.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputBuffer& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, const Eigen::Matrix3d& noise, const IekfSettings& settings) {
   check(model, prior, segment, noise);
   return iekf_update(model, prior, inputs, segment, linearize_segment(model, prior.mean, inputs, segment), noise,
@@ -99,7 +99,7 @@ IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const In
 }
 
 // NOLINTNEXTLINE(readability-function-size): the same, and what is at hand already.
-IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputBuffer& inputs,
+IekfUpdate iekf_update(const MotionModel& model, const Estimate& prior, const InputHistory& inputs,
                        const Segment& segment, SegmentLinearization at_prior, const Eigen::Matrix3d& noise,
                        const IekfSettings& settings) {
   check(model, prior, segment, noise);

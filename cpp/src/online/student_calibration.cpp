@@ -149,7 +149,7 @@ void StudentCalibration::learn(double squared) {
   }
 }
 
-/// Where the mixture's students are heavier than the least degrees of freedom allow, the larger ellipsoid is kept.
+/// Where the mixture's tails are heavier than the least degrees of freedom allow, the larger ellipsoid is kept.
 StudentT StudentCalibration::fitted() const {
   const Tables& known = tables();
   const Eigen::VectorXd weights = normalised(Eigen::Map<const Eigen::Vector4d>(predicted_.data()));

@@ -71,7 +71,7 @@ void DelayedState::clone() {
   joint_.covariance.rightCols<3>() = joint_.covariance.middleCols<3>(m).eval();
 }
 
-void DelayedState::advance(const InputBuffer& inputs, const Leg& leg) {
+void DelayedState::advance(const InputHistory& inputs, const Leg& leg) {
   advance_at({joint_.mean.head(model_.size()), pose()}, inputs, leg, 1.0);
 }
 
@@ -141,7 +141,7 @@ IekfUpdate DelayedState::judge(const Pose2& end) const {
 }
 
 /// Parameters near the optimum: an IEKF of this segment alone, with its step-halving.
-Eigen::VectorXd DelayedState::settled(const InputBuffer& inputs, const Segment& segment, const Pose2& end) const {
+Eigen::VectorXd DelayedState::settled(const InputHistory& inputs, const Segment& segment, const Pose2& end) const {
   Segment observed = segment;
   observed.measured = between(pose(), end);
   const Estimate before = estimate();
@@ -152,7 +152,7 @@ Eigen::VectorXd DelayedState::settled(const InputBuffer& inputs, const Segment& 
   return iekf_update(model_, before, inputs, observed, std::move(at), noise, settings).estimate.mean;
 }
 
-void DelayedState::learn_weighted(const InputBuffer& inputs, const Segment& segment, const Pose2& end, double weight) {
+void DelayedState::learn_weighted(const InputHistory& inputs, const Segment& segment, const Pose2& end, double weight) {
   const Eigen::Index m = model_.size();
   const Estimate before = joint_;
   Point point{settled(inputs, segment, end), pose()};
@@ -170,7 +170,7 @@ void DelayedState::learn_weighted(const InputBuffer& inputs, const Segment& segm
   }
 }
 
-IekfUpdate DelayedState::learn(const InputBuffer& inputs, const Segment& segment) {
+IekfUpdate DelayedState::learn(const InputHistory& inputs, const Segment& segment) {
   if (!started_ || std::abs(segment.start - time_) > kSameStamp) {
     start(segment.start, {});
   }

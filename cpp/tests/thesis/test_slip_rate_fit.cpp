@@ -49,7 +49,7 @@ TEST_CASE("slip rates are covered by three sigma and by their 90 % ellipse over 
       const Eigen::Vector3d sigma = fit.covariance.diagonal().cwiseSqrt();
       within_three_sigma += ((fit.slip - script.slip).array().abs() < 3.0 * sigma.array()).all() ? 1 : 0;
     }
-    CHECK(within_ellipse >= 160);  // 180 +- 4.2; the sandwich of 30 segments has t-like students
+    CHECK(within_ellipse >= 160);  // 180 +- 4.2; the sandwich of 30 segments has t-like tails
     CHECK(within_ellipse <= 193);
     CHECK(within_three_sigma >= 190);
   }

@@ -38,7 +38,7 @@ class Score:
     nis: float  # mean normalised innovation squared; 3 where the covariance is true
     nis_band: tuple[float, float]  # where its mean should lie with 95 %
     coverage: tuple[float, float, float]  # fraction of windows inside the 50, 90, 95 % ellipsoids
-    reported_nis: float  # the same two where no inflation and no students are learned from earlier errors:
+    reported_nis: float  # the same two where no inflation and no tails are learned from earlier errors:
     reported_coverage: tuple[float, float, float]  # a filter's usual covariance, and normal ellipsoids
 
     def __repr__(self) -> str:

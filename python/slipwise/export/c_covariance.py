@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The parts of the C header that say how sure a prediction is: covariance, slip noise and students."""
+"""The parts of the C header that say how sure a prediction is: covariance, slip noise and Student t."""
 
 from __future__ import annotations
 

@@ -145,7 +145,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     assert f"{float(turn[1]):g} m per radian" in settings
     assert f"over {float(straight[1]):g} m" in derivations
     noise, average, iekf = _core.NoiseSettings(), _core.ModelAverageSettings(), _core.IekfSettings()
-    assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.memory:g})" in derivations
+    assert f"max(1/(n + {noise.prior_segments:g}), 1/{noise.forgetting_time:g})" in derivations
     assert f"{noise.largest:g} s_i" in derivations
     weighting = average.weighting
     assert f"η = {weighting.learning_rate:g}, fraction α_n = min({weighting.fraction:g}, 1/n)" in derivations
@@ -177,7 +177,7 @@ def test_constants_of_judging_quoted_in_the_pages_are_right() -> None:
         read("statistics.md").split()
     )
     assert f"from {statistics.RESAMPLES} samples of moving blocks" in derivations
-    assert f"not_identifiable above a ratio of {identifiability.UNIDENTIFIABLE_RATIO:g}" in " ".join(
+    assert f"not identifiable above a ratio of {identifiability.UNIDENTIFIABLE_RATIO:g}" in " ".join(
         derivations.split()
     )
     pages = " ".join(read("statistics.md").split())

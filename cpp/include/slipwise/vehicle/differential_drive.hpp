@@ -24,7 +24,7 @@ struct DifferentialDrive {
       : wheel_radius(wheel_radius_m), wheel_separation(wheel_separation_m) {
     if (!(wheel_radius > 0.0) || !(wheel_separation > 0.0)) {
       throw std::invalid_argument(
-          "wheel radius and wheel_separation must be positive [m]; measure them or take the maker's figures");
+          "wheel radius and separation must be positive [m]; measure them or take the maker's figures");
     }
   }
 
