@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -108,7 +109,22 @@ def _with_new_names(arguments: list[str]) -> list[str]:
     return result
 
 
+def _note(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+) -> str:
+    """What is said of settings under older names: the text alone, since no line of ours is at fault."""
+    return (
+        f"note: {message}\n"
+        if category is FutureWarning
+        else _WITH_PLACE(message, category, filename, lineno, line)
+    )
+
+
+_WITH_PLACE = warnings.formatwarning
+
+
 def _invoke(arguments: list[str]) -> int:
+    warnings.formatwarning = _note
     command = typer.main.get_command(app)
     with command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)

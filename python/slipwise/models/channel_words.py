@@ -22,7 +22,7 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
     if model.content.input != "command":
         return []
     found = {p.name: p for p in parameters}
-    if not any(name.startswith(("lag_", "delay_")) for name in found):
+    if not any(name.startswith(("time_constant_", "delay_")) for name in found):
         return ["Follows commands at once."]
     channels = {"speed commands": _channel(found, "v"), "yaw-rate commands": _channel(found, "omega")}
     if _alike(found, channels):
@@ -33,7 +33,7 @@ def response_sentences(model: Model, parameters: tuple[PhysicalParameter, ...]) 
 
 def _channel(found: Found, place: str) -> str:
     parts = []
-    delay, lagging = found.get(f"delay_{place}"), f"lag_{place}" in found
+    delay, lagging = found.get(f"delay_{place}"), f"time_constant_{place}" in found
     if delay is not None and delay.identified:
         late = lagging or delay.value > SAME * delay.std
         parts.append(f"after {_seconds(delay)}" if late else "at once")
@@ -45,7 +45,7 @@ def _channel(found: Found, place: str) -> str:
 
 def _time_constants(found: Found, place: str) -> str:
     """One time constant, or those of a fast and a slow mode; nothing where they are not identified."""
-    lag = found.get(f"lag_{place}")
+    lag = found.get(f"time_constant_{place}")
     if lag is None or not lag.identified:
         return ""
     slow, slow_time_constant = found.get(f"slow_fraction_{place}"), found.get(f"slow_time_constant_{place}")
@@ -71,7 +71,7 @@ def _alike(found: Found, channels: Mapping[str, str]) -> bool:
     said = [tuple(word in words for word in ("after", "with")) for words in channels.values()]
     return said[0] == said[1] and all(
         _agree(found[f"{kind}_v"], found[f"{kind}_omega"])
-        for kind, is_said in zip(("delay", "lag"), said[0], strict=True)
+        for kind, is_said in zip(("delay", "time_constant"), said[0], strict=True)
         if is_said
     )
 
