@@ -44,9 +44,9 @@ class Limits:
     """Of the speed or the yaw rate of an actuator, in m/s and m/s^2 or rad/s and rad/s^2."""
 
     dead_band: float = 0.0
-    top: float = np.inf
-    acceleration: float = np.inf
-    braking: float = np.inf
+    saturation: float = np.inf
+    slew_rate_up: float = np.inf
+    slew_rate_down: float = np.inf
 
 
 @dataclass(frozen=True)

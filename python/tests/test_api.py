@@ -90,7 +90,7 @@ def test_results_are_short_to_look_at(
     assert repr(log) == "<Log: 1 run, 40 s; commands, wheel speeds, 800 poses>"
     assert repr(sw.Settings()) == "Settings()"
     assert repr(sw.make_settings({"basis": "edd-2", "segment": {"length": 2.0}})) == (
-        "Settings(basis='edd-2', window={'length': 2.0})"
+        "Settings(basis='edd-2', segment={'length': 2.0})"
     )
     assert "of what its wheels say" in repr(result.model)
     assert repr(path).startswith("<Path of 31 poses over 3.00 s to x ")

@@ -9,8 +9,8 @@ from slipwise.number_text import number_text
 _KINDS = {
     _core.LimitKind.DeadBand: "dead band",
     _core.LimitKind.Saturation: "saturation",
-    _core.LimitKind.SlewRateUp: "slew_rate_up",
-    _core.LimitKind.SlewRateDown: "slew_rate_down",
+    _core.LimitKind.SlewRateUp: "slew rate up",
+    _core.LimitKind.SlewRateDown: "slew rate down",
 }
 _AXES = {
     _core.LimitedAxis.Speed: "speed",

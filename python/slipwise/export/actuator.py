@@ -22,7 +22,7 @@ _KNOWN = {"clock_offset"} | {
 class ChannelResponse:
     """How one channel answers a command: delay, gain, and two lags side by side."""
 
-    lag: LearnedNumber  # s
+    time_constant: LearnedNumber  # s
     delay: LearnedNumber  # s
     gain: LearnedNumber
     slow_fraction: LearnedNumber  # of the answer that follows by the slow lag
@@ -31,7 +31,7 @@ class ChannelResponse:
     @property
     def mean_lag(self) -> LearnedNumber:
         """The time constant of one lag that loses as much distance [s]."""
-        return self.lag + self.slow_fraction * (self.slow_time_constant + self.lag * -1.0)
+        return self.time_constant + self.slow_fraction * (self.slow_time_constant + self.time_constant * -1.0)
 
     @property
     def mean_delay(self) -> LearnedNumber:
@@ -80,7 +80,7 @@ def actuator_of(model: Model) -> Actuator:
 
     def channel(place: str) -> ChannelResponse:
         return ChannelResponse(
-            lag=seconds(f"log_time_constant_{place}"),
+            time_constant=seconds(f"log_time_constant_{place}"),
             delay=plain(f"delay_{place}", 0.0) + seconds(f"log_delay_{place}"),
             gain=plain(f"gain_{place}", 1.0),
             slow_fraction=plain(f"slow_fraction_{place}", 0.0),

@@ -17,8 +17,8 @@ from slipwise.models.model import Model
 from slipwise.prediction import student_at
 
 _SHIFTED = {
-    "log_time_constant_v": "model.speed.lag *= SLIPWISE_MATH(exp)({by})",
-    "log_time_constant_omega": "model.yaw.lag *= SLIPWISE_MATH(exp)({by})",
+    "log_time_constant_v": "model.speed.time_constant *= SLIPWISE_MATH(exp)({by})",
+    "log_time_constant_omega": "model.yaw.time_constant *= SLIPWISE_MATH(exp)({by})",
     "log_delay_v": "model.delay_v *= SLIPWISE_MATH(exp)({by})",
     "log_delay_omega": "model.delay_omega *= SLIPWISE_MATH(exp)({by})",
     "delay_v": "model.delay_v += {by}",

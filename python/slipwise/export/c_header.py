@@ -75,15 +75,20 @@ def _constants(model: Model) -> str:
         named += [
             (f"DELAY_{place}", channel.delay.value, f"[s] transport delay of the {what}", "delay"),
             (f"GAIN_{place}", channel.gain.value, f"drive over input, of the {what}", "gain"),
-            (f"LAG_{place}", channel.lag.value, f"[s] time constant of the {what}", "lag"),
             (
-                f"SLOW_SHARE_{place}",
+                f"TIME_CONSTANT_{place}",
+                channel.time_constant.value,
+                f"[s] time constant of the {what}",
+                "time_constant",
+            ),
+            (
+                f"SLOW_FRACTION_{place}",
                 channel.slow_fraction.value,
                 f"fraction of the {what} that follows slowly",
                 "slow_fraction",
             ),
             (
-                f"SLOW_LAG_{place}",
+                f"SLOW_TIME_CONSTANT_{place}",
                 channel.slow_time_constant.value,
                 "[s] its time constant; 0 where there is none",
                 "slow_time_constant",

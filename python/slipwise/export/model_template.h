@@ -118,7 +118,7 @@ static inline int slipwise_command_push(slipwise_commands *commands, slipwise_re
 
 /* How one channel of the drive answers its input: two lags side by side; without a slow lag there is one. */
 typedef struct {
-  slipwise_real lag, gain, slow_fraction, slow_time_constant;
+  slipwise_real time_constant, gain, slow_fraction, slow_time_constant;
 } slipwise_response;
 
 /* What was learned, as numbers that can be shifted. */
@@ -132,14 +132,14 @@ typedef struct {
  * NULL: as learned. */
 static inline slipwise_model slipwise_model_shifted(const slipwise_real *by) {
   slipwise_model model;
-  model.speed.lag = SLIPWISE_LAG_V;
+  model.speed.time_constant = SLIPWISE_TIME_CONSTANT_V;
   model.speed.gain = SLIPWISE_GAIN_V;
-  model.speed.slow_fraction = SLIPWISE_SLOW_SHARE_V;
-  model.speed.slow_time_constant = SLIPWISE_SLOW_LAG_V;
-  model.yaw.lag = SLIPWISE_LAG_OMEGA;
+  model.speed.slow_fraction = SLIPWISE_SLOW_FRACTION_V;
+  model.speed.slow_time_constant = SLIPWISE_SLOW_TIME_CONSTANT_V;
+  model.yaw.time_constant = SLIPWISE_TIME_CONSTANT_OMEGA;
   model.yaw.gain = SLIPWISE_GAIN_OMEGA;
-  model.yaw.slow_fraction = SLIPWISE_SLOW_SHARE_OMEGA;
-  model.yaw.slow_time_constant = SLIPWISE_SLOW_LAG_OMEGA;
+  model.yaw.slow_fraction = SLIPWISE_SLOW_FRACTION_OMEGA;
+  model.yaw.slow_time_constant = SLIPWISE_SLOW_TIME_CONSTANT_OMEGA;
   model.delay_v = SLIPWISE_DELAY_V;
   model.delay_omega = SLIPWISE_DELAY_OMEGA;
   model.clock_offset = SLIPWISE_CLOCK_OFFSET;
@@ -224,7 +224,7 @@ static inline slipwise_real slipwise_keeping(const slipwise_response *response, 
 static inline slipwise_real slipwise_channel_step(slipwise_channel *channel, const slipwise_response *response,
                                                   slipwise_real input, slipwise_real duration) {
   const slipwise_channel target = slipwise_settled(response, input);
-  slipwise_real integral = slipwise_lag_step(&channel->fast, target.fast, response->lag, duration);
+  slipwise_real integral = slipwise_lag_step(&channel->fast, target.fast, response->time_constant, duration);
   if (response->slow_time_constant > 0) {
     integral += slipwise_lag_step(&channel->slow, target.slow, response->slow_time_constant, duration);
   }
@@ -311,7 +311,7 @@ static inline void slipwise_step(slipwise_walk *walk, slipwise_real duration, in
 /* Steps from `now` to `until`, ending wherever a delayed command changes. */
 static inline void slipwise_cover(slipwise_walk *walk, slipwise_real now, slipwise_real until, int moves) {
   const slipwise_response *const speed = &walk->model->speed, *const yaw = &walk->model->yaw;
-  const int lagging = speed->lag > 0 || yaw->lag > 0 || speed->slow_time_constant > 0 || yaw->slow_time_constant > 0;
+  const int lagging = speed->time_constant > 0 || yaw->time_constant > 0 || speed->slow_time_constant > 0 || yaw->slow_time_constant > 0;
   while (now < until) {
     slipwise_real next = slipwise_change(&walk->speed_input, until);
     const slipwise_real other = slipwise_change(&walk->yaw_input, until);
@@ -336,7 +336,7 @@ static inline slipwise_real slipwise_start_lag(const slipwise_response *response
   if (measured && !(response->slow_time_constant > 0)) {
     return SLIPWISE_R(0);
   }
-  return response->slow_time_constant > response->lag ? response->slow_time_constant : response->lag;
+  return response->slow_time_constant > response->time_constant ? response->slow_time_constant : response->time_constant;
 }
 
 static inline slipwise_start slipwise_start_of(const slipwise_model *model, const slipwise_drive *drive,

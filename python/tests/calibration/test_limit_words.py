@@ -46,6 +46,6 @@ def test_nobody_is_sent_to_command_less_than_a_dead_band_can_be() -> None:
 
 def test_limits_that_are_left_out_are_named() -> None:
     (sentence,) = doubted_limits(search(SIDES, steps_drive(4, 120.0), 1), wheels_logged=False)
-    assert "each side: top" in sentence
+    assert "each side: saturation" in sentence
     assert sentence.endswith("record wheel speeds.")
     assert doubted_limits(searched(steps_drive(4, 40.0)), wheels_logged=False) == ()

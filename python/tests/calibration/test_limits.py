@@ -23,7 +23,7 @@ from slipwise.logs import open_log
 from slipwise.logs.log import Inputs, Log, Poses, Run, Source
 from slipwise.models import Model, load_model
 from slipwise.models.schema import AxisLimitsSection, LearnedLimit, LimitsSection
-from slipwise.planning import Controller, Start, Track, rollout, sample_futures
+from slipwise.planning import Controller, ReferencePath, Start, rollout, sample_futures
 from slipwise.planning.mppi import learned_motions
 from slipwise.prediction import predict
 from slipwise.segments import recording_of
@@ -144,7 +144,7 @@ def test_a_model_with_limits_plans_as_it_predicts(model: Model) -> None:
         futures = sample_futures(model, commands[None], 0.05, samples=200, seed=1, start=start)
         covariance = found.covariance[:, -1, 0]
         assert futures[0, :, -1, 0].var() == pytest.approx(covariance[0], rel=0.3)
-    controller = Controller(learned_motions(model), Track(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8))
+    controller = Controller(learned_motions(model), ReferencePath(np.array([[0.0, 0.0], [20.0, 0.0]]), 0.8))
     assert controller.command((0.0, 0.0, 0.0), (0.5, 0.0))[0] > 0.0
 
 

@@ -167,7 +167,7 @@ def test_a_learner_that_was_saved_goes_on_as_it_was(log: Log, input_name: str) -
 
 
 def test_settings_are_saved_with_it(log: Log) -> None:
-    settings = sw.Settings(basis="edd-2", window={"length": 1.5})
+    settings = sw.Settings(basis="edd-2", segment={"length": 1.5})
     learner = sw.MotionLearner("wheel", settings)
     other = sw.MotionLearner.load(learner.save())
     for each in (learner, other):

@@ -176,7 +176,7 @@ def test_ellipsoids_that_are_not_true_are_said_and_a_good_verdict_is_not_plainly
     verdict = give_verdict(judged(BETTER, BETTER, small), Identified(2, ()), facts())
     assert verdict.good
     assert verdict.reservations == (small.sentence(),)
-    assert "NIS 127 where 3 is true, and the 95 % ellipsoids hold 62 %" in verdict.sentence
+    assert "NIS 127 (3 is true), and the 95 % ellipsoids hold 62 %" in verdict.sentence
     assert verdict.advice[0].startswith("Multiply predicted covariances by 42 ")
     plain = give_verdict(judged(BETTER, BETTER, TRUE), Identified(2, ()), facts())
     assert (plain.good, plain.reservations, plain.advice) == (True, (), ())
@@ -187,7 +187,7 @@ def test_a_model_that_is_mostly_outside_its_ellipsoids_is_not_good() -> None:
     verdict = give_verdict(judged(BETTER, BETTER, untrue), Identified(2, ()), facts())
     assert not verdict.good
     assert "what it says of its own errors is not true" in verdict.sentence
-    assert "NIS 1184 where 3 is true" in verdict.sentence
+    assert "NIS 1184 (3 is true)" in verdict.sentence
 
 
 def test_a_short_stop_qualifies_a_good_verdict() -> None:

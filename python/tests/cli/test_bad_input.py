@@ -237,7 +237,7 @@ def test_wrong_settings_are_refused(slipwise: Slipwise, drive_csv: Path, content
         (["calibrate", "drive.csv", "--wheel-separation", "wide"], "--wheel-separation"),
         (
             ["calibrate", "drive.csv", "--wheel-separation", "-1"],
-            "wheel_separation must be a positive number of metres",
+            "wheel-separation must be a positive number of metres",
         ),
         (["evaluate", "drive.csv", "--horizons", "1,soon"], "'1,soon' is no list of seconds (--horizons)"),
         (["evaluate", "drive.csv", "--horizons", "0"], "horizons must be positive seconds"),

@@ -197,8 +197,8 @@ def test_the_c_header_says_what_is_not_identified_and_stays_the_model() -> None:
     content["limits"]["speed"]["slew_rate_up"]["std"] = 1.3e7
     model = Model(ModelFile.model_validate(content))
     lines = exported(model, "c-header").text.splitlines()
-    (lag,) = (line for line in lines if line.startswith("#define SLIPWISE_LAG_V "))
-    (other,) = (line for line in lines if line.startswith("#define SLIPWISE_LAG_OMEGA "))
+    (lag,) = (line for line in lines if line.startswith("#define SLIPWISE_TIME_CONSTANT_V "))
+    (other,) = (line for line in lines if line.startswith("#define SLIPWISE_TIME_CONSTANT_OMEGA "))
     assert "not identified" in lag
     assert f"SLIPWISE_R({math.exp(model.mean[2])!r})" in lag
     assert "0.300 +- 0.003" in other
