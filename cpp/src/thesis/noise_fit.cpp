@@ -129,7 +129,7 @@ GroupScatter scatter_of(const NoiseGroup& group, const NoiseFitSettings& setting
   return result;
 }
 
-/// Half of the first time's scatter for the start, half of the inflation for the slip rates; never zero.
+/// Half of the first time's scatter for the start, half of the growth for the slip rates; never zero.
 Vector6 first_guess(std::span<const GroupScatter> groups) {
   Vector6 guess = Vector6::Zero();
   for (const GroupScatter& group : groups) {

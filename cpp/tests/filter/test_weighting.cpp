@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Weights of candidates: they follow the scores, come back by the fraction, and bad input is refused.
+// Weights of candidates: they follow the scores, come back by the switching rate, and bad input is refused.
 #include <doctest/doctest.h>
 
 #include <array>

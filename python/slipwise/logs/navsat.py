@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Satellite fixes: WGS-84 to a local tangent plane, and headings from an IMU or from the history."""
+"""Satellite fixes: WGS-84 to a local tangent plane, and headings from an IMU or from the path."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _A = 6378137.0  # [m] WGS-84 semi-major axis
 _F = 1.0 / 298.257223563  # WGS-84 flattening
 _E2 = _F * (2.0 - _F)  # first eccentricity squared
 _MAX_IMU_AGE = 0.5  # [s] an IMU sample further away says nothing about a fix
-_HALF_CHORD = 0.25  # [m] of history on either side of a fix make its course
-_MIN_CHORD = 0.2  # [m] a shorter piece of history has no course
-_MAX_CHORD_TIME = 3.0  # [s] a piece of history that takes longer is not one course
+_HALF_CHORD = 0.25  # [m] of path on either side of a fix make its course
+_MIN_CHORD = 0.2  # [m] a shorter piece of path has no course
+_MAX_CHORD_TIME = 3.0  # [s] a piece of path that takes longer is not one course
 
 
 def ecef(latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
@@ -52,7 +52,7 @@ def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats,
 
 
 def heading_from_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> tuple[Floats, Bools]:
-    """Take the direction of the history around each fix as heading, turned about when driving backward.
+    """Take the direction of the path around each fix as heading, turned about when driving backward.
 
     Args:
         t: stamps [N] in s, increasing.

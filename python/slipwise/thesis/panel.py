@@ -32,7 +32,7 @@ class Line:
 
     x: Floats  # [N]
     y: Floats  # [N]
-    label: str = ""  # in the legend; lines of the same label fraction an entry
+    label: str = ""  # in the legend; lines of the same label share an entry
     colour: str = ""  # "#rrggbb"; empty: the next of COLOURS
     dash: Dash = "solid"
     width: float = 1.6  # px

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A change of terrain is found while learning, commanded, and learned; without one nothing is forgotten."""
+"""A change of terrain is found while learning, said, and learned; without one nothing is forgotten."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The noise that other tools are commanded is that of predictions, the slip disturbance included."""
+"""The noise that other tools are given is that of predictions, the slip disturbance included."""
 
 from __future__ import annotations
 

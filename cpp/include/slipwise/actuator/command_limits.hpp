@@ -35,7 +35,7 @@ struct CommandLimits {
 
 /// Whether nothing is limited.
 bool unlimited(const CommandLimits& limits);
-/// Whether the sides are limited; if not, wheel_separation and gains have no effect.
+/// Whether the sides are limited; if not, separation and gains have no effect.
 bool limits_sides(const CommandLimits& limits);
 
 /// Whether an axis, or some axis, ramps.

@@ -81,7 +81,7 @@ class BatchSearch {
   }
 
  private:
-  /// Finds what the data fraction, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
+  /// Finds what the data share, which is not saved. \throws std::invalid_argument when sizes do not fit, there is no
   /// datum, or a noise is none.
   void check_data();
   BatchPoint point(std::vector<SegmentLinearization> at) const;

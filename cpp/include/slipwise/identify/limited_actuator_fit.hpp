@@ -82,12 +82,12 @@ class LimitedActuatorFit {
   /// where all that are left, if they gained as much as the last, came to no less than `wanted`.
   ScoredActuator refine(const LimitedActuator& drive, int steps,
                         double wanted = std::numeric_limits<double>::infinity()) const;
-  /// Standard deviation of each smooth limit of each axis (saturation, slew_rate_up, braking), robust against residuals
+  /// Standard deviation of each smooth limit of each axis (saturation, slew rates), robust against residuals
   /// that are alike or of unequal size; zero for what limits nothing, and for dead-bands.
   struct Spread {
     std::array<std::array<double, kLimitKinds.size()>, kLimitedAxes.size()> std;  ///< by axis and kind
     double wheel_separation_std;                                                  ///< [m]
-    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log wheel_separation
+    Eigen::Matrix3d to_sides;  ///< covariance of gain of speed, gain of yaw rate and log separation
   };
   Spread spread(const LimitedActuator& drive) const;
 

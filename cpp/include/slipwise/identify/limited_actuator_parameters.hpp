@@ -9,8 +9,8 @@
 
 namespace slipwise {
 
-/// In a row: gain, log lag and log delay per channel, log wheel_separation, and per axis log saturation, slew_rate_up,
-/// braking.
+/// In a row: gain, log lag and log delay per channel, log separation, and per axis log saturation and
+/// slew rates.
 inline constexpr int kActuatorPart = 6;
 inline constexpr int kSeparationPlace = 6;
 inline constexpr int kFirstLimit = 7;
