@@ -109,22 +109,10 @@ def _with_new_names(arguments: list[str]) -> list[str]:
     return result
 
 
-def _note(
-    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
-) -> str:
-    """What is said of settings under older names: the text alone, since no line of ours is at fault."""
-    return (
-        f"note: {message}\n"
-        if category is FutureWarning
-        else _WITH_PLACE(message, category, filename, lineno, line)
-    )
-
-
-_WITH_PLACE = warnings.formatwarning
-
-
 def _invoke(arguments: list[str]) -> int:
-    warnings.formatwarning = _note
+    warnings.simplefilter(
+        "ignore", FutureWarning
+    )  # older names of settings; the run's folder has the new ones
     command = typer.main.get_command(app)
     with command.make_context("slipwise", arguments) as context:
         return int(command.invoke(context) or 0)

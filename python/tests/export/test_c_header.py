@@ -327,7 +327,7 @@ def test_constants_are_those_of_the_model_to_the_last_bit() -> None:
 
     actuator = model.motion.actuator(model.mean)
     assert [number("P0"), number("P1")] == [-0.1, 1.0 / 3.0]
-    assert number("LAG_V") == actuator.time_constant_v
+    assert number("TIME_CONSTANT_V") == actuator.time_constant_v
     assert number("DELAY_OMEGA") == actuator.delay_omega
     assert number("CLOCK_OFFSET") == 0.07
     assert [number("SPEED_MIN"), number("SPEED_MAX")] == model.content.range.speed
