@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the node gives to planners, odometry, people and files."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Validity = Literal["unestimated", "estimated", "invalid"]
+
+
+@dataclass(frozen=True, eq=False)
+class Odometry:
+    """The fused pose and the twist with learned slip, `~/odometry` and `~/twist`."""
+
+    t: float  # s
+    frame: str  # of the pose: that of the pose sensor
+    child_frame: str  # base_link
+    pose: Floats  # [3] x, y [m], yaw [rad]
+    pose_covariance: Floats  # [3, 3]
+    twist: Floats  # [3] v, vy [m/s], omega [rad/s] in the child frame
+    twist_covariance: Floats  # [3, 3]
+    since_pose: float  # s, for which no pose came: dead reckoning
+
+
+@dataclass(frozen=True, eq=False)
+class Path:
+    """Where the present command leads, `~/predicted_path`, or the answer to a request."""
+
+    t: Floats  # [N] s
+    frame: str
+    poses: Floats  # [N, 3] x, y [m], yaw [rad] in that frame
+    covariance: Floats  # [N, 3, 3]
+    asked: bool = False  # on request
+
+
+@dataclass(frozen=True)
+class ParameterNow:
+    """A parameter of the model as it is now, in physical units."""
+
+    name: str
+    unit: str
+    value: float
+    std: float
+    prior_std: float
+    validity: Validity
+    start: float  # its value when the node started
+    applied: float | None = None  # what others were given; None: nothing
+
+
+@dataclass(frozen=True, eq=False)
+class Status:
+    """The state of the node, `~/diagnostics`: a new one several times a second."""
+
+    t: float  # s, stamp of the newest measurement
+    vehicle: str
+    input: str  # "command" or "wheel"
+    state: str  # "waiting", "learning", "not learning", "stuck"
+    why: str  # of the state, in words: "no pose yet", "an operator drives", ...
+    validity: Validity  # of the model as a whole
+    validity_why: str
+    parameters: tuple[ParameterNow, ...]
+    driven: Floats  # [N, 3] the last measured poses, oldest first
+    odometry: Odometry | None
+    predicted: Path | None
+    slip: Floats | None  # [3] slip now: forward, sideways [m/s], yaw rate [rad/s]; the model minus the input
+    nis: float | None  # normalised innovation squared of the newest segment, expected 3
+    held_out: tuple[float, float, float, float] | None  # position [m], heading [rad], the baseline's
+    segments: int  # learned so far
+    counts: dict[str, int]  # what was rejected, by reason
+    log: tuple[tuple[float, str], ...]  # the last things said: stamp [s], text
+    apply: str  # "off", "manual" or "auto"
+
+
+@dataclass(frozen=True)
+class ModelText:
+    """The model file as text, `~/model` (latched)."""
+
+    t: float  # s
+    text: str
+
+
+@dataclass(frozen=True)
+class Note:
+    """Something said once."""
+
+    t: float  # s
+    text: str
+
+
+Output = Odometry | Path | Status | ModelText | Note

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot tells and is asked: one measurement or one request, in SI units, stamped by who measured it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True)
+class Twist:
+    """A commanded or a measured twist of the body."""
+
+    t: float  # s, stamp of the message
+    v: float  # m/s, forward
+    omega: float  # rad/s, counter-clockwise
+    vy: float = 0.0  # m/s, to the left
+
+
+class Command(Twist):
+    """What the robot was told to do."""
+
+    __slots__ = ()
+
+
+class Wheels(Twist):
+    """What its wheels measure."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Where a sensor measured the robot to be."""
+
+    t: float  # s
+    x: float  # m
+    y: float  # m
+    yaw: float  # rad, counter-clockwise
+    std_xy: float | None = None  # m, where the sensor says it
+    std_yaw: float | None = None  # rad
+    frame: str = ""  # poses of different frames are not compared
+    roll: float | None = None  # rad
+    pitch: float | None = None  # rad; by REP-103 nose down is positive
+
+
+@dataclass(frozen=True, slots=True)
+class Override:
+    """Whether an operator drives the robot past its commands."""
+
+    t: float  # s
+    active: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What somebody asks of the node.
+
+    `apply` hands the parameters learned to others now; `predict` asks for the path of given commands.
+    """
+
+    kind: Literal["apply", "predict"]
+    content: str = ""  # of a prediction, as JSON: {"horizon": s, "commands": [[t, v, omega], ...]}
+
+
+Sample = Command | Wheels | Pose | Override | Request

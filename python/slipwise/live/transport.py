@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What brings samples and takes results away: the one protocol of ROS, tables, UDP and replayed logs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+from slipwise.live.outputs import Output
+from slipwise.live.samples import Sample
+
+OnSample = Callable[[Sample], None]
+
+
+class Transport(Protocol):
+    """Callbacks may come from any thread; the node orders them."""
+
+    def subscribe(self, on_sample: OnSample) -> None:
+        """Begin to deliver samples.
+
+        Raises:
+            SlipwiseError: the topics, the address or the file cannot be used.
+        """
+
+    def publish(self, output: Output) -> None:
+        """Hand a result to whoever listens; never waits for them."""
+
+    def notices(self) -> list[str]:
+        """Return what is to be said since the last call, such as a topic on which nothing comes."""
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing more will come, as at the end of a file."""
+
+    def close(self) -> None:
+        """Stop; may be called twice."""

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The protocol of everything that carries ROS messages: bytes in, bytes out, by topic and type."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+OnMessage = Callable[[bytes], None]
+
+
+@dataclass(frozen=True)
+class WireTopic:
+    """A topic that somebody publishes."""
+
+    name: str  # with its slash, such as "/odom"
+    type: str  # such as "nav_msgs/msg/Odometry"
+    publishers: int
+
+
+class RosWire(Protocol):
+    """Messages are CDR with its header of 4 bytes (rosbags' `serialize_cdr`); ROS 1's wire converts.
+
+    Callbacks come from threads of the wire.
+    """
+
+    def topics(self) -> list[WireTopic]:
+        """Return what is published by others now."""
+
+    def subscribe(self, topic: str, type_name: str, on_message: OnMessage, *, latched: bool = False) -> None:
+        """Deliver every message of a topic.
+
+        Raises:
+            SlipwiseError: there is no such type, or the wire refuses.
+        """
+
+    def publish(self, topic: str, type_name: str, payload: bytes, *, latched: bool = False) -> None:
+        """Send a message; the topic is announced at the first one, or by `advertise`."""
+
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> None:
+        """Announce a topic before its first message."""
+
+    def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
+        """Call a service, such as "rcl_interfaces/srv/SetParameters"; None where nobody answers in time [s]."""
+
+    def notices(self) -> list[str]:
+        """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
+
+    def close(self) -> None:
+        """Leave the graph; may be called twice."""
