@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import Keep, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.limit_words import advice_on_limits
@@ -65,21 +66,10 @@ def calibrate(
     drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    found = contradictions(
-        log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
-    )
+    found = _contradictions(log, input_name, settings)
     learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
     learned = learn(settings, windows, progress)
-    judged = judged_on(learned, windows, (log, input_name, settings), found)
-    facts = ModelFacts(
-        input_name=input_name,
-        settings=settings,
-        logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
-        range=_range(drive),
-        seconds=float(np.sum(windows.end - windows.start)),
-        segments=len(windows),
-    )
-    content = model_content(learned, judged, facts)
+    judged, content = _judged_content(learned, windows, (log, input_name, settings), found)
     return Calibration(
         model_of(content, log, found),
         judged.verdict,
@@ -89,6 +79,43 @@ def calibrate(
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
     )
+
+
+def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings) -> tuple[Model, Judgement]:
+    """Return the model that `calibrate` makes of a log, where a learner has learned all of it.
+
+    Raises:
+        LogError: no model holds what was learned.
+    """
+    windows = learning_windows(prepare_run(log, input_name), input_name, settings)
+    found = _contradictions(log, input_name, settings)
+    judged, content = _judged_content(learned, windows, (log, input_name, settings), found)
+    return model_of(content, log, found), judged.judgement
+
+
+def _contradictions(log: Log, input_name: str, settings: Settings) -> tuple[Contradiction, ...]:
+    yaw = settings.sensor_extrinsics.yaw
+    return contradictions(log, input_name, settings.segment.unknown_after, sensor_yaw=yaw)
+
+
+def _judged_content(
+    learned: Learned,
+    windows: WindowSet,
+    given: tuple[Log, str, Settings],
+    found: tuple[Contradiction, ...],
+) -> tuple[Judged, schema.ModelFile]:
+    """Judge what was learned; also what its model file holds."""
+    log, input_name, settings = given
+    judged = judged_on(learned, windows, given, found)
+    facts = ModelFacts(
+        input_name=input_name,
+        settings=settings,
+        logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
+        range=_range(windows.drive),
+        seconds=float(np.sum(windows.end - windows.start)),
+        segments=len(windows),
+    )
+    return judged, model_content(learned, judged, facts)
 
 
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
-from slipwise.calibration.calibrate import JUDGING_HORIZONS
+from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import held_out_predictions, kept_posterior
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
@@ -21,6 +22,7 @@ from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
+from slipwise.logs.log import Log
 from slipwise.models import Model
 from slipwise.models.schema import Range
 
@@ -47,6 +49,7 @@ class Event:
     run: str
     t: float  # s
     reason: str = ""  # why something was rejected
+    nis: float | None = None  # of a segment learned: its normalised innovation squared, 3 degrees of freedom
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,6 +140,7 @@ class MotionLearner:
                 self._run(event.run),
                 event.t,
                 event.reason_text if event.kind == _core.EventKind.Rejected else "",
+                _nis(event) if event.kind == _core.EventKind.SegmentLearned else None,
             )
             for event in self._core.events()
         ]
@@ -192,24 +196,32 @@ class MotionLearner:
         Raises:
             SettingsError: nothing was learned yet.
         """
+        return self.judged_model(limits=limits)[0]
+
+    @property
+    def newest(self) -> float:
+        """Stamp of the newest measurement of the run [s]; minus infinity before the first."""
+        return float(self._core.newest)
+
+    def judged_model(self, *, limits: bool = True, log: Log | None = None) -> tuple[Model, Judgement]:
+        """Return what `model` does, and how its predictions compare with the kinematic baseline's.
+
+        Args:
+            limits: as `model` takes it.
+            log: where all that was pushed comes from: the model is then what `calibrate` makes of it.
+
+        Raises:
+            SettingsError: nothing was learned yet.
+            LogError: no model holds such parameters; measurements that contradict themselves lead there.
+        """
         model = self._core.model()
         if model.segments == 0:
             raise SettingsError(
                 "nothing was learned yet", advice="push inputs and poses of some seconds first"
             )
-        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
-        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
-        students = zip(predictions, model.students, strict=True)
-        learned = Learned(
-            kept_posterior(model, found),
-            posterior_of(model.slip, model.disturbance),
-            predictions,
-            baseline,
-            {p.horizon: student_of(student) for p, student in students if len(p)},
-            None,
-            tuple(basis.name for basis in self._settings.bases()),
-            None if found is None else found.search,
-        )
+        learned = self._learned(model, limits=limits)
+        if log is not None:
+            return model_of_log(learned, log, self._input, self._settings)
         judgement = judgement_of(learned)
         known = identified(learned.identifiable, wheels_logged=self._wheels)
         verdict = give_verdict(judgement, known, LogFacts(input_name=self._input))
@@ -225,7 +237,23 @@ class MotionLearner:
             seconds=model.seconds,
             segments=model.segments,
         )
-        return Model(model_content(learned, Judged(judgement, verdict), facts))
+        content = model_content(learned, Judged(judgement, verdict), facts)
+        return model_of(content, Log(()), ()), judgement
+
+    def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
+        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
+        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
+        students = zip(predictions, model.students, strict=True)
+        return Learned(
+            kept_posterior(model, found),
+            posterior_of(model.slip, model.disturbance),
+            predictions,
+            baseline,
+            {p.horizon: student_of(student) for p, student in students if len(p)},
+            None,
+            tuple(basis.name for basis in self._settings.bases()),
+            None if found is None else found.search,
+        )
 
     def save(self) -> bytes:
         """Return all of it as bytes, from which `load` makes a learner that goes on to the same results."""
@@ -263,3 +291,8 @@ class MotionLearner:
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""
+
+
+def _nis(event: _core.LearnerEvent) -> float:
+    """The NIS of the structure that predicts."""
+    return float(event.updates[int(np.argmax(event.weights))].nis)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot tells and is asked: one measurement or one request, in SI units, stamped by who measured it."""
+"""What a robot tells and is asked: one measurement or one request, in SI units, with its stamp."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class RosWire(Protocol):
         """Announce a topic before its first message."""
 
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
-        """Call a service, such as "rcl_interfaces/srv/SetParameters"; None where nobody answers in time [s]."""
+        """Call a service, such as SetParameters; None where nobody answers in time [s]."""
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
