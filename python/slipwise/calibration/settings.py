@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal, cast
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from slipwise import _core
+from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.log_table import LogTable
 from slipwise.errors import SettingsError
 from slipwise.files import read_whole
@@ -179,6 +180,7 @@ class Settings(_Section):
     vehicle: VehicleTable = VehicleTable()
     sensor_extrinsics: SensorExtrinsicsTable = SensorExtrinsicsTable()
     log: LogTable = LogTable()
+    live: LiveTable = Field(LiveTable(), exclude=True)  # says nothing of how a log is learned
 
     def __repr__(self) -> str:
         changed = self.model_dump(exclude_defaults=True)
@@ -225,7 +227,8 @@ class Settings(_Section):
             SettingsError: there is no such estimator.
         """
         given = {"basis": basis, "estimator": estimator}
-        return make_settings(self.model_dump() | {key: name for key, name in given.items() if name})
+        chosen = make_settings(self.model_dump() | {key: name for key, name in given.items() if name})
+        return chosen.model_copy(update={"live": self.live})
 
     def bases(self) -> list[_core.Basis]:
         """Return the bases to learn: several for `auto`, otherwise one.

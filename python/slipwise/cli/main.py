@@ -19,6 +19,7 @@ from slipwise.cli.evaluate import evaluate
 from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
+from slipwise.cli.live import live
 from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.show import show
@@ -42,6 +43,7 @@ _COMMANDS = (
     (demo, "See it work: a simulated robot, learned and judged."),
     (inspect, "Say what is in a log and what can be learned."),
     (calibrate, "Learn a motion model from logs."),
+    (live, "Learn while the robot drives."),
     (evaluate, "Compare methods on logs, honestly."),
     (show, "Say what a model has learned."),
     (compare, "Say what differs between two models."),

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,4 +92,14 @@ class Note:
     text: str
 
 
-Output = Odometry | Path | Status | ModelText | Note
+@dataclass(frozen=True)
+class AppliedParameters:
+    """Parameters that a running node is to be given."""
+
+    t: float  # s
+    target: str  # such as "mppi"
+    node: str  # such as "/controller_server"
+    values: dict[str, Any]  # by the parameter's full name
+
+
+Output = Odometry | Path | Status | ModelText | Note | AppliedParameters

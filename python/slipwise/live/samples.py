@@ -63,4 +63,11 @@ class Request:
     content: str = ""  # of a prediction, as JSON: {"horizon": s, "commands": [[t, v, omega], ...]}
 
 
-Sample = Command | Wheels | Pose | Override | Request
+@dataclass(frozen=True, slots=True)
+class RunStart:
+    """Another recording begins: nothing is joined with what was before."""
+
+    name: str
+
+
+Sample = Command | Wheels | Pose | Override | Request | RunStart

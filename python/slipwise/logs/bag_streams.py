@@ -137,8 +137,8 @@ def pose_stream(context: BagContext, samples: Samples) -> RawStream:
         if np.nanmax(np.abs(column), initial=0.0) > _TINY:
             columns |= {name: column}
     if values.shape[1] > 7:
-        columns["std_xy"] = _deviation(values[:, 7:9])
-        columns["std_yaw"] = _deviation(values[:, 9:10])
+        columns["std_xy"] = deviation_of(values[:, 7:9])
+        columns["std_yaw"] = deviation_of(values[:, 9:10])
     finite = np.isfinite(values[:, 3:7]).all(axis=1)
     _count(context, samples, finite & ~good, "bad-quaternion", "poses whose quaternion is not a rotation")
     return context.stream("poses", samples, columns, good | ~finite)
@@ -172,11 +172,11 @@ def fix_stream(
         yaw[good], known[good] = heading_from_path(t[good], x[good], y[good], inputs)
         context.notes.append(f"{samples.topic} has no headings: they are the direction of the path")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
-    columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": _deviation(values[:, 4:6])}
+    columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": deviation_of(values[:, 4:6])}
     return context.stream("poses", samples, columns, good & known)
 
 
-def _deviation(variances: Floats) -> Floats:
+def deviation_of(variances: Floats) -> Floats:
     """Return the standard deviation [N] of variances [N, K], NaN unless all are positive and finite."""
     known = (np.isfinite(variances) & (variances > 0.0)).all(axis=1)
     return np.sqrt(np.where(known, np.nan_to_num(variances).mean(axis=1).clip(0.0), np.nan))

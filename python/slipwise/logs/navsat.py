@@ -28,12 +28,18 @@ def ecef(latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
 
 def east_north_up(latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
     """Return positions [N, 3] in m (x east, y north, z up) in the tangent plane at the first fix."""
-    points = ecef(latitude, longitude, altitude)
+    first = (latitude[:1], longitude[:1], altitude[:1])
+    return in_tangent_plane(ecef(latitude, longitude, altitude), *first)
+
+
+def in_tangent_plane(points: Floats, latitude: Floats, longitude: Floats, altitude: Floats) -> Floats:
+    """Return earth-centred points [N, 3] in m as east, north, up of a fix [1] in degrees and metres."""
     phi, lam = np.radians(latitude[0]), np.radians(longitude[0])
     east = np.array([-np.sin(lam), np.cos(lam), 0.0])
     north = np.array([-np.sin(phi) * np.cos(lam), -np.sin(phi) * np.sin(lam), np.cos(phi)])
     up = np.array([np.cos(phi) * np.cos(lam), np.cos(phi) * np.sin(lam), np.sin(phi)])
-    return np.asarray((points - points[0]) @ np.stack([east, north, up], axis=1))
+    origin = ecef(latitude, longitude, altitude)[0]
+    return np.asarray((points - origin) @ np.stack([east, north, up], axis=1))
 
 
 def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats, Bools]:

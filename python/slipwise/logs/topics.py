@@ -37,6 +37,7 @@ _ANY_POSE = Role("pose", POSE_TYPES, POSE_NAMES)
 _COMMAND = Role("command", COMMAND_TYPES, COMMAND_NAMES)
 _WHEEL = Role("wheel", WHEEL_TYPES, WHEEL_NAMES)
 _IMU = Role("imu", (IMU,), ((r"raw", -1, "its name says that it is raw, without an orientation"),))
+NOTHING_YET = "no topic with"  # begins what is said where a role has no topic: a robot may still start it
 _MORE_POSES = 2  # TF is preferred where it has this many times the poses of the topic
 _RECORD = "record where the robot went by something other than its wheels (RTK, lidar, motion capture)"
 SIZES = "--wheel-radius and --wheel-separation"
@@ -194,9 +195,9 @@ def _problem(
         if choice.problem is not None:
             return choice.problem
     if found.pose.topic is None and options.poses is None:
-        return LogError("no topic with a measured pose", advice=_pose_advice(live))
+        return LogError(f"{NOTHING_YET} a measured pose", advice=_pose_advice(live))
     if found.command.topic is None and found.wheel.topic is None:
-        what = "no topic with a command or with wheel speeds"
+        what = f"{NOTHING_YET} a command or with wheel speeds"
         advice = f"give --command-topic or --wheel-topic; {listing(live)}"
         return LogError(what, advice=found.advice.get("wheel", advice))
     if shared and found.pose.topic is not None:

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The part of the settings that `slipwise live` reads; it changes nothing of how a log is learned."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Name = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+Seconds = Annotated[float, Field(gt=0.0, le=1e6)]
+Transports = Literal["ros", "rclpy", "cyclonedds", "zenoh", "rospy", "stdin", "udp"]
+ApplyMode = Literal["off", "manual", "auto"]
+TARGET_NODES = {  # whose parameters are set where none is named
+    "diff-drive": "/diff_drive_controller",
+    "mppi": "/controller_server",
+    "amcl": "/amcl",
+    "robot-localization": "/ekf_filter_node",
+}
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class GatesTable(_Table):
+    """When nothing is learned."""
+
+    stale_after: Seconds = 1.0  # s without input, after which that is said
+    reverse: bool | None = None  # learn in reverse; None: unless the start model never drove so
+
+
+class ApplyTable(_Table):
+    """What is handed to other programs, and how fast it may change."""
+
+    mode: ApplyMode = "off"
+    folder: str | None = None  # the model and the files of the targets are written here
+    targets: list[Literal["diff-drive", "mppi", "amcl", "robot-localization"]] = []
+    set_parameters: bool = False  # set the parameters of running ROS nodes, too
+    nodes: dict[str, str] = {}  # target: the node's name, where it is not the usual one
+    interval: Seconds = 10.0  # s between two times at least
+    threshold: Annotated[float, Field(ge=0.0, le=10.0)] = 0.02  # prior sd that a parameter moved, at least
+    within: Annotated[float, Field(gt=0.0, le=10.0)] = 1.0  # prior sd about the start, at most
+    rate: Annotated[float, Field(gt=0.0, le=10.0)] = 0.01  # prior sd a second, at most
+
+
+class LiveTable(_Table):
+    """Where samples come from and where results go; the command line goes before it."""
+
+    name: Name = "slipwise"  # of the node
+    vehicle: Annotated[str, Field(min_length=1, max_length=64)] = "robot"
+    transport: Transports | None = None  # None: the first ROS that is there
+    domain: Annotated[int, Field(ge=0, le=232)] | None = None  # None: ROS_DOMAIN_ID, else 0
+    network: bool = False  # DDS and Zenoh reach beyond this host
+    address: str | None = None  # Zenoh's router, or where UDP is listened for, as host:port
+    override_topic: str | None = None  # std_msgs/Bool: an operator drives
+    input: Literal["command", "wheel"] | None = None
+    model: str | None = None  # start model
+    cache: str | None = None  # folder
+    gates: GatesTable = GatesTable()
+    apply: ApplyTable = ApplyTable()

@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What `slipwise live` is given: where samples come from, and who watches."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from slipwise.errors import SettingsError
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Settings
+    from slipwise.calibration.live_table import LiveTable
+    from slipwise.live.build import Built
+    from slipwise.live.node import Watcher
+    from slipwise.live.transport import Transport
+    from slipwise.logs import Log, LogOptions
+    from slipwise.models import Model
+
+SILENT_ROBOT = None  # s; a robot may start later
+
+
+@dataclass(frozen=True)
+class Robot:
+    """Where samples come from."""
+
+    transport: Transport
+    input_name: str
+    run: str | None  # name of the run that begins; None: the transport says
+    log: Log | None = None  # that is replayed
+
+
+class Show(Protocol):
+    """What the user wants to see."""
+
+    quiet: bool
+    web: int | None
+    foxglove: int | None
+    host: str
+    record: Path | None
+
+    def say(self, text: str) -> None:
+        """Print a line."""
+
+
+def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
+    """Return the settings with what the command line gives under [live].
+
+    Raises:
+        SettingsError: a value is impossible.
+    """
+    from pydantic import ValidationError
+
+    from slipwise.calibration.live_table import LiveTable
+    from slipwise.validation_text import first_problem
+
+    content = settings.live.model_dump()
+    own = {name: value for name, value in given.items() if value is not None}
+    if "apply" in own:
+        content["apply"] = content["apply"] | {"mode": own.pop("apply")}
+    try:
+        table = LiveTable.model_validate(content | own)
+    except ValidationError as problem:
+        raise SettingsError(
+            first_problem(problem), where="slipwise live", advice="see `slipwise live --help`"
+        ) from problem
+    return settings.model_copy(update={"live": table})
+
+
+def open_robot(
+    settings: Settings,
+    options: LogOptions,
+    *,
+    replay: Path | None,
+    rate: float,
+    results: Path | None,
+    say: Callable[[str], None],
+) -> Robot:
+    """Return where samples come from.
+
+    Raises:
+        SlipwiseError: the log, the topics or the address cannot be used.
+    """
+    table = settings.live
+    if replay is not None:
+        return _replayed(table, options, replay, rate)
+    if table.transport == "stdin":
+        from slipwise.live.pipe import Pipe
+
+        return Robot(Pipe(sys.stdin, _results(results)), table.input or "wheel", "standard input")
+    if table.transport == "udp":
+        from slipwise.live.udp import DEFAULT_ADDRESS, Udp
+
+        listening = Udp(table.address or DEFAULT_ADDRESS)
+        say(f"listening on UDP port {listening.port}")
+        return Robot(listening, table.input or "wheel", "UDP")
+    return _ros(table, options, say)
+
+
+def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) -> Robot:
+    from slipwise.calibration.prepared_run import choose_input
+    from slipwise.live.replay import Replay
+    from slipwise.logs import open_log
+
+    log = open_log(replay, options=options)
+    input_name = table.input or choose_input(log)
+    return Robot(Replay(log, input_name, rate=rate), input_name, None, log)
+
+
+def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
+    from slipwise.live.ros_roles import find_roles
+    from slipwise.live.ros_transport import RosTransport
+    from slipwise.live.wires.choice import make_wire
+    from slipwise.live.wires.options import WireOptions
+
+    named = WireOptions(node_name=table.name, domain=table.domain, network=table.network)
+    if table.address is not None:
+        named = replace(named, router=f"tcp/{table.address}")
+    wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
+    try:
+        roles = find_roles(wire, options, say, own=f"/{table.name}", seconds=SILENT_ROBOT)
+        for note in roles.guessed:
+            say(note)
+        input_name = table.input or ("command" if roles.command is not None else "wheel")
+        say(f"learning from {input_name}s; the node is /{table.name}")
+        transport = RosTransport(wire, roles, options, name=table.name, override_topic=table.override_topic)
+    except BaseException:
+        wire.close()
+        raise
+    return Robot(transport, input_name, "live")
+
+
+def _results(path: Path | None) -> Any:
+    if path is None:
+        return None
+    return sys.stdout if str(path) == "-" else path.open("w", encoding="utf-8")
+
+
+def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
+    """Return who watches, and say where.
+
+    Raises:
+        SlipwiseError: an address or a file cannot be used, or a package is missing.
+    """
+    found: list[Watcher] = []
+    with contextlib.ExitStack() as undo:
+        if show.web is not None:
+            from slipwise.live.watch.web_page import WebPage
+
+            page = WebPage(host=show.host, port=show.web)
+            undo.callback(page.close)
+            found.append(page)
+            show.say(f"page: {page.url}")
+        if show.foxglove is not None:
+            from slipwise.live.watch.foxglove_server import FoxgloveServer
+
+            server = FoxgloveServer(host=show.host, port=show.foxglove)
+            undo.callback(server.close)
+            found.append(server)
+            show.say(f"Foxglove, Lichtblick: {server.url}")
+        if show.record is not None:
+            from slipwise.live.watch.recorder import Recorder
+
+            found.append(Recorder(show.record, name=table.name))
+        undo.pop_all()
+    return found
+
+
+def model_of_replay(built: Built, log: Log | None) -> Model:
+    """Return the model of all that was learned; of a log that was replayed, what `calibrate` makes of it.
+
+    Raises:
+        SlipwiseError: nothing was learned.
+    """
+    return built.learning.learner.judged_model(log=log)[0]

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The model that other programs have: it follows what is learned, clipped and rate-limited."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from slipwise.calibration.live_table import ApplyTable
+from slipwise.live.outputs import Floats, Validity
+from slipwise.models import Model
+
+
+class AppliedModel:
+    """Where the applied parameters are, on their way from the start to what was learned.
+
+    A slip term that the start does not have starts at zero. A lag or delay that it does not have starts at
+    what was learned: no number stands for none.
+
+    Args:
+        rules: how far and how fast.
+        start: the off-line model; None: the kinematic baseline.
+    """
+
+    def __init__(self, rules: ApplyTable, start: Model | None) -> None:
+        self._rules = rules
+        self.start = _values(start)
+        self.values: dict[str, float] = dict(self.start)
+        self._handed: dict[str, float] = {}
+        self._last = -math.inf  # s, when they were handed on
+        self._then = -math.inf  # s, of the last step
+
+    def step(self, t: float, model: Model | None, validity: Callable[[str], Validity]) -> None:
+        """Move towards a valid model for the time since the last step; `t` is a stamp [s].
+
+        Args:
+            t: now.
+            model: what was learned; None while that is not valid: nothing moves then.
+            validity: of each parameter by its name.
+        """
+        seconds = max(0.0, t - self._then) if math.isfinite(self._then) else 0.0
+        self._then = t
+        for name, wanted, prior in self._wanted(model, validity):
+            most = self._rules.rate * prior * seconds
+            now = self.values[name]
+            self.values[name] = now + min(max(wanted - now, -most), most)
+
+    def jump(self, model: Model, validity: Callable[[str], Validity]) -> None:
+        """Take what was learned at once, clipped all the same: somebody asked for it."""
+        for name, wanted, _ in self._wanted(model, validity):
+            self.values[name] = wanted
+
+    def due(self, t: float, model: Model) -> bool:
+        """Say whether others should be told at `t` [s]: the interval is over, and something moved enough."""
+        if t < self._last + self._rules.interval:
+            return False
+        priors = {p.name: p.prior_std for p in model.content.parameters}
+        return any(
+            abs(value - self._handed.get(name, self.start.get(name, 0.0)))
+            > self._rules.threshold * priors.get(name, math.inf)
+            for name, value in self.values.items()
+        )
+
+    def handed_on(self, t: float) -> None:
+        """Remember what others were told at `t` [s]."""
+        self._last, self._handed = t, dict(self.values)
+
+    def model(self, learned: Model) -> Model:
+        """Return the learned model with the applied values; its covariance holds how far they are."""
+        parameters = learned.content.parameters
+        values = np.array([self.values.get(p.name, p.value) for p in parameters])
+        apart = values - learned.mean
+        covariance: Floats = learned.covariance + np.outer(apart, apart)
+        stds = np.sqrt(np.diag(covariance))
+        rows = [
+            p.model_copy(update={"value": float(value), "std": float(std)})
+            for p, value, std in zip(parameters, values, stds, strict=True)
+        ]
+        changed = {"parameters": rows, "covariance": covariance.tolist()}
+        return Model(learned.content.model_copy(update=changed))
+
+    def _wanted(
+        self, model: Model | None, validity: Callable[[str], Validity]
+    ) -> list[tuple[str, float, float]]:
+        """Name, clipped goal and prior sd of the parameters that may move; new ones get their start."""
+        found = []
+        for p in model.content.parameters if model is not None else ():
+            begin = p.value if p.name.startswith("log_") else 0.0
+            start = self.start.setdefault(p.name, begin)
+            self.values.setdefault(p.name, start)
+            reach = self._rules.within * p.prior_std
+            if validity(p.name) == "estimated":
+                found.append((p.name, min(max(p.value, start - reach), start + reach), p.prior_std))
+        return found
+
+
+def _values(model: Model | None) -> dict[str, float]:
+    return {} if model is None else {p.name: p.value for p in model.content.parameters}
+
+
+def physical(name: str, values: Mapping[str, float]) -> float | None:
+    """Return a value in its physical unit by the physical name; None where there is none."""
+    if name in values:
+        return values[name]
+    logarithm = values.get(f"log_{name}")
+    return None if logarithm is None else math.exp(logarithm)

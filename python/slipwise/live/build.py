@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Puts a node together from its settings: learner, cache, gates, what is handed on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from slipwise.calibration import Settings
+from slipwise.calibration.live_table import LiveTable
+from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.errors import SettingsError
+from slipwise.live.applied import AppliedModel
+from slipwise.live.cache import Cache, CacheKey
+from slipwise.live.gates import Gates, rules_for
+from slipwise.live.handover import Handover
+from slipwise.live.intake import Intake
+from slipwise.live.learning import Learning
+from slipwise.live.node import LiveNode, NodeParts, Watcher
+from slipwise.live.said import Said
+from slipwise.live.status import Identity
+from slipwise.live.transport import Transport
+from slipwise.models import Model, load_model
+
+
+@dataclass(frozen=True)
+class Built:
+    """A node that is ready to run, and what it learns with."""
+
+    node: LiveNode
+    learning: Learning
+    said: Said
+
+
+def build_node(
+    transport: Transport,
+    input_name: str,
+    settings: Settings,
+    *,
+    watchers: Sequence[Watcher] = (),
+    run: str | None = None,
+) -> Built:
+    """Return a node.
+
+    Args:
+        transport: brings samples and takes results.
+        input_name: "command" or "wheel": what is learned from.
+        settings: those of learning, and of [live].
+        watchers: see all that the node gives.
+        run: name of the run that begins; None: the transport says when one does.
+
+    Raises:
+        SettingsError: settings contradict themselves.
+        ModelError: the start model cannot be read.
+        OutputError: a cache that cannot be read cannot be set aside either.
+    """
+    table, said = settings.live, Said()
+    start = _start_model(table, input_name)
+    cache, learner, valid = None, None, None
+    if table.cache is not None:
+        cache = Cache(Path(table.cache), CacheKey.of(table.vehicle, input_name, settings))
+        found = cache.load()
+        learner, valid = found.learner, found.valid
+        if found.said:
+            said.note(math.nan, found.said)
+    learner = learner or MotionLearner(input_name, settings)
+    learning = Learning(learner, start, valid, said)
+    rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
+    gates = Gates(rules, input_name=input_name)
+    intake = Intake(learner, gates, said, input_name=input_name)
+    if run is not None:
+        intake.start_run(run)
+    applying = table.apply.mode != "off"
+    parts = NodeParts(
+        who=Identity(table.vehicle, input_name, table.apply.mode),
+        transport=transport,
+        learning=learning,
+        intake=intake,
+        gates=gates,
+        said=said,
+        watchers=watchers,
+        applied=AppliedModel(table.apply, start) if applying else None,
+        handover=Handover(table.apply, said) if applying else None,
+        cache=cache,
+    )
+    return Built(LiveNode(parts), learning, said)
+
+
+def _start_model(table: LiveTable, input_name: str) -> Model | None:
+    if table.model is None:
+        return None
+    model = load_model(table.model)
+    if model.content.input != input_name:
+        raise SettingsError(
+            f"the start model was learned from {model.content.input}s, this node learns from {input_name}s",
+            where=table.model,
+            advice=f"use --input {model.content.input}",
+        )
+    return model

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The node's memory between two starts: what was learned, keyed by whose it is, whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import re
+from dataclasses import asdict, dataclass
+from hashlib import sha256
+from pathlib import Path
+
+from slipwise import _core
+from slipwise.calibration import Settings
+from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.files import output_errors, read_whole, write_text_whole, write_whole
+from slipwise.models import SCHEMA_VERSION, Model, load_model
+
+MOST_BYTES = 1 << 30
+_LENGTH_BYTES = 8  # of what stands before the learner's bytes
+_UNFIT = re.compile(r"[^A-Za-z0-9._-]+")
+
+
+@dataclass(frozen=True)
+class CacheKey:
+    """Whose memory it is: another robot's, or one of other settings, is never used."""
+
+    vehicle: str
+    input: str
+    basis: str
+    schema: int
+    settings: str  # hash of what changes what is learned
+
+    @classmethod
+    def of(cls, vehicle: str, input_name: str, settings: Settings) -> CacheKey:
+        """Return the key of a vehicle that learns from an input with settings."""
+        text = json.dumps(settings.model_dump(mode="json", exclude={"log"}), sort_keys=True)
+        digest = sha256(text.encode()).hexdigest()[:16]
+        return cls(vehicle, input_name, settings.basis, SCHEMA_VERSION, digest)
+
+
+@dataclass(frozen=True)
+class Remembered:
+    """What was found in a cache."""
+
+    learner: MotionLearner | None
+    valid: Model | None  # the last model that was valid
+    said: str  # what happened, for the user
+
+
+class Cache:
+    """A folder with one file of state and the last valid model for each vehicle and input.
+
+    Raises:
+        SettingsError: the vehicle has no name that a file can bear.
+    """
+
+    def __init__(self, folder: Path, key: CacheKey) -> None:
+        stem = _UNFIT.sub("-", f"{key.vehicle}-{key.input}").strip("-.")
+        if not stem:
+            raise SettingsError(f"the vehicle's name is {key.vehicle!r}", advice="give --vehicle a name")
+        self._key = key
+        self.state = folder / f"{stem}.state"
+        self.model = folder / f"{stem}.yaml"
+
+    def save(self, learner: MotionLearner, valid: Model | None) -> None:
+        """Write the state, and the last valid model as a file of its own that any tool reads.
+
+        Raises:
+            OutputError: the disk is full, or the folder cannot be written to.
+        """
+        if valid is not None:
+            write_text_whole(self.model, valid.to_yaml())
+        head = json.dumps({"key": asdict(self._key), "valid": valid is not None}).encode()
+        body = _core.sealed(len(head).to_bytes(_LENGTH_BYTES, "little") + head + learner.save())
+        write_whole(self.state, lambda place: _write(place, body))
+
+    def load(self) -> Remembered:
+        """Return what is remembered; what cannot be used is set aside, and said, never raised.
+
+        Raises:
+            OutputError: what is unreadable cannot be set aside.
+        """
+        if not self.state.exists():
+            return Remembered(None, None, "")
+        try:
+            body = _core.opened(read_whole(self.state, most=MOST_BYTES, error=SettingsError))
+            split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")
+            head = json.loads(body[_LENGTH_BYTES:split])
+            other = self._difference(head["key"])
+            if other:
+                return Remembered(None, None, self._set_aside(f"the cache is of another {other}"))
+            learner = MotionLearner.load(body[split:])
+            valid = load_model(self.model) if head["valid"] else None
+        except (SlipwiseError, ValueError, KeyError, TypeError) as problem:
+            return Remembered(None, None, self._set_aside(f"the cache cannot be read: {problem}"))
+        return Remembered(learner, valid, f"goes on from {self.state}")
+
+    def _difference(self, found: dict[str, object]) -> str:
+        mine = asdict(self._key)
+        names = {"schema": "version of slipwise", "settings": "set of settings"}
+        return " and ".join(names.get(name, name) for name in mine if found.get(name) != mine[name])
+
+    def _set_aside(self, why: str) -> str:
+        aside = self.state.with_name(self.state.name + ".set-aside")
+        with output_errors(aside):
+            self.state.replace(aside)
+            with contextlib.suppress(FileNotFoundError):
+                self.model.replace(self.model.with_name(self.model.name + ".set-aside"))
+        return f"{why}; it was moved to {aside}, learning starts from nothing"
+
+
+def _write(place: Path, body: bytes) -> None:
+    place.write_bytes(body)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Notices that the clock was set: one odd stamp is a fault, several that agree are a new time."""
+
+from __future__ import annotations
+
+import math
+from enum import Enum
+
+from slipwise.live.samples import Command, Override, Pose, Wheels
+
+Stamped = Command | Wheels | Pose | Override
+
+BACK = 1.0  # s behind the newest stamp; streams are late by less, and delayed ones are never set back
+AHEAD = 60.0  # s ahead of it, after which one stamp alone is doubted
+AGREE = 1.0  # s within which stamps confirm each other
+ENOUGH = 5  # stamps in a row that are behind: the clock was set back
+
+
+class Clock(Enum):
+    """What a stamp says of the clock."""
+
+    GOES_ON = 0
+    SET_BACK = 1
+
+
+class ClockWatch:
+    """Holds doubtful samples back until others agree with them, or do not."""
+
+    def __init__(self) -> None:
+        self.newest = -math.inf
+        self._ahead: Stamped | None = None  # far ahead of all others, not confirmed yet
+        self._behind: list[Stamped] = []
+        self.dropped = 0  # stamps that no other agreed with
+
+    def take(self, sample: Stamped) -> tuple[Clock, list[Stamped]]:
+        """Return what may be taken now, in the order that it came in, and what it says of the clock."""
+        t = sample.t
+        if not math.isfinite(t):
+            return Clock.GOES_ON, [sample]  # the learner rejects and counts it
+        if t < self.newest - BACK:
+            return self._take_behind(sample)
+        if self._behind:
+            self.dropped += len(self._behind)
+            self._behind = []
+        if math.isfinite(self.newest) and t > self.newest + AHEAD:
+            return Clock.GOES_ON, self._take_ahead(sample)
+        if self._ahead is not None:
+            self.dropped += 1
+            self._ahead = None
+        self.newest = max(self.newest, t)
+        return Clock.GOES_ON, [sample]
+
+    def restart(self) -> None:
+        """Another recording begins: stamps may start anywhere."""
+        self.newest, self._ahead, self._behind = -math.inf, None, []
+
+    def _take_behind(self, sample: Stamped) -> tuple[Clock, list[Stamped]]:
+        """Several in a row that agree with each other are a clock that was set back."""
+        if self._behind and abs(sample.t - self._behind[-1].t) > AGREE:
+            self.dropped += len(self._behind)
+            self._behind = []
+        self._behind.append(sample)
+        if len(self._behind) < ENOUGH:
+            return Clock.GOES_ON, []
+        kept, self._behind = self._behind, []
+        self.newest = max(each.t for each in kept)
+        return Clock.SET_BACK, kept
+
+    def _take_ahead(self, sample: Stamped) -> list[Stamped]:
+        first = self._ahead
+        if first is None or abs(sample.t - first.t) > AGREE:
+            self.dropped += first is not None
+            self._ahead = sample
+            return []
+        self._ahead = None
+        self.newest = max(first.t, sample.t)
+        return [first, sample]

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What happens to a sample before it is learned: its clock, the gates, and what the learner makes of it."""
+
+from __future__ import annotations
+
+from slipwise.calibration.motion_learner import Event, MotionLearner
+from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
+from slipwise.live.gates import Gates
+from slipwise.live.said import Said
+from slipwise.live.samples import Command, Pose, Twist, Wheels
+
+
+class Intake:
+    """Pushes samples into a learner. Inputs always count; poses are learned from while the gates are open."""
+
+    def __init__(self, learner: MotionLearner, gates: Gates, said: Said, *, input_name: str) -> None:
+        self._learner, self._gates, self._said = learner, gates, said
+        self._input = Command if input_name == "command" else Wheels
+        self._clock = ClockWatch()
+        self._frames: dict[str, int] = {}
+        self._frame_epoch = 0  # grows where poses before and after must not be compared
+        self.newest_input: Twist | None = None
+        self.newest_pose: Pose | None = None
+        self.why_not = ""  # nothing is learned now
+
+    @property
+    def newest(self) -> float:
+        """Stamp of the newest sample that was taken [s]; minus infinity before the first."""
+        return self._clock.newest
+
+    def start_run(self, name: str) -> None:
+        """Begin a recording: nothing is joined across runs."""
+        self._clock.restart()
+        self._gates.restart()
+        self._learner.start_run(name)
+
+    def take(self, sample: Stamped) -> None:
+        """Take one sample in the order in which it came."""
+        before = self._clock.newest
+        clock, taken = self._clock.take(sample)
+        if self._clock.dropped:
+            self._said.count("a stamp that no other agrees with", number=self._clock.dropped)
+            self._clock.dropped = 0
+        if clock is Clock.SET_BACK:
+            self._said.note(
+                self._clock.newest,
+                f"the clock was set back by {before - self._clock.newest:.1f} s: a new run begins",
+            )
+            self._said.count("the clock was set back")
+            self._gates.restart()
+            self._learner.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
+        for each in taken:
+            self._gates.take(each)
+            self._push(each)
+
+    def events(self) -> list[Event]:
+        """Return what the learner has to say since the last call; what it rejected is counted."""
+        events = self._learner.events()
+        for event in events:
+            if event.kind == "rejected":
+                self._said.count(event.reason)
+        return events
+
+    def _push(self, sample: Stamped) -> None:
+        learner = self._learner
+        if isinstance(sample, self._input):
+            self.newest_input = sample
+        if isinstance(sample, Command):
+            learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
+        elif isinstance(sample, Wheels):
+            learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
+        elif isinstance(sample, Pose):
+            self._push_pose(sample)
+
+    def _push_pose(self, pose: Pose) -> None:
+        self.newest_pose = pose
+        self._follow_gates(pose.t)
+        if self.why_not:
+            self._said.count(f"poses not learned from: {self.why_not}")
+            return
+        if pose.roll is not None and pose.pitch is not None:
+            self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
+        number = self._frames.setdefault(f"{self._frame_epoch}/{pose.frame}", len(self._frames))
+        self._learner.push_pose(pose.t, pose.x, pose.y, pose.yaw, pose.std_xy, pose.std_yaw, number)
+
+    def _follow_gates(self, t: float) -> None:
+        """Where the gates open again, what follows is not compared with what was before they closed."""
+        why = self._gates.why(t)
+        if why:
+            self._said.begins(t, "gates", f"nothing is learned: {why}")
+        elif self.why_not:
+            self._frame_epoch += 1
+            self._said.ends(t, "gates", "learning goes on")
+        self.why_not = why

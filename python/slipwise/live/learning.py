@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the learner knows, judged again and again as the verdict does, and what others may have of it."""
+
+from __future__ import annotations
+
+import math
+
+from slipwise.calibration.judgement import Judgement
+from slipwise.calibration.motion_learner import Event, MotionLearner
+from slipwise.errors import SlipwiseError
+from slipwise.live.outputs import Validity
+from slipwise.live.said import Said
+from slipwise.live.validity import ModelValidity
+from slipwise.models import Model
+
+OFTEN, SELDOM = 2.0, 10.0  # s between judgements: a long drive has many predictions to judge
+MANY = 200  # segments, from which on judgements are seldom
+AFTER_CHANGE = 60.0  # s after a change of terrain in which judgements are frequent all the same
+
+
+class Learning:
+    """The learner with its judgements.
+
+    Args:
+        learner: learns from the samples.
+        start: the model of before, which others have until something valid is learned.
+        valid: the last model that was valid, where a cache has one.
+        said: where news are said.
+    """
+
+    def __init__(self, learner: MotionLearner, start: Model | None, valid: Model | None, said: Said) -> None:
+        self.learner, self.start, self.valid = learner, start, valid
+        self.validity = ModelValidity()
+        self.model: Model | None = None  # the newest, valid or not
+        self.judgement: Judgement | None = None
+        self.nis: float | None = None
+        self.segments = 0
+        self._said = said
+        self._new = False  # whether something was learned since the last judgement
+        self._judged = -math.inf  # s
+        self._changed = -math.inf  # s
+
+    def take(self, events: list[Event]) -> None:
+        """Take what the learner had to say."""
+        for event in events:
+            if event.kind == "segment-learned":
+                self._new, self.nis, self.segments = True, event.nis, self.segments + 1
+            elif event.kind == "terrain-change":
+                self._changed = event.t
+                self.validity.terrain_changed()
+                self._said.note(event.t, "the terrain changed: slip is learned faster for a while")
+
+    def judge(self, t: float) -> bool:
+        """Judge what is known where it is time to, at a stamp [s]; return whether it was."""
+        seldom = self.segments > MANY and t > self._changed + AFTER_CHANGE
+        if t < self._judged:  # the clock was set back
+            self._judged = -math.inf
+        if not self._new or t < self._judged + (SELDOM if seldom else OFTEN):
+            return False
+        self._new, self._judged = False, t
+        before = self.validity.whole
+        try:
+            self.model, self.judgement = self.learner.judged_model(limits=False)
+        except SlipwiseError as problem:
+            self._said.begins(t, "no model", str(problem))
+            return False
+        self._said.ends(t, "no model")
+        self.validity.take(self.model, self.judgement)
+        if self.validity.whole == "estimated" and self.model.content.verdict.good:
+            self.valid = self.model
+        if self.validity.whole != before:
+            self._said.note(t, f"the model is {self.validity.whole}: {self.validity.why}")
+        return True
+
+    def given(self) -> tuple[Model | None, str]:
+        """Return the model that others get, and which one that is; None: the kinematic baseline."""
+        whole: Validity = self.validity.whole
+        if self.valid is not None:
+            newest = whole == "estimated" and self.valid is self.model
+            return self.valid, "valid" if newest else f"the last valid one; the model is {whole} now"
+        if self.start is not None:
+            return self.start, f"the start model; what was learned is {whole}"
+        return None, f"none: what was learned is {whole}, use the kinematic baseline"

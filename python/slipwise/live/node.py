@@ -1,0 +1,274 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The loop of `slipwise live`: samples in, one after the other; odometry, paths, state and the model out."""
+
+from __future__ import annotations
+
+import json
+import math
+import queue
+import threading
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from slipwise.errors import SlipwiseError
+from slipwise.live.applied import AppliedModel
+from slipwise.live.cache import Cache
+from slipwise.live.gates import Gates
+from slipwise.live.handover import Handover
+from slipwise.live.intake import Intake
+from slipwise.live.learning import Learning
+from slipwise.live.odometry import odometry_of, path_ahead
+from slipwise.live.outputs import ModelText, Odometry, Output, Path
+from slipwise.live.said import Said
+from slipwise.live.samples import Override, Pose, Request, RunStart, Sample
+from slipwise.live.status import DrivenPath, Identity, Now, status_of
+from slipwise.live.transport import Transport
+
+MOST_WAITING = 20_000  # samples; a transport waits beyond them
+AT_ONCE = 256  # samples between two looks at the clock
+LONGEST_WAIT = 0.05  # s for a sample
+ODOMETRY_EVERY = 0.02  # s of stamps
+STATUS_EVERY = 0.2  # s of the wall clock
+NOTICES_EVERY = 1.0  # s of the wall clock
+SAVE_EVERY = 60.0  # s of the wall clock
+AHEAD = 2.0  # s that the present command is predicted
+
+
+class Watcher(Protocol):
+    """Sees all that the node gives."""
+
+    def take(self, output: Output) -> None:
+        """Take an output; neither waits nor raises."""
+
+    def close(self) -> None:
+        """End."""
+
+
+@dataclass(frozen=True)
+class NodeParts:
+    """What a node is made of."""
+
+    who: Identity
+    transport: Transport
+    learning: Learning
+    intake: Intake
+    gates: Gates
+    said: Said
+    watchers: Sequence[Watcher] = ()
+    applied: AppliedModel | None = None
+    handover: Handover | None = None
+    cache: Cache | None = None
+
+
+class LiveNode:
+    """Everything but the transports' callbacks happens in the thread that calls `run`."""
+
+    def __init__(self, parts: NodeParts) -> None:
+        self._parts = parts
+        self._waiting: queue.Queue[Sample] = queue.Queue(MOST_WAITING)
+        self._driven = DrivenPath()
+        self._stopped = threading.Event()
+        self._last_odometry = -math.inf  # s, stamp
+        self._odometry: Odometry | None = None
+        self._stuck = False
+        self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
+        self._given: object = self  # the model that others have; none yet
+
+    def stop(self) -> None:
+        """End the loop; may be called from any thread, or a signal."""
+        self._stopped.set()
+
+    def run(self) -> None:
+        """Take samples until the transport has no more, or somebody stops the node; then save.
+
+        Raises:
+            SlipwiseError: the transport cannot be used.
+        """
+        parts = self._parts
+        self._next["save"] = time.monotonic() + SAVE_EVERY
+        try:
+            parts.transport.subscribe(self._arrive)
+            while not self._stopped.is_set():
+                if not self._take_some() and parts.transport.finished and self._waiting.empty():
+                    break
+                self._tick()
+        finally:
+            parts.transport.close()
+            self._finish()
+
+    def _arrive(self, sample: Sample) -> None:
+        """Called from the transport's threads."""
+        while not self._stopped.is_set():
+            try:
+                self._waiting.put(sample, timeout=0.2)
+            except queue.Full:
+                continue
+            return
+
+    def _take_some(self) -> bool:
+        """Take what waits, up to a number; return whether there was anything."""
+        try:
+            self._take(self._waiting.get(timeout=LONGEST_WAIT))
+            for _ in range(AT_ONCE):
+                self._take(self._waiting.get_nowait())
+        except queue.Empty:
+            return not self._waiting.empty()
+        return True
+
+    def _take(self, sample: Sample) -> None:
+        parts = self._parts
+        if isinstance(sample, Request):
+            self._answer(sample)
+            return
+        if isinstance(sample, RunStart):
+            parts.intake.start_run(sample.name)
+            return
+        parts.intake.take(sample)
+        t = parts.intake.newest
+        if isinstance(sample, Pose):
+            self._driven.take(sample.x, sample.y, sample.yaw)
+            parts.learning.take(parts.intake.events())
+            if parts.learning.judge(t):
+                self._publish_model(t)
+            self._watch_motion(t)
+        if not isinstance(sample, Override):
+            self._publish_odometry(t)
+
+    def _publish_odometry(self, t: float) -> None:
+        """Whenever something newer is known, at a bounded rate."""
+        if t < self._last_odometry:
+            self._last_odometry = -math.inf
+        if t < self._last_odometry + ODOMETRY_EVERY:
+            return
+        self._last_odometry = t
+        self._odometry = odometry_of(self._parts.learning.learner, self._parts.intake.newest_pose)
+        if self._odometry is not None:
+            self._publish(self._odometry)
+
+    def _watch_motion(self, t: float) -> None:
+        parts = self._parts
+        monitor = parts.learning.learner.motion_monitor()
+        if monitor.stuck and not self._stuck:
+            parts.said.begins(t, "stuck", "the robot is stuck: it does not move as the model says it must")
+        elif self._stuck and not monitor.stuck:
+            parts.said.ends(t, "stuck", "the robot moves again")
+        self._stuck = monitor.stuck
+
+    def _publish_model(self, t: float) -> None:
+        """Others get the newest valid model, the last valid one, or the start; the text says which."""
+        parts = self._parts
+        model, which = parts.learning.given()
+        if parts.applied is not None:
+            valid = parts.learning.valid if parts.learning.validity.whole == "estimated" else None
+            parts.applied.step(t, valid, parts.learning.validity.of)
+            if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
+                self._hand_on(t)
+        if model is None or (model is self._given and which == "valid"):
+            return
+        self._given = model
+        text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
+        self._publish(ModelText(t, text))
+
+    def _hand_on(self, t: float) -> None:
+        parts = self._parts
+        valid = parts.learning.valid
+        if parts.applied is None or parts.handover is None or valid is None:
+            return
+        for output in parts.handover.hand_on(t, parts.applied.model(valid)):
+            self._publish(output)
+        parts.applied.handed_on(t)
+        parts.said.note(t, "the parameters were handed on")
+
+    def _answer(self, request: Request) -> None:
+        t, said = self._parts.intake.newest, self._parts.said
+        if request.kind == "apply":
+            self._apply_now(t)
+            return
+        try:
+            asked = json.loads(request.content)
+            rows = np.array(asked["commands"], dtype=np.float64).reshape(-1, 3)
+            horizon = float(asked.get("horizon", AHEAD))
+            if self._odometry is None:
+                raise ValueError("no pose was measured yet")
+            learner = self._parts.learning.learner
+            self._publish(path_ahead(learner, self._odometry, rows, horizon=horizon, asked=True))
+        except (ValueError, KeyError, TypeError, AttributeError, SlipwiseError) as problem:
+            said.note(t, f"a prediction was asked for that cannot be made: {problem}")
+
+    def _apply_now(self, t: float) -> None:
+        parts = self._parts
+        valid = parts.learning.valid if parts.learning.validity.whole == "estimated" else None
+        if parts.applied is None:
+            parts.said.note(t, "nothing is handed on: the node runs with --apply off")
+        elif valid is None:
+            parts.said.note(t, f"nothing is handed on: the model is {parts.learning.validity.whole}")
+        else:
+            parts.applied.jump(valid, parts.learning.validity.of)
+            self._hand_on(t)
+
+    def _tick(self) -> None:
+        now = time.monotonic()
+        if now >= self._next["notices"]:
+            self._next["notices"] = now + NOTICES_EVERY
+            for text in self._parts.transport.notices():
+                self._parts.said.note(self._parts.intake.newest, text)
+        for note in self._parts.said.take_new():
+            self._publish(note)
+        if now >= self._next["status"]:
+            self._next["status"] = now + STATUS_EVERY
+            self._publish_status()
+        if now >= self._next["save"]:
+            self._next["save"] = now + SAVE_EVERY
+            self._save()
+
+    def _publish_status(self) -> None:
+        parts = self._parts
+        predicted = self._present_path()
+        if predicted is not None:
+            self._publish(predicted)
+        now = Now(self._odometry, predicted, self._stuck, parts.gates.waits(parts.intake.newest))
+        shown = (parts.learning, parts.intake, parts.applied, parts.said)
+        self._publish(status_of(parts.who, shown, self._driven, now))
+
+    def _present_path(self) -> Path | None:
+        newest = self._parts.intake.newest_input
+        if newest is None or self._odometry is None:
+            return None
+        held = np.array([[self._parts.intake.newest, newest.v, newest.omega]])
+        try:
+            return path_ahead(self._parts.learning.learner, self._odometry, held, horizon=AHEAD)
+        except SlipwiseError:
+            return None  # nothing was measured in this run yet
+
+    def _publish(self, output: Output) -> None:
+        self._parts.transport.publish(output)
+        for watcher in self._parts.watchers:
+            watcher.take(output)
+
+    def _save(self) -> None:
+        """Save the state; a disk that is full is said once, and tried again."""
+        parts = self._parts
+        if parts.cache is None:
+            return
+        t = parts.intake.newest
+        try:
+            parts.cache.save(parts.learning.learner, parts.learning.valid)
+        except SlipwiseError as problem:
+            parts.said.begins(t, "cache", f"the state cannot be saved: {problem}")
+            parts.said.count("a state that could not be saved")
+        else:
+            parts.said.ends(t, "cache", "the state can be saved again")
+
+    def _finish(self) -> None:
+        parts = self._parts
+        parts.learning.take(parts.intake.events())
+        self._save()
+        for note in parts.said.take_new():
+            self._publish(note)
+        self._publish_status()
+        for watcher in parts.watchers:
+            watcher.close()

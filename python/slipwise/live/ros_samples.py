@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ROS messages as samples: the numbers that are taken out of a bag, one message at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from slipwise.errors import SettingsError
+from slipwise.live.samples import Command, Pose, Wheels
+from slipwise.logs.bag_streams import deviation_of
+from slipwise.logs.joints import SideMotion
+from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
+from slipwise.logs.messages import (
+    ACKERMANN,
+    COMMAND_VALUES,
+    IMU_VALUES,
+    JOINT_STATE,
+    NAV_SAT_FIX,
+    POSE_VALUES,
+    WHEEL_VALUES,
+    Values,
+)
+from slipwise.logs.navsat import ecef, in_tangent_plane
+from slipwise.logs.options import LogOptions
+from slipwise.logs.rotation import angles_of, unit_quaternions
+
+OLDEST_IMU = 0.2  # s; an older orientation says nothing of a fix
+
+ToCommand = Callable[[Any, float], Command | None]
+ToWheels = Callable[[Any, float], Wheels | None]
+ToPose = Callable[[Any, float], Pose | None]
+
+
+def to_command(kind: str, options: LogOptions) -> ToCommand:
+    """Return what makes a command of a message of type `kind` and its stamp [s].
+
+    Raises:
+        SettingsError: a steering angle needs the wheelbase.
+    """
+    values, (scale_v, scale_omega) = COMMAND_VALUES[kind], options.command_scale
+    if kind != ACKERMANN:
+
+        def twist(message: Any, t: float) -> Command:
+            v, vy, omega = values(message)
+            return Command(t, scale_v * v, scale_omega * omega, scale_v * vy)
+
+        return twist
+    wheelbase = options.wheelbase
+    if wheelbase is None:
+        raise SettingsError("steering commands need the wheelbase", advice="give --wheelbase in metres")
+
+    def steering(message: Any, t: float) -> Command:
+        v, steer = (np.array([value]) for value in values(message))
+        omega = omega_from_steering(v, steer, wheelbase=wheelbase)
+        return Command(t, scale_v * float(v[0]), scale_omega * float(omega[0]))
+
+    return steering
+
+
+def to_wheels(kind: str, options: LogOptions) -> ToWheels:
+    """Return what makes a wheel twist of a message of type `kind` and its stamp [s].
+
+    Raises:
+        SettingsError: joint states need the sizes of the robot.
+    """
+    scale_v, scale_omega = options.wheel_scale
+    if kind != JOINT_STATE:
+        values = WHEEL_VALUES[kind]
+
+        def twist(message: Any, t: float) -> Wheels:
+            v, vy, omega = values(message)
+            return Wheels(t, scale_v * v, scale_omega * omega, scale_v * vy)
+
+        return twist
+    radius, separation = options.wheel_radius, options.wheel_separation
+    if radius is None or separation is None:
+        raise SettingsError(
+            "wheel speeds need the wheels' radius and their distance",
+            advice="give --wheel-radius and --wheel-separation in metres",
+        )
+    sides = _SideSpeeds(options)
+
+    def joints(message: Any, t: float) -> Wheels | None:
+        left, right = (np.array([speed]) for speed in sides.take(message, t))
+        if not (np.isfinite(left) & np.isfinite(right)).all():
+            return None
+        v, omega = twist_from_wheels(left, right, wheel_radius=radius, wheel_separation=separation)
+        return Wheels(t, scale_v * float(v[0]), scale_omega * float(omega[0]))
+
+    return joints
+
+
+class _SideSpeeds:
+    """Speeds of the sides [rad/s]; differences of the angles for drivers that measure no speed."""
+
+    def __init__(self, options: LogOptions) -> None:
+        self._motion = SideMotion(options)
+        self._last: tuple[float, float, float] | None = None
+        self._measured = False
+
+    def take(self, message: Any, t: float) -> tuple[float, float]:
+        left, right, *angles = self._motion(message)
+        last, self._last = self._last, (t, angles[0], angles[1])
+        self._measured = self._measured or (math.isfinite(left) and (left != 0.0 or right != 0.0))
+        if self._measured or last is None or not t > last[0]:
+            return left, right
+        return (angles[0] - last[1]) / (t - last[0]), (angles[1] - last[2]) / (t - last[0])
+
+
+def to_pose(kind: str, options: LogOptions) -> ToPose:
+    """Return what makes a pose of a message of type `kind` and its stamp [s]; not of satellite fixes."""
+    values, offset = POSE_VALUES[kind], options.pose_yaw_offset
+
+    def pose(message: Any, t: float) -> Pose | None:
+        x, y, _, *rest = values(message)
+        q, good = unit_quaternions(np.array([rest[:4]]))
+        if not good[0]:
+            return None
+        roll, pitch, yaw = (float(angle[0]) for angle in angles_of(q))
+        std_xy = _known(deviation_of(np.array([rest[4:6]])))
+        std_yaw = _known(deviation_of(np.array([rest[6:7]])))
+        tilt = (roll, pitch) if roll or pitch else (None, None)
+        return Pose(t, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
+
+    return pose
+
+
+class FixPoses:
+    """Poses of satellite fixes with the heading of an IMU, in the tangent plane at the first fix."""
+
+    def __init__(self, options: LogOptions) -> None:
+        self._offset = options.pose_yaw_offset
+        self._origin: tuple[float, float, float] | None = None
+        self._heading: tuple[float, float] | None = None  # stamp [s], yaw [rad]
+
+    def take_imu(self, message: Any, t: float) -> None:
+        """Take an orientation."""
+        q, good = unit_quaternions(np.array([_values(IMU_VALUES, message)]))
+        if good[0]:
+            self._heading = (t, float(angles_of(q)[2][0]))
+
+    def take_fix(self, message: Any, t: float) -> Pose | None:
+        """Return the pose of a fix; None without a fix, or without a heading of the same time."""
+        latitude, longitude, altitude, status, *variances = POSE_VALUES[NAV_SAT_FIX](message)
+        if not (math.isfinite(latitude) and math.isfinite(longitude)) or status < 0.0:
+            return None
+        fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
+        self._origin = self._origin or fix
+        if self._heading is None or abs(t - self._heading[0]) > OLDEST_IMU:
+            return None
+        x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
+        std_xy = _known(deviation_of(np.array([variances])))
+        return Pose(t, x, y, self._heading[1] + self._offset, std_xy, frame=message.header.frame_id)
+
+
+def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    latitude, longitude, altitude = (np.array([value]) for value in fix)
+    return latitude, longitude, altitude
+
+
+def _values(table: dict[str, Callable[[Any], Values]], message: Any) -> Values:
+    (values,) = table.values()
+    return values(message)
+
+
+def _known(deviation: np.ndarray) -> float | None:
+    return float(deviation[0]) if np.isfinite(deviation[0]) else None

@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A robot on ROS as a transport, whatever wire carries its messages."""
+
+from __future__ import annotations
+
+import contextlib
+import queue
+import threading
+import time
+from collections.abc import Callable
+from typing import Any
+
+from slipwise.errors import SlipwiseError
+from slipwise.live.outputs import AppliedParameters, Output
+from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
+from slipwise.live.ros_messages import TOPICS, RosMessages
+from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
+from slipwise.live.samples import Override, Request
+from slipwise.live.stamps import Stamps
+from slipwise.live.transport import OnSample
+from slipwise.live.wires.ros_types import ros_types
+from slipwise.live.wires.wire import RosWire
+from slipwise.logs.messages import IMU, NAV_SAT_FIX
+from slipwise.logs.options import LogOptions
+from slipwise.logs.topics import Roles
+
+CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
+BOOL, EMPTY, STRING = "std_msgs/msg/Bool", "std_msgs/msg/Empty", "std_msgs/msg/String"
+ANSWER_WITHIN = 2.0  # s, of a node whose parameters are set
+
+ToSample = Callable[[Any, float], Any]
+
+
+class RosTransport:
+    """Reads the topics of the roles, publishes below the node's name, sets parameters of other nodes.
+
+    Args:
+        wire: carries the messages.
+        roles: which topic is what.
+        options: scales and sizes.
+        name: of the node.
+        override_topic: std_msgs/Bool that is true while an operator drives.
+    """
+
+    def __init__(
+        self,
+        wire: RosWire,
+        roles: Roles,
+        options: LogOptions,
+        *,
+        name: str,
+        override_topic: str | None = None,
+    ) -> None:
+        self._wire, self._roles, self._options = wire, roles, options
+        self._name, self._override = name, override_topic
+        self._messages = RosMessages(name)
+        self._reading = ros_types()
+        self._stamps = Stamps()
+        self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
+        self._faulty: set[str] = set()
+        self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
+        self._caller = threading.Thread(target=self._call_nodes, name="parameters", daemon=True)
+        self._closed = False
+
+    def subscribe(self, on_sample: OnSample) -> None:
+        """Subscribe to the topics of the roles, and announce what is published.
+
+        Raises:
+            SlipwiseError: a topic cannot be used.
+        """
+        for topic, about in TOPICS.items():
+            self._wire.advertise(self._full(topic), about.type, latched=about.latched)
+        if any(topic.name == CLOCK for topic in self._wire.topics()):
+            self._stamps.simulated = True
+            self._notices.put("stamps without a header are those of /clock")
+            self._take(
+                CLOCK, CLOCK_TYPE, lambda message, _: self._stamps.take_clock(message.clock), on_sample
+            )
+        self._subscribe_roles(on_sample)
+        if self._override is not None:
+            self._take(self._override, BOOL, lambda message, t: Override(t, bool(message.data)), on_sample)
+        self._take(self._full("apply"), EMPTY, lambda _message, _t: Request("apply"), on_sample)
+        asked = self._full("predict")
+        self._take(asked, STRING, lambda message, _: Request("predict", message.data), on_sample)
+        self._caller.start()
+
+    def publish(self, output: Output) -> None:
+        """Publish an output; parameters of other nodes are set by a thread of its own."""
+        if isinstance(output, AppliedParameters):
+            self._calls.put(output)
+            return
+        for message in self._messages.of(output):
+            with contextlib.suppress(SlipwiseError):
+                self._wire.publish(
+                    self._full(message.topic), message.type, message.payload, latched=message.latched
+                )
+
+    def notices(self) -> list[str]:
+        """Return what is to be said since the last call."""
+        found = self._wire.notices()
+        with contextlib.suppress(queue.Empty):
+            while True:
+                found.append(self._notices.get_nowait())
+        return found
+
+    @property
+    def finished(self) -> bool:
+        """Never: a robot may go on."""
+        return False
+
+    def close(self) -> None:
+        """Leave the graph."""
+        if not self._closed:
+            self._closed = True
+            self._calls.put(None)
+            self._wire.close()
+
+    def _full(self, topic: str) -> str:
+        return f"/{self._name}/{topic}"
+
+    def _subscribe_roles(self, on_sample: OnSample) -> None:
+        roles, options = self._roles, self._options
+        if roles.command is not None:
+            kind = roles.command.type
+            self._take(roles.command.name, kind, to_command(kind, options), on_sample)
+        converters: list[tuple[str, str, ToSample]] = []
+        if roles.wheel is not None:
+            kind = roles.wheel.type
+            converters.append((roles.wheel.name, kind, to_wheels(kind, options)))
+        if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
+            fixes = FixPoses(options)
+            converters.append((roles.pose.name, NAV_SAT_FIX, fixes.take_fix))
+            if roles.imu is not None:
+                self._take(roles.imu.name, IMU, fixes.take_imu, on_sample)
+        elif roles.pose is not None:
+            kind = roles.pose.type
+            converters.append((roles.pose.name, kind, to_pose(kind, options)))
+        for topic in dict.fromkeys(name for name, _, _ in converters):  # one may be both wheels and pose
+            mine = [(kind, convert) for name, kind, convert in converters if name == topic]
+            self._take(topic, mine[0][0], _all_of([convert for _, convert in mine]), on_sample)
+
+    def _take(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
+        """Subscribe; a message that cannot be read is said once, and left out."""
+
+        def take(payload: bytes) -> None:
+            try:
+                message = self._reading.deserialize_cdr(payload, kind)
+                samples = convert(message, self._stamps.of(message, time.time()))
+            except Exception as problem:
+                if topic not in self._faulty:
+                    self._faulty.add(topic)
+                    self._notices.put(f"messages of {topic} that cannot be read are left out: {problem}")
+                return
+            for sample in samples if isinstance(samples, list) else [samples]:
+                if sample is not None:
+                    on_sample(sample)
+
+        self._wire.subscribe(topic, kind, take)
+
+    def _call_nodes(self) -> None:
+        while (applied := self._calls.get()) is not None:
+            request, left_out = request_of(applied.values, self._reading)
+            service = f"{applied.node}/set_parameters"
+            answer = self._wire.call(service, SET_PARAMETERS, request, timeout=ANSWER_WITHIN)
+            if answer is None:
+                self._notices.put(f"{applied.node} does not answer: its parameters are as they were")
+                continue
+            for text in (*left_out, *refused(answer, applied.values, self._reading)):
+                self._notices.put(f"{applied.node}: {text}")
+
+
+def _all_of(converters: list[ToSample]) -> ToSample:
+    return lambda message, t: [convert(message, t) for convert in converters]

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""UDP packets as a transport: a line of text each; results go back to whoever sent last."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import threading
+
+from slipwise.errors import LogError, SettingsError
+from slipwise.live.lines import LineReader, line_of
+from slipwise.live.outputs import Output
+from slipwise.live.pipe import WrongLines
+from slipwise.live.transport import OnSample
+
+DEFAULT_ADDRESS = "127.0.0.1:7447"
+LARGEST = 60_000  # bytes of a packet
+
+
+class Udp:
+    """Listens on loopback unless told otherwise.
+
+    Args:
+        address: "host:port" to listen on; port 0 takes a free one.
+
+    Raises:
+        SettingsError: the address cannot be used.
+    """
+
+    def __init__(self, address: str = DEFAULT_ADDRESS) -> None:
+        host, _, port = address.rpartition(":")
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind((host or "127.0.0.1", int(port)))
+        except (OSError, ValueError, OverflowError) as problem:
+            self._socket.close()
+            raise SettingsError(
+                f"cannot listen on {address!r}: {problem}", advice="such as 127.0.0.1:7447"
+            ) from problem
+        self._socket.settimeout(0.2)
+        self._reader, self._wrong = LineReader(), WrongLines()
+        self._sender: tuple[str, int] | None = None
+        self._stopped = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    @property
+    def port(self) -> int:
+        """The port that is listened on."""
+        return int(self._socket.getsockname()[1])
+
+    def subscribe(self, on_sample: OnSample) -> None:
+        """Begin to listen."""
+        self._thread = threading.Thread(target=self._listen, args=(on_sample,), name="udp", daemon=True)
+        self._thread.start()
+
+    def publish(self, output: Output) -> None:
+        """Send a result to whoever sent last; one that does not fit into a packet is left out."""
+        line = line_of(output)
+        if self._sender is None or len(line) > LARGEST:
+            return
+        with contextlib.suppress(OSError):  # nobody there
+            self._socket.sendto(line.encode() + b"\n", self._sender)
+
+    def notices(self) -> list[str]:
+        """Return what was wrong with packets."""
+        return self._wrong.take()
+
+    @property
+    def finished(self) -> bool:
+        """Never: somebody may send again."""
+        return False
+
+    def close(self) -> None:
+        """Stop listening."""
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join(timeout=2.0)
+        self._socket.close()
+
+    def _listen(self, on_sample: OnSample) -> None:
+        number = 0
+        while not self._stopped.is_set():
+            try:
+                packet, self._sender = self._socket.recvfrom(LARGEST + 1)
+            except TimeoutError:
+                continue
+            except OSError:
+                return
+            number += 1
+            for line in packet.decode("utf-8", errors="replace").splitlines():
+                try:
+                    samples = self._reader.read(line)
+                except LogError as problem:
+                    self._wrong.add(f"packet {number}: {problem}")
+                    continue
+                for sample in samples:
+                    on_sample(sample)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What every wire is told: the node's name, the domain, and whether other hosts are meant."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+
+from slipwise.errors import SettingsError
+
+
+@dataclass(frozen=True)
+class WireOptions:
+    """How a node joins the graph of ROS."""
+
+    node_name: str = "slipwise"
+    namespace: str = "/"
+    domain: int | None = None  # 0 to 232; None: what ROS_DOMAIN_ID says, or 0
+    network: bool = (
+        False  # talk to other hosts, by multicast where the middleware does; otherwise to this one alone
+    )
+    router: str = "tcp/localhost:7447"  # of Zenoh, to connect to; nothing is listened on
+    peers: bool = False  # of Zenoh: listen on loopback too, so that peers find each other without a router
+
+    def domain_number(self) -> int:
+        """Return the domain, from the environment where none is given.
+
+        Raises:
+            SettingsError: it is no number of a domain.
+        """
+        text = str(self.domain) if self.domain is not None else os.environ.get("ROS_DOMAIN_ID", "") or "0"
+        if not text.isdigit() or not 0 <= int(text) <= 232:
+            raise SettingsError(f'"{text}" is no ROS domain', advice="domains are numbers from 0 to 232")
+        return int(text)
