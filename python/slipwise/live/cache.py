@@ -57,9 +57,10 @@ class Cache:
     """
 
     def __init__(self, folder: Path, key: CacheKey) -> None:
-        stem = _UNFIT.sub("-", f"{key.vehicle}-{key.input}").strip("-.")
-        if not stem:
+        vehicle = _UNFIT.sub("-", key.vehicle).strip("-.")
+        if not vehicle:
             raise SettingsError(f"the vehicle's name is {key.vehicle!r}", advice="give --vehicle a name")
+        stem = f"{vehicle}-{key.input}"
         self._key = key
         self.state = folder / f"{stem}.state"
         self.model = folder / f"{stem}.yaml"

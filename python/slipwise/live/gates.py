@@ -38,7 +38,7 @@ def rules_for(start: Model | None, *, reverse: bool | None, stale_after: float) 
     top = (math.inf, math.inf)
     if start is not None and start.content.limits is not None:
         found = start.parameters
-        names = ("limits.v.saturation", "limits.omega.saturation")
+        names = ("limits.speed.saturation", "limits.yaw_rate.saturation")
         top = tuple(  # type: ignore[assignment]
             found[name].value if name in found and found[name].identified else math.inf for name in names
         )

@@ -42,7 +42,7 @@ class LineReader:
             raise LogError("a line is too long", advice=f"write {MOST_CHARACTERS} characters at most")
         if text.startswith("{"):
             return _of_json(text)
-        cells = next(csv.reader([text]))
+        cells = _cells(text)
         if self._header is None or "t" in cells:
             self._header = [cell.strip() for cell in cells]
             if "t" not in self._header:
@@ -55,6 +55,13 @@ class LineReader:
             raise LogError(f"{len(cells)} cells where the header has {len(self._header)}")
         filled = zip(self._header, cells, strict=True)
         return samples_of_row({name: cell for name, cell in filled if cell.strip() != ""})
+
+
+def _cells(text: str) -> list[str]:
+    try:
+        return next(csv.reader([text]), [])
+    except csv.Error as problem:
+        raise LogError(f"not a line of CSV: {problem}") from problem
 
 
 def samples_of_row(row: Mapping[str, object]) -> list[Sample]:
@@ -99,6 +106,8 @@ def _of_json(text: str) -> list[Sample]:
         content = json.loads(text)
     except (ValueError, RecursionError) as problem:
         raise LogError(f"not a JSON object: {problem}") from problem
+    if not isinstance(content, dict):
+        raise LogError("not a JSON object")
     if "predict" in content:
         return [Request("predict", json.dumps(content["predict"]))]
     if content.get("apply") is True:

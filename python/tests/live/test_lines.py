@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Lines of text are samples, or errors that say what is wrong."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from slipwise.errors import LogError
+from slipwise.live.lines import LineReader, line_of
+from slipwise.live.outputs import AppliedParameters, ModelText, Note, Odometry, Path
+from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Wheels
+
+
+def test_a_csv_line_holds_what_its_filled_cells_say() -> None:
+    reader = LineReader()
+    assert reader.read("t,cmd_v,cmd_omega,odo_v,odo_omega,x,y,yaw,override\n") == []
+    assert reader.read("1.5,0.4,0.1,0.38,0.09,1,2,0.3,\n") == [
+        Command(1.5, 0.4, 0.1),
+        Wheels(1.5, 0.38, 0.09),
+        Pose(1.5, 1.0, 2.0, 0.3),
+    ]
+    assert reader.read("1.6,,,0.38,0.09,,,,1") == [Override(1.6, True), Wheels(1.6, 0.38, 0.09)]
+    assert reader.read("") == reader.read("# a comment") == []
+
+
+def test_a_json_line_needs_no_header_and_may_ask() -> None:
+    reader = LineReader()
+    assert reader.read('{"t": 2, "odo_v": 0.5, "odo_omega": 0, "x": null}') == [Wheels(2.0, 0.5, 0.0)]
+    pose = '{"t": 2, "x": 1, "y": 2, "yaw": 3, "std_xy": 0.1, "frame": "map", "roll": 0.1, "pitch": 0.2}'
+    assert reader.read(pose) == [Pose(2.0, 1.0, 2.0, 3.0, 0.1, None, "map", 0.1, 0.2)]
+    assert reader.read('{"apply": true}') == [Request("apply")]
+    assert reader.read('{"run": "tuesday"}') == [RunStart("tuesday")]
+    (asked,) = reader.read('{"predict": {"horizon": 1, "commands": [[0, 1, 0]]}}')
+    assert isinstance(asked, Request)
+    assert json.loads(asked.content) == {"horizon": 1, "commands": [[0, 1, 0]]}
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("1.0,2.0", "before a header"),
+        ('{"t": "noon", "x": 1, "y": 2, "yaw": 3}', "'noon', not a number"),
+        ('{"t": 1', "not a JSON object"),
+        ('{"odo_v": 1, "odo_omega": 2}', "no t"),
+        ("x" * 20_000, "too long"),
+    ],
+)
+def test_what_is_no_line_says_why(line: str, said: str) -> None:
+    with pytest.raises(LogError, match=said):
+        LineReader().read(line)
+
+
+def test_a_line_of_another_length_than_its_header_says_so() -> None:
+    reader = LineReader()
+    reader.read("t,odo_v,odo_omega")
+    with pytest.raises(LogError, match="2 cells where the header has 3"):
+        reader.read("1.0,2.0")
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_samples_or_an_error(text: str) -> None:
+    reader = LineReader()
+    reader.read("t,odo_v,odo_omega")
+    with contextlib.suppress(LogError):
+        assert isinstance(reader.read(text), list)
+
+
+def test_results_are_json_without_what_json_cannot_say() -> None:
+    nan = np.full((3, 3), np.nan)
+    odometry = Odometry(1.0, "odom", "base_link", np.zeros(3), nan, np.zeros(3), nan, 0.0)
+    path = Path(np.zeros(1), "odom", np.zeros((1, 3)), nan[None])
+    outputs = (odometry, path, ModelText(1.0, "x: 1"), Note(float("nan"), "said"))
+    contents = [json.loads(line_of(output)) for output in outputs]
+    assert contents[0]["covariance"] == [None] * 9
+    assert contents[1]["predicted_path"] == [[0.0, 0.0, 0.0]]
+    assert contents[2] == {"model": "x: 1", "t": 1.0}
+    assert contents[3] == {"note": "said", "t": None}
+    told = json.loads(line_of(AppliedParameters(1.0, "mppi", "/controller_server", {"vx_max": 0.4})))
+    assert told["set"] == {"vx_max": 0.4}

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Two robots on one topic are told from one robot with faults."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slipwise.live.source_watch import CLOSED_FOR, SourceWatch
+
+FAR = (0.75, 0.75)
+
+
+def test_one_robot_is_one_source_with_noise_outliers_and_a_jump() -> None:
+    rng, watch = np.random.default_rng(1), SourceWatch(FAR)
+    for k in range(2000):
+        t = 0.05 * k
+        x, y = np.array([np.cos(0.2 * t), np.sin(0.2 * t)]) * 5.0 + rng.normal(0.0, 0.03, 2)
+        if k % 101 == 50:
+            x += 30.0
+        if k > 1000:
+            y += 12.0  # relocalised
+        assert not watch.take(t, (x, y))
+
+
+@pytest.mark.parametrize("every", [1, 2, 3])
+def test_a_second_robot_is_noticed_within_a_second_and_forgotten_after_it_left(every: int) -> None:
+    watch, noticed = SourceWatch(FAR), None
+    for k in range(200):
+        t = 0.05 * k
+        spoken = watch.take(t, (0.01 * k, 0.0))
+        if k % every == 0:
+            spoken = watch.take(t + 0.01, (40.0 - 0.01 * k, 7.0)) or spoken
+        noticed = noticed or (t if spoken else None)
+    assert noticed is not None
+    assert noticed < 1.0
+    left = 0.05 * 200
+    later = [watch.take(left + 0.05 * k, (2.0 + 0.01 * k, 0.0)) for k in range(200)]
+    assert not later[int((CLOSED_FOR + 1.0) / 0.05)]
+
+
+def test_a_pose_that_is_no_number_says_nothing() -> None:
+    watch = SourceWatch(FAR)
+    assert not watch.take(0.0, (float("nan"), 0.0))
