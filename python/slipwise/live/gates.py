@@ -53,11 +53,13 @@ class Gates:
         self._until: dict[str, float] = {}  # s, of each cause
         self._override = False
         self._last_input = -math.inf
-        self._wheels = SourceWatch(FAR_TWIST)
+        self._wheels = SourceWatch(FAR_TWIST, relative=0.1)
         self._poses = SourceWatch(FAR_POSE)
 
     def take(self, sample: Command | Wheels | Pose | Override) -> None:
-        """Take a sample in the order in which it came."""
+        """Take a sample in the order in which it came; one without a stamp says nothing."""
+        if not math.isfinite(sample.t):
+            return
         if isinstance(sample, Override):
             self._take_override(sample)
         elif isinstance(sample, Pose):
@@ -99,7 +101,7 @@ class Gates:
             self._close("two sources speak on the wheel topic", t, 0.0)
         if not isinstance(sample, self._input):
             return
-        self._last_input = max(self._last_input, t) if math.isfinite(t) else self._last_input
+        self._last_input = max(self._last_input, t)
         if not rules.reverse and sample.v < REVERSE:
             self._close("driving in reverse, which the model never learned", t, RECOVERY)
         top_v, top_omega = rules.saturation
@@ -107,5 +109,4 @@ class Gates:
             self._close("the command is beyond what the drive reaches", t, RECOVERY)
 
     def _close(self, cause: str, t: float, seconds: float) -> None:
-        if math.isfinite(t):
-            self._until[cause] = max(self._until.get(cause, -math.inf), t + seconds + 1e-3)
+        self._until[cause] = max(self._until.get(cause, -math.inf), t + seconds + 1e-3)

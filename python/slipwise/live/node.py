@@ -223,7 +223,7 @@ class LiveNode:
             self._publish_status()
         if now >= self._next["save"]:
             self._next["save"] = now + SAVE_EVERY
-            self._save()
+            self.save()
 
     def _publish_status(self) -> None:
         parts = self._parts
@@ -249,7 +249,7 @@ class LiveNode:
         for watcher in self._parts.watchers:
             watcher.take(output)
 
-    def _save(self) -> None:
+    def save(self) -> None:
         """Save the state; a disk that is full is said once, and tried again."""
         parts = self._parts
         if parts.cache is None:
@@ -266,7 +266,7 @@ class LiveNode:
     def _finish(self) -> None:
         parts = self._parts
         parts.learning.take(parts.intake.events())
-        self._save()
+        self.save()
         for note in parts.said.take_new():
             self._publish(note)
         self._publish_status()

@@ -1,46 +1,78 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Notices that two robots speak on one topic: values go back and forth between two courses."""
+"""Notices that two robots speak on one topic: the values follow two courses in turn."""
 
 from __future__ import annotations
 
+import itertools
 from collections import deque
+from dataclasses import dataclass
 
 import numpy as np
 
 from slipwise.live.outputs import Floats
 
-REMEMBERED = 5  # values that a new one is compared with
-LOOKED_AT = 40  # newest values that returns are counted in
-MANY = 6  # returns among these; an outlier is one return
-CLOSED_FOR = 5.0  # s after the last return
+LOOKED_AT = 40  # newest values
+FEWEST = 8  # times that the courses take turns among these; an outlier is two
+APART = 5.0  # how many times farther the other course is than the own one, where these are two sources
+CLOSED_FOR = 5.0  # s after two sources were seen last
+
+
+@dataclass
+class _Course:
+    value: Floats
+    number: int  # of the last value on it
+
+
+@dataclass(frozen=True)
+class _Assigned:
+    first: bool  # which course it is on
+    own: float  # how far from that, in units of `far`
+    other: float
 
 
 class SourceWatch:
-    """A value far from the last one, yet near an earlier one, is a return: rare where one source speaks.
+    """Puts every value on the nearer of two courses. Noise and outliers make no second one that is apart.
 
     Args:
-        far: how far apart values of one source, sampled one after the other, never are, [K] in its units.
+        far: how far apart values of one source, sampled one after the other, hardly ever are, [K] each.
+        relative: the same as a fraction of the values, where that is more.
     """
 
-    def __init__(self, far: tuple[float, ...]) -> None:
-        self._far = np.array(far)
-        self._last: deque[Floats] = deque(maxlen=REMEMBERED)
-        self._returns: deque[bool] = deque(maxlen=LOOKED_AT)
+    def __init__(self, far: tuple[float, ...], *, relative: float = 0.0) -> None:
+        self._far, self._relative = np.array(far), relative
+        self._courses: list[_Course] = []
+        self._assigned: deque[_Assigned] = deque(maxlen=LOOKED_AT)
+        self._count = 0
         self._until = -np.inf
 
     def take(self, t: float, values: tuple[float, ...]) -> bool:
         """Take a value [K] at its stamp [s]; return whether two sources speak now."""
         value = np.array(values)
-        if not np.isfinite(value).all():
-            return t < self._until
-        self._returns.append(self._is_return(value))
-        self._last.append(value)
-        if self._returns[-1] and sum(self._returns) >= MANY:
-            self._until = t + CLOSED_FOR
-        return t < self._until
+        if np.isfinite(value).all():
+            self._count += 1
+            self._assign(value)
+            if self._assigned and self._assigned[-1].other > 1.0 and self._two():
+                self._until = t + CLOSED_FOR
+        return bool(t < self._until)
 
-    def _is_return(self, value: Floats) -> bool:
-        if len(self._last) < 2:
+    def _assign(self, value: Floats) -> None:
+        far = np.maximum(self._far, self._relative * np.abs(value))
+        apart = [float(np.max(np.abs(value - course.value) / far)) for course in self._courses]
+        if len(apart) < 2 and (not apart or apart[0] > 1.0):
+            self._courses.append(_Course(value, self._count))
+            return
+        nearer = int(np.argmin(apart))
+        if len(apart) == 2 and apart[nearer] > 1.0:  # near none: it replaces the one that was left longer ago
+            nearer = int(self._courses[0].number > self._courses[1].number)
+        self._courses[nearer] = _Course(value, self._count)
+        if len(apart) == 2:
+            self._assigned.append(_Assigned(nearer == 0, apart[nearer], apart[1 - nearer]))
+
+    def _two(self) -> bool:
+        """Whether the courses take turns, and each is followed far more closely than the other is near."""
+        left = [b.other for a, b in itertools.pairwise(self._assigned) if a.first != b.first]
+        if len(left) < FEWEST:
             return False
-        apart = [float(np.max(np.abs(value - old) / self._far)) for old in self._last]
-        return apart[-1] > 1.0 and min(apart[:-1]) < 1.0 / 3.0
+        own = np.array([each.own for each in self._assigned])
+        followed = float(np.quantile(own, 0.9)) <= 1.0
+        return followed and bool(np.median(left) > max(1.0, APART * float(np.quantile(own, 0.75))))

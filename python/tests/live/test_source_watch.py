@@ -36,7 +36,13 @@ def test_a_second_robot_is_noticed_within_a_second_and_forgotten_after_it_left(e
     assert noticed < 1.0
     left = 0.05 * 200
     later = [watch.take(left + 0.05 * k, (2.0 + 0.01 * k, 0.0)) for k in range(200)]
-    assert not later[int((CLOSED_FOR + 1.0) / 0.05)]
+    assert not later[int((CLOSED_FOR + 3.0) / 0.05)]
+
+
+def test_wheel_speeds_with_much_noise_are_one_source() -> None:
+    rng, watch = np.random.default_rng(4), SourceWatch((0.25, 0.25, 0.5), relative=0.1)
+    noisy = (60.0 + 5.0 * np.sin(0.01 * k) + 0.4 * rng.standard_normal() for k in range(5000))
+    assert not any(watch.take(0.05 * k, (v, 0.0, 0.0)) for k, v in enumerate(noisy))
 
 
 def test_a_pose_that_is_no_number_says_nothing() -> None:
