@@ -74,5 +74,5 @@ class SourceWatch:
         if len(left) < FEWEST:
             return False
         own = np.array([each.own for each in self._assigned])
-        followed = float(np.quantile(own, 0.9)) <= 1.0
-        return followed and bool(np.median(left) > max(1.0, APART * float(np.quantile(own, 0.75))))
+        followed = float(np.quantile(own, 0.9)) <= 0.5
+        return followed and bool(np.median(left) > max(2.0, APART * float(np.quantile(own, 0.75))))
