@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the node gives as ROS 2 messages: the topic below the node's name, the type, and the CDR bytes."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from slipwise.live.diagnostics import Diagnostic, diagnostics_of, note_diagnostic
+from slipwise.live.outputs import Floats, ModelText, Note, Odometry, Output, Path, Status
+
+if TYPE_CHECKING:
+    from rosbags.typesys.store import Typestore
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+TWIST = "geometry_msgs/msg/TwistWithCovarianceStamped"
+PATH = "nav_msgs/msg/Path"
+DIAGNOSTICS = "diagnostic_msgs/msg/DiagnosticArray"
+STRING = "std_msgs/msg/String"
+
+_LATEST = 2**31 - 1  # s; a header's stamp holds no later second
+_PLANE = np.array([0, 1, 5])  # x, y, yaw among the six of a ROS covariance
+_IN_PLANE = (_PLANE[:, None] * 6 + _PLANE).ravel()  # of the 36
+
+
+@dataclass(frozen=True)
+class RosTopic:
+    """A topic of the node."""
+
+    type: str
+    latched: bool = False  # who comes late gets the last message: transient local
+
+
+#: By the name below the node's, such as `odometry` of `/slipwise/odometry`.
+TOPICS: Mapping[str, RosTopic] = {
+    "odometry": RosTopic(ODOMETRY),
+    "twist": RosTopic(TWIST),
+    "predicted_path": RosTopic(PATH),
+    "prediction": RosTopic(PATH),
+    "prediction_json": RosTopic(STRING),
+    "diagnostics": RosTopic(DIAGNOSTICS),
+    "model": RosTopic(STRING, latched=True),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class RosMessage:
+    """A message, ready to be sent or recorded."""
+
+    topic: str  # a key of TOPICS
+    payload: bytes  # CDR with its header of 4 bytes
+    stamp: int  # ns, that of its header where it has one
+
+    @property
+    def type(self) -> str:
+        """The type's name, such as "nav_msgs/msg/Odometry"."""
+        return TOPICS[self.topic].type
+
+    @property
+    def latched(self) -> bool:
+        """Whether who comes late gets it."""
+        return TOPICS[self.topic].latched
+
+
+class RosMessages:
+    """Makes messages of outputs; for one thread.
+
+    What moves in the plane has zeros in the rows of z, roll and pitch of a covariance: RViz and
+    robot_localization read that as planar. Yaw is counter-clockwise, frames follow REP-103 and REP-105.
+    """
+
+    def __init__(self, name: str = "slipwise") -> None:
+        """`name`: of the node, which stands before what diagnostics are about."""
+        from rosbags.typesys import Stores, get_typestore
+
+        self.store: Typestore = get_typestore(Stores.ROS2_HUMBLE)
+        self._name = name
+        types: dict[str, Callable[..., Any]] = dict(self.store.types)
+        self._types = types
+        self._time, self._header = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"]
+        self._vector, self._twist = types["geometry_msgs/msg/Vector3"], types["geometry_msgs/msg/Twist"]
+        self._point, self._pose = types["geometry_msgs/msg/Point"], types["geometry_msgs/msg/Pose"]
+        self._quaternion = types["geometry_msgs/msg/Quaternion"]
+        self._pose_stamped = types["geometry_msgs/msg/PoseStamped"]
+        self._uncertain_pose = types["geometry_msgs/msg/PoseWithCovariance"]
+        self._uncertain_twist = types["geometry_msgs/msg/TwistWithCovariance"]
+        self._key_value = types["diagnostic_msgs/msg/KeyValue"]
+        self._diagnostic = types["diagnostic_msgs/msg/DiagnosticStatus"]
+
+    def of(self, output: Output) -> list[RosMessage]:
+        """Return the messages that say what `output` says."""
+        match output:
+            case Odometry():
+                return self._odometry(output)
+            case Path():
+                return self._path(output)
+            case Status():
+                return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
+            case ModelText():
+                return [self._string("model", output.t, output.text)]
+            case Note():
+                return [self._diagnostics(output.t, (note_diagnostic(output, self._name),), "")]
+
+    def _odometry(self, now: Odometry) -> list[RosMessage]:
+        stamp = stamp_ns(now.t)
+        v, vy, omega = now.twist.tolist()
+        twist = self._twist(self._vector(v, vy, 0.0), self._vector(0.0, 0.0, omega))
+        uncertain = self._uncertain_twist(twist, _spatial(now.twist_covariance))
+        pose = self._uncertain_pose(self._pose_of(*now.pose.tolist()), _spatial(now.pose_covariance))
+        child = _text(now.child_frame)
+        whole = self._types[ODOMETRY](self._head(stamp, _text(now.frame)), child, pose, uncertain)
+        alone = self._types[TWIST](self._head(stamp, child), uncertain)
+        return [self._message("odometry", stamp, whole), self._message("twist", stamp, alone)]
+
+    def _path(self, path: Path) -> list[RosMessage]:
+        frame = _text(path.frame)
+        stamps = [stamp_ns(t) for t in path.t.tolist()]
+        poses = [
+            self._pose_stamped(self._head(stamp, frame), self._pose_of(*row))
+            for stamp, row in zip(stamps, path.poses.tolist(), strict=True)
+        ]
+        first = stamps[0] if stamps else 0
+        message = self._types[PATH](self._head(first, frame), poses)
+        if not path.asked:
+            return [self._message("predicted_path", first, message)]
+        whole = self._string("prediction_json", first / 1e9, prediction_json(path))
+        return [self._message("prediction", first, message), whole]
+
+    def _diagnostics(self, t: float, diagnostics: tuple[Diagnostic, ...], vehicle: str) -> RosMessage:
+        stamp = stamp_ns(t)
+        make, pair = self._diagnostic, self._key_value
+        status = [
+            make(
+                int(one.level),
+                _text(one.name),
+                _text(one.message),
+                _text(vehicle),
+                [pair(_text(key), _text(value)) for key, value in one.values],
+            )
+            for one in diagnostics
+        ]
+        return self._message("diagnostics", stamp, self._types[DIAGNOSTICS](self._head(stamp, ""), status))
+
+    def _string(self, topic: str, t: float, text: str) -> RosMessage:
+        return self._message(topic, stamp_ns(t), self._types[STRING](_text(text)))
+
+    def _message(self, topic: str, stamp: int, message: object) -> RosMessage:
+        return RosMessage(topic, bytes(self.store.serialize_cdr(message, TOPICS[topic].type)), stamp)
+
+    def _head(self, stamp: int, frame: str) -> Any:
+        return self._header(self._time(*divmod(stamp, 1_000_000_000)), frame)
+
+    def _pose_of(self, x: float, y: float, yaw: float) -> Any:
+        turned = math.isfinite(yaw)
+        z, w = (math.sin(yaw / 2), math.cos(yaw / 2)) if turned else (math.nan, math.nan)
+        return self._pose(self._point(x, y, 0.0), self._quaternion(0.0, 0.0, z, w))
+
+
+def stamp_ns(t: float) -> int:
+    """Return a stamp [s] in ns, within what a header's stamp can hold; 0 where it is not finite."""
+    if not math.isfinite(t):
+        return 0
+    whole = math.floor(t)  # apart from the rest, so that nothing is lost in large numbers
+    return min(max(whole * 1_000_000_000 + round((t - whole) * 1e9), 0), _LATEST * 1_000_000_000)
+
+
+def prediction_json(path: Path) -> str:
+    """Return a predicted path with its covariance as JSON; null stands for what is not finite."""
+    return json.dumps(
+        {
+            "frame": path.frame,
+            "t": _finite(path.t),
+            "poses": _finite(path.poses),
+            "covariance": _finite(path.covariance),
+        }
+    )
+
+
+def _finite(numbers: Floats) -> Any:
+    """Return an array as nested lists with None for what JSON cannot say."""
+    if np.isfinite(numbers).all():
+        return numbers.tolist()
+    said = numbers.astype(object)
+    said[~np.isfinite(numbers)] = None
+    return said.tolist()
+
+
+def _spatial(planar: Floats) -> Floats:
+    """Return the covariance [36] of x, y, z, roll, pitch, yaw from that of x, y, yaw [3, 3]."""
+    whole = np.zeros(36)
+    whole[_IN_PLANE] = planar.ravel()
+    return whole
+
+
+def _text(text: str) -> str:
+    """Return text that every reader of ROS strings takes: valid UTF-8 without zero bytes."""
+    return text.encode("utf-8", "replace").decode("utf-8").replace("\0", "�")

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Outputs become ROS messages that rosbags, and rclpy where a test names one, read back as they were."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from live.sample_outputs import driven_outputs, odometry_at, straight_path, waiting_status
+
+from slipwise.live.outputs import ModelText, Note, Output
+from slipwise.live.ros_messages import TOPICS, RosMessage, RosMessages, stamp_ns
+
+ROS_PYTHON = os.environ.get("SLIPWISE_ROS_PYTHON")  # of an environment where rclpy can be imported
+READ_WITH_RCLPY = """
+import importlib, json, sys
+from rclpy.serialization import deserialize_message, serialize_message
+for line in sys.stdin:
+    kind, payload = json.loads(line)
+    package, _, name = kind.split("/")
+    made = getattr(importlib.import_module(package + ".msg"), name)
+    message = deserialize_message(bytes.fromhex(payload), made)
+    print(json.dumps([kind, serialize_message(message).hex()]))
+"""
+
+
+@pytest.fixture(scope="module")
+def messages() -> RosMessages:
+    return RosMessages()
+
+
+def _read(messages: RosMessages, message: RosMessage) -> Any:
+    return messages.store.deserialize_cdr(message.payload, message.type)
+
+
+def _of(messages: RosMessages, output: Output) -> dict[str, Any]:
+    return {message.topic: _read(messages, message) for message in messages.of(output)}
+
+
+def test_odometry_carries_pose_twist_and_covariances_of_the_plane(messages: RosMessages) -> None:
+    now = odometry_at(12.25)
+    read = _of(messages, now)
+    whole, alone = read["odometry"], read["twist"]
+    assert (whole.header.stamp.sec, whole.header.stamp.nanosec) == (12, 250_000_000)
+    assert (whole.header.frame_id, whole.child_frame_id, alone.header.frame_id) == (
+        "map",
+        "base_link",
+        "base_link",
+    )
+    position, turn = whole.pose.pose.position, whole.pose.pose.orientation
+    assert (position.x, position.y) == (1.0, 2.0)
+    assert 2.0 * math.atan2(turn.z, turn.w) == pytest.approx(0.5)
+    plane = np.ix_([0, 1, 5], [0, 1, 5])
+    assert whole.pose.covariance.reshape(6, 6)[plane] == pytest.approx(now.pose_covariance)
+    assert whole.pose.covariance.reshape(6, 6)[2:5].any() == 0
+    for twist in (whole.twist, alone.twist):
+        assert (twist.twist.linear.x, twist.twist.linear.y, twist.twist.angular.z) == (0.9, -0.01, 0.3)
+        assert twist.covariance.reshape(6, 6)[plane] == pytest.approx(now.twist_covariance)
+
+
+def test_an_answer_is_a_path_and_json_with_its_covariance(messages: RosMessages) -> None:
+    path = straight_path(asked=True)
+    read = _of(messages, path)
+    assert set(read) == {"prediction", "prediction_json"}
+    assert [pose.pose.position.x for pose in read["prediction"].poses] == [0.0, 1.0, 2.0, 3.0]
+    answer = json.loads(read["prediction_json"].data)
+    assert answer["frame"] == "map"
+    assert np.array(answer["covariance"]) == pytest.approx(path.covariance)
+    assert set(_of(messages, straight_path())) == {"predicted_path"}
+
+
+def test_json_has_null_for_what_is_not_finite(messages: RosMessages) -> None:
+    path = straight_path(asked=True)
+    path.covariance[1, 0, 0] = np.inf
+    answer = json.loads(_of(messages, path)["prediction_json"].data)
+    assert answer["covariance"][1][0][0] is None
+    assert answer["covariance"][2][0][0] == pytest.approx(2e-3)
+
+
+def test_only_the_model_is_kept_for_who_comes_late(messages: RosMessages) -> None:
+    assert {name for name, topic in TOPICS.items() if topic.latched} == {"model"}
+    (message,) = messages.of(ModelText(1.0, "schema: 4\nname: Ä\n"))
+    assert message.latched
+    assert _read(messages, message).data == "schema: 4\nname: Ä\n"
+
+
+def test_every_output_of_a_drive_is_read_back_to_the_same_bytes(messages: RosMessages) -> None:
+    used = set()
+    for output in driven_outputs():
+        for message in messages.of(output):
+            used.add(message.topic)
+            again = messages.store.serialize_cdr(_read(messages, message), message.type)
+            assert bytes(again) == message.payload
+    assert used == set(TOPICS) - {"prediction", "prediction_json"}
+
+
+def test_hostile_strings_and_numbers_make_valid_messages(messages: RosMessages) -> None:
+    status = waiting_status(vehicle="a\0b\udc80 'ü'", why="\ud800", t=math.nan)
+    (message,) = messages.of(status)
+    read = _read(messages, message)
+    assert read.status[0].hardware_id == "a�b? 'ü'"
+    (note,) = messages.of(Note(-1e30, "x\0"))
+    assert _read(messages, note).status[0].message == "x�"
+    nowhere = replace(odometry_at(math.inf), pose=np.full(3, np.nan))
+    assert math.isnan(_of(messages, nowhere)["odometry"].pose.pose.orientation.w)
+
+
+def test_stamps_keep_their_nanoseconds_and_stay_within_a_header() -> None:
+    assert stamp_ns(1_700_000_000.123456) == pytest.approx(1_700_000_000_123_456_000, abs=200)
+    assert stamp_ns(0.1) == 100_000_000
+    assert [stamp_ns(t) for t in (-1.0, math.nan, 1e30)] == [0, 0, (2**31 - 1) * 1_000_000_000]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(ROS_PYTHON is None, reason="SLIPWISE_ROS_PYTHON names no Python with rclpy")
+def test_rclpy_reads_every_message_and_writes_the_same_bytes(messages: RosMessages) -> None:
+    outputs = [*driven_outputs()[-60:], straight_path(asked=True), Note(1.0, "said: Ä")]
+    sent = [message for output in outputs for message in messages.of(output)]
+    assert {message.topic for message in sent} == set(TOPICS)
+    lines = "".join(json.dumps([m.type, m.payload.hex()]) + "\n" for m in sent)
+    ran = subprocess.run(
+        [str(ROS_PYTHON), "-c", READ_WITH_RCLPY], input=lines, capture_output=True, text=True, check=True
+    )
+    answers = [json.loads(line) for line in ran.stdout.splitlines()]
+    assert len(answers) == len(sent)
+    for message, (kind, payload) in zip(sent, answers, strict=True):
+        again = messages.store.deserialize_cdr(bytes.fromhex(payload), kind)
+        assert bytes(messages.store.serialize_cdr(again, kind)) == message.payload
