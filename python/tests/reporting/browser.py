@@ -28,7 +28,7 @@ FLAGS = (
     "--blink-settings=primaryHoverType=2,availableHoverTypes=2",  # a mouse: figures have their buttons
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1",
     "--remote-debugging-pipe",
 )
 # The browser reads commands from descriptor 3 and answers on 4.
@@ -79,13 +79,7 @@ class Browser:
         self._session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Network", "Runtime", "Log"):
             self.call(f"{domain}.enable")
-        self.call(
-            "Network.emulateNetworkConditions",
-            offline=True,
-            latency=0,
-            downloadThroughput=0,
-            uploadThroughput=0,
-        )
+        self.connect(False)
         return self
 
     def __exit__(
@@ -99,6 +93,12 @@ class Browser:
             self._process.wait()
         os.close(self._write)
         os.close(self._read)
+
+    def connect(self, connected: bool) -> None:
+        """Let pages reach servers of this machine, or none at all, as at the beginning."""
+        speed = -1 if connected else 0  # bytes/s; -1 is without limit
+        limits = {"latency": 0, "downloadThroughput": speed, "uploadThroughput": speed}
+        self.call("Network.emulateNetworkConditions", offline=not connected, **limits)
 
     def prefer(self, scheme: str) -> None:
         """Ask pages for "light" or "dark" colours."""
@@ -115,6 +115,17 @@ class Browser:
 
     def open(self, page: Path, *, width: int) -> None:
         """Show a file at a width [px] and wait until its script says that it is ready."""
+        self.go(page.resolve().as_uri(), width=width)
+        deadline = time.monotonic() + PATIENCE
+        while self.value("document.documentElement?.dataset.ready") != "yes":
+            if time.monotonic() > deadline:
+                raise TimeoutError(
+                    f"{page} is not ready: {self.value('document.documentElement.dataset.errors')}"
+                )
+            time.sleep(0.05)
+
+    def go(self, address: str, *, width: int) -> None:
+        """Show what is at an address, at a width [px]."""
         self.call(
             "Emulation.setDeviceMetricsOverride",
             width=width,
@@ -124,14 +135,7 @@ class Browser:
         )
         self.requests.clear()
         self.problems.clear()
-        self.call("Page.navigate", url=page.resolve().as_uri())
-        deadline = time.monotonic() + PATIENCE
-        while self.value("document.documentElement?.dataset.ready") != "yes":
-            if time.monotonic() > deadline:
-                raise TimeoutError(
-                    f"{page} is not ready: {self.value('document.documentElement.dataset.errors')}"
-                )
-            time.sleep(0.05)
+        self.call("Page.navigate", url=address)
 
     def value(self, expression: str) -> Any:
         """Return what a JavaScript expression evaluates to."""

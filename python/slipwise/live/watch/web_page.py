@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Serves the page of the live node: read-only, to this machine alone unless told otherwise."""
+
+from __future__ import annotations
+
+import contextlib
+import ipaddress
+import secrets
+import socket
+import threading
+import time
+from typing import TYPE_CHECKING
+from urllib.parse import urlencode
+
+from slipwise.errors import OutputError, SettingsError
+from slipwise.live.outputs import Output
+from slipwise.live.watch.history import History
+
+if TYPE_CHECKING:
+    from uvicorn import Server
+
+_START = 10.0  # s, until a server that does not start counts as broken
+_TOKEN_BYTES = 24
+
+
+class WebPage:
+    """The page, and the server behind it in a thread of its own.
+
+    Beyond this machine a token is asked for; `url` has it in its query.
+    """
+
+    def __init__(self, *, host: str = "127.0.0.1", port: int = 0) -> None:
+        """Begin to serve.
+
+        Args:
+            host: address to listen at; 0.0.0.0 is every one of this machine's.
+            port: 0 takes a free one.
+
+        Raises:
+            SettingsError: Starlette or uvicorn is not installed.
+            OutputError: the address cannot be used.
+        """
+        try:
+            from uvicorn import Config, Server
+
+            from slipwise.live.watch.web_application import Access, application
+        except ImportError as problem:
+            raise SettingsError(
+                f"the page needs a package that is missing: {problem.name}",
+                advice="pip install 'slipwise[live]'",
+            ) from problem
+        self._socket = _bound(host, port)
+        self._history, self._ending = History(), threading.Event()
+        local = is_loopback(self._socket.getsockname()[0])
+        self.token = None if local else secrets.token_urlsafe(_TOKEN_BYTES)
+        self.port = int(self._socket.getsockname()[1])
+        self.url = _address(host, self.port, self.token)
+        app = application(self._history, Access(self.token, local), self._ending)
+        config = Config(app, log_config=None, access_log=False, server_header=False, lifespan="off")
+        config.timeout_graceful_shutdown = 1
+        self._server: Server = Server(config)
+        self._thread = threading.Thread(target=self._serve, name="slipwise-web", daemon=True)
+        self._thread.start()
+        self._wait_for_start()
+
+    def take(self, output: Output) -> None:
+        """Show an output."""
+        self._history.take(output)
+
+    def notices(self) -> list[str]:
+        """Nothing goes wrong here that the node would have to say."""
+        return []
+
+    def close(self) -> None:
+        """Stop serving; pages that are open say that the connection is lost."""
+        self._ending.set()
+        self._server.should_exit = True
+        self._thread.join(2.0)
+        self._socket.close()
+
+    def _serve(self) -> None:
+        self._server.run(sockets=[self._socket])
+
+    def _wait_for_start(self) -> None:
+        deadline = time.monotonic() + _START
+        while not self._server.started:
+            if not self._thread.is_alive() or time.monotonic() > deadline:
+                self.close()
+                raise OutputError("the page's server does not start", where=self.url)
+            time.sleep(0.01)
+
+
+def is_loopback(address: str) -> bool:
+    """Whether an address is reached from this machine alone."""
+    try:
+        return ipaddress.ip_address(address.partition("%")[0]).is_loopback
+    except ValueError:
+        return False
+
+
+def _bound(host: str, port: int) -> socket.socket:
+    """Return a socket at the address.
+
+    Raises:
+        OutputError: another program has it, or it is not one of this machine's.
+    """
+    try:
+        family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        bound = socket.socket(family, kind, protocol)
+    except (OSError, OverflowError) as problem:
+        raise OutputError(f"cannot serve: {problem}", where=f"{host}:{port}") from problem
+    try:
+        bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        bound.bind(address)
+    except (OSError, OverflowError) as problem:
+        bound.close()
+        what = problem.strerror if isinstance(problem, OSError) else str(problem)
+        advice = "choose another port or host"
+        raise OutputError(f"cannot serve: {what}", where=f"{host}:{port}", advice=advice) from problem
+    return bound
+
+
+def _address(host: str, port: int, token: str | None) -> str:
+    """Return the address to open; of a server at every address, by the name of this machine."""
+    with contextlib.suppress(ValueError):
+        if ipaddress.ip_address(host).is_unspecified:
+            host = socket.gethostname()
+    name = f"[{host}]" if ":" in host else host
+    query = f"?{urlencode({'token': token})}" if token else ""
+    return f"http://{name}:{port}/{query}"
