@@ -153,7 +153,11 @@ def _status(model: Model, t: float, driven: Floats, command: tuple[float, float]
         given = p.value if p.identified else None
         log = not any(name == p.name for name in (q.name for q in content.parameters))
         spread = prior.get(p.name, 0.3) * (p.value if log else 1.0)
-        rows.append(ParameterNow(p.name, p.unit, p.value, p.std, spread, validity, 0.9 * p.value, given))
+        rows.append(
+            ParameterNow(
+                p.name, p.unit, p.value, p.std, spread, validity, 0.2 if p.unit == "s" else 0.0, given
+            )
+        )
     held = content.verdict.held_out
     return waiting_status(
         t=t,

@@ -104,19 +104,22 @@ def _bound(host: str, port: int) -> socket.socket:
     Raises:
         OutputError: another program has it, or it is not one of this machine's.
     """
+    if not 0 <= port <= 65535:
+        raise OutputError("cannot serve: no such port", where=str(port), advice="choose one up to 65535")
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
         bound = socket.socket(family, kind, protocol)
-    except (OSError, OverflowError) as problem:
+    except OSError as problem:
         raise OutputError(f"cannot serve: {problem}", where=f"{host}:{port}") from problem
     try:
         bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         bound.bind(address)
-    except (OSError, OverflowError) as problem:
+    except OSError as problem:
         bound.close()
-        what = problem.strerror if isinstance(problem, OSError) else str(problem)
         advice = "choose another port or host"
-        raise OutputError(f"cannot serve: {what}", where=f"{host}:{port}", advice=advice) from problem
+        raise OutputError(
+            f"cannot serve: {problem.strerror}", where=f"{host}:{port}", advice=advice
+        ) from problem
     return bound
 
 

@@ -104,12 +104,11 @@
     at("errors").replaceChildren(...blocks);
   };
 
+  const SPAN = 2; // standard deviations of the prior to either side
   const bar = (p) => {
-    const picture = shape("svg", OF_VALIDITY[p.validity] || "", { viewBox: "-3.2 -1 6.4 2", preserveAspectRatio: "none" });
-    // Marks keep their form however wide the bar is: x is stretched, so they are drawn in percent instead.
-    picture.removeAttribute("viewBox");
-    const x = (value) => 50 + (Math.max(-3.15, Math.min(3.15, value)) / 6.4) * 100 + "%";
-    picture.append(shape("rect", "prior", { x: x(-1), y: 4, width: 200 / 6.4 + "%", height: 12, rx: 2 }));
+    const picture = shape("svg", OF_VALIDITY[p.validity] || "", {});
+    const x = (value) => 50 + (Math.max(-SPAN, Math.min(SPAN, value)) / (2 * SPAN)) * 96 + "%"; // however wide it is
+    picture.append(shape("rect", "prior", { x: x(-1), y: 4, width: 96 / SPAN + "%", height: 12, rx: 2 }));
     picture.append(shape("line", "start", { x1: "50%", x2: "50%", y1: 1, y2: 19 }));
     if (p.at !== null && p.spread !== null) {
       picture.append(shape("line", "spread", { x1: x(p.at - p.spread), x2: x(p.at + p.spread), y1: 10, y2: 10 }));
@@ -131,7 +130,7 @@
     if (label) one.dataset.label = label;
     return one;
   };
-  let shownParameters = "";
+  let shownParameters = null;
   const showParameters = (parameters) => {
     const key = JSON.stringify(parameters);
     if (key === shownParameters) return;
@@ -193,7 +192,7 @@
   // ---- figures
 
   const twin = (hex) => getComputedStyle(root).getPropertyValue("--c-" + hex.slice(1)).trim() || hex;
-  const config = { responsive: true, displayModeBar: false, displaylogo: false, showTips: false, plotlyServerURL: "" };
+  const config = { displayModeBar: false, displaylogo: false, showTips: false, plotlyServerURL: "" };
   const line = (colour, width, dash) => ({ color: twin(colour), width, dash: dash || "solid" });
   const base = (margin) => ({
     font: { color: twin("#1b2430"), size: 12, family: "system-ui, 'Liberation Sans', Arial, sans-serif" },
@@ -214,6 +213,20 @@
   });
   const trace = (points, more) => ({ type: "scatter", mode: "lines", x: points[0] || [], y: points[1] || [], ...more });
 
+  // The size is given with each drawing, since the cards beside a figure grow as there is more to show.
+  const fill = (name, data, layout) => {
+    const place = at(name);
+    return Plotly.react(place, data, { ...layout, width: place.clientWidth, height: place.clientHeight }, config);
+  };
+
+  const AROUND = 3; // m to each side of the robot at the least
+  let follow = false;
+  at("follow").addEventListener("click", () => {
+    follow = !follow;
+    at("follow").setAttribute("aria-pressed", String(follow));
+    plan();
+  });
+
   const drawPath = (path, frame) => {
     const outlines = [[], []];
     for (const [x, y] of path.ellipses) {
@@ -223,9 +236,9 @@
     const here = path.robot && path.robot[0] !== null ? path.robot : null;
     const ahead = path.predicted.length && here ? [[here[0], ...path.predicted[0]], [here[1], ...path.predicted[1]]] : path.predicted;
     const data = [
-      trace(path.driven, { name: "measured", line: line("#1b2430", 2), hovertemplate: "%{x:.2f}, %{y:.2f} m" }),
+      trace(path.driven, { name: "measured", line: line("#c3cad3", 6), hovertemplate: "%{x:.2f}, %{y:.2f} m" }),
       trace(path.fused, { name: "fused", line: line("#0072b2", 2), hovertemplate: "%{x:.2f}, %{y:.2f} m" }),
-      trace(outlines, { name: "95 %", line: line("#009e73", 1), opacity: 0.7, hoverinfo: "skip" }),
+      trace(outlines, { name: "95 %", line: line("#009e73", 1), fill: "toself", opacity: 0.5, hoverinfo: "skip" }),
       trace(ahead, { name: "predicted", line: line("#009e73", 3, "dash"), hovertemplate: "%{x:.2f}, %{y:.2f} m" }),
       {
         type: "scatter",
@@ -247,7 +260,14 @@
     const layout = base({ l: 46, r: 8, t: 6, b: 38 });
     layout.xaxis = axis("x" + where + " [m]", { nticks: 7 });
     layout.yaxis = axis("y [m]", { scaleanchor: "x", scaleratio: 1, nticks: 8 });
-    return Plotly.react(at("path"), data, layout, config);
+    if (follow && here) {
+      const wide = at("path").clientWidth - 54; // what the margins leave
+      const high = at("path").clientHeight - 44;
+      const half = AROUND * Math.max(1, wide / high);
+      layout.xaxis.range = [here[0] - half, here[0] + half];
+      layout.yaxis.range = [here[1] - (half * high) / wide, here[1] + (half * high) / wide];
+    }
+    return fill("path", data, layout);
   };
 
   const drawNis = (nis) => {
@@ -263,7 +283,7 @@
     const said = nis.map((point) => (point[1] === null ? "" : String(Number(point[1].toPrecision(2)))));
     const marks = { color: twin("#0072b2"), size: 5 };
     const data = [{ type: "scatter", mode: "markers", x, y, text: said, hovertemplate: "NIS %{text}<extra></extra>", marker: marks }];
-    return Plotly.react(at("nis"), data, layout, config);
+    return fill("nis", data, layout);
   };
 
   // ---- the stream
@@ -337,7 +357,10 @@
     }
   };
   setInterval(watch, 500);
+  new ResizeObserver(plan).observe(at("path"));
   document.addEventListener("visibilitychange", plan);
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", plan);
+  showParameters([]);
+  showCounts([]);
   connect();
 })();
