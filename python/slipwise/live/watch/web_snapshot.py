@@ -8,11 +8,9 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import numpy as np
-
-from slipwise.ellipse import outline_of
-from slipwise.live.outputs import Floats, ParameterNow, Path, Status
+from slipwise.live.outputs import Floats, ParameterNow, Status
 from slipwise.live.watch.history import Seen
+from slipwise.live.watch.path_ellipses import path_ellipses
 from slipwise.live.watch.status_texts import (
     SLIP_NAMES,
     error_texts,
@@ -22,9 +20,7 @@ from slipwise.live.watch.status_texts import (
     stamp_text,
 )
 
-_RADIUS = math.sqrt(-2.0 * math.log(0.05))  # standard deviations around 95 % in a plane
 _MOST_POINTS = 500  # of the driven path
-_MOST_ELLIPSES = 6
 _PLACES = 3  # mm, mrad
 
 
@@ -37,7 +33,9 @@ def snapshot(seen: Seen) -> str:
             "driven": [] if status is None else _points(_thinned(status.driven)[:, :2].tolist()),
             "fused": _points(seen.fused),
             "predicted": [] if seen.predicted is None else _points(seen.predicted.poses[:, :2].tolist()),
-            "ellipses": [] if seen.predicted is None else _ellipses(seen.predicted),
+            "ellipses": []
+            if seen.predicted is None
+            else [_points(ring.tolist()) for ring in path_ellipses(seen.predicted)],
             "robot": _robot(seen),
         },
         "nis": [[_round(t - seen.nis[-1][0]), _round(value)] for t, value in seen.nis],
@@ -96,16 +94,6 @@ def _robot(seen: Seen) -> list[float | None] | None:
     if seen.status is not None and len(seen.status.driven):
         return [_round(value) for value in seen.status.driven[-1].tolist()]
     return None
-
-
-def _ellipses(path: Path) -> list[list[list[float | None]]]:
-    """Return outlines of 95 % at a few poses, the last among them."""
-    count = len(path.poses)
-    chosen = sorted({round(i) for i in np.linspace(count / _MOST_ELLIPSES, count - 1, _MOST_ELLIPSES)})
-    outlines = (
-        outline_of(path.poses[i, :2], path.covariance[i, :2, :2], _RADIUS) for i in chosen if 0 <= i < count
-    )
-    return [_points(outline[::2].tolist()) for outline in outlines if outline is not None]
 
 
 def _thinned(driven: Floats) -> Floats:
