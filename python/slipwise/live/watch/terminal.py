@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Shows the node in the terminal: a screen that refreshes, or plain lines where there is no terminal."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from slipwise.live.outputs import Note, Output, Status
+from slipwise.live.watch.history import History
+from slipwise.live.watch.output_thread import OutputThread
+from slipwise.live.watch.status_texts import error_texts, nis_text, slip_texts, stamp_text
+from slipwise.live.watch.terminal_screen import clean, screen
+from slipwise.live.watch.watcher import Watcher
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+STATE_EVERY = 10.0  # s between two lines of state
+_REFRESHES = 4.0  # a second
+
+
+def terminal_watcher(
+    console: Console, write: Callable[[str], None], *, headlines: Sequence[str] = ()
+) -> Watcher:
+    """Return a screen where `console` is a terminal that can show one, and plain lines elsewhere.
+
+    Args:
+        console: what the command line prints to.
+        write: prints one line.
+        headlines: what stays in sight, such as the address of the page.
+    """
+    if console.is_terminal and not console.is_dumb_terminal:
+        return TerminalScreen(console, headlines=headlines)
+    return PlainLines(write, headlines=headlines)
+
+
+class TerminalScreen:
+    """The whole terminal shows the state while the node runs; the last of it stays when it ends."""
+
+    def __init__(self, console: Console, *, headlines: Sequence[str] = ()) -> None:
+        """Take the terminal over until `close`."""
+        from rich.live import Live
+
+        self._console, self._headlines = console, tuple(headlines)
+        self._history = History()
+        self._live = Live(
+            console=console,
+            screen=True,
+            refresh_per_second=_REFRESHES,
+            get_renderable=self._render,
+            redirect_stdout=False,
+            redirect_stderr=False,
+        )
+        self._live.start()
+        self._open = True
+
+    def take(self, output: Output) -> None:
+        """Show an output at the next refresh."""
+        self._history.take(output)
+
+    def notices(self) -> list[str]:
+        """Nothing goes wrong here that the node would have to say."""
+        return []
+
+    def close(self) -> None:
+        """Give the terminal back and leave the last state in it."""
+        if not self._open:
+            return
+        self._open = False
+        with contextlib.suppress(OSError):  # the terminal may be gone
+            self._live.stop()
+            self._console.print(self._render())
+
+    def _render(self) -> RenderableType:
+        return screen(self._history.seen(), self._console.size, self._headlines)
+
+
+class PlainLines:
+    """A line for every note and one of state every 10 s, such as for a journal."""
+
+    def __init__(
+        self,
+        write: Callable[[str], None],
+        *,
+        headlines: Sequence[str] = (),
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`write` prints one line, in a thread of its own; `clock` counts seconds."""
+        self._write, self._clock = write, clock
+        self._said = -STATE_EVERY + clock()
+        self._status: Status | None = None
+        self._shown: Status | None = None
+        for line in headlines:
+            write(clean(line))
+        self._thread = OutputThread(self._show, name="slipwise-lines")
+
+    def take(self, output: Output) -> None:
+        """Print an output, if it is one that is printed."""
+        if isinstance(output, Note | Status):
+            self._thread.put(output)
+
+    def notices(self) -> list[str]:
+        """What can go wrong is that nobody reads, and nobody would read that either."""
+        return []
+
+    def close(self) -> None:
+        """Print the last state, if it was not."""
+        done = self._thread.close()
+        if done and self._thread.failure is None and self._status is not self._shown:
+            with contextlib.suppress(OSError):
+                self._print_state()
+
+    def _show(self, output: Output) -> None:
+        if isinstance(output, Note):
+            self._write(clean(f"{stamp_text(output.t)}  {output.text}"))
+        elif isinstance(output, Status):
+            self._status = output
+            if self._clock() - self._said >= STATE_EVERY:
+                self._said = self._clock()
+                self._print_state()
+
+    def _print_state(self) -> None:
+        self._shown = self._status
+        if self._status is not None:
+            self._write(state_line(self._status))
+
+
+def state_line(status: Status) -> str:
+    """Return the state of the node as one line of text."""
+    parts = [
+        f"{status.state}: {status.why}" if status.why else status.state,
+        f"model {status.validity}" + (f": {status.validity_why}" if status.validity_why else ""),
+        f"{status.segments} segments",
+    ]
+    parts += [
+        f"{error.name} error {error.learned} {error.unit} (baseline {error.baseline})"
+        for error in error_texts(status)
+    ]
+    slip = slip_texts(status)
+    if slip is not None:
+        parts.append(f"slip {slip[0]}, {slip[1]} m/s, {slip[2]} rad/s")
+    if status.nis is not None:
+        parts.append(f"NIS {nis_text(status)}")
+    known = sum(p.validity == "estimated" for p in status.parameters)
+    parts.append(f"{known} of {len(status.parameters)} parameters estimated")
+    left_out = sum(status.counts.values())
+    if left_out:
+        parts.append(f"{left_out} left out")
+    return clean(f"{stamp_text(status.t)}  {'; '.join(parts)}")
