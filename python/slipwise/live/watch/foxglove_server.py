@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import OutputError, SettingsError
@@ -17,6 +18,12 @@ if TYPE_CHECKING:
     from foxglove import Channel
 
 PORT = 8765  # where Foxglove looks first
+_JSON: Mapping[str, Callable[[Status], dict[str, Any] | None]] = {
+    "state": state_of,
+    "parameters": parameters_of,
+    "slip": slip_of,
+    "nis": nis_of,
+}
 
 
 class FoxgloveServer:
@@ -98,7 +105,7 @@ class FoxgloveServer:
             case Status():
                 self._show_status(output)
             case Odometry():
-                moved = self._make.transform(output)
+                moved = self._make.transform(output) if self._transform.has_sinks() else None
                 if moved is not None:
                     self._transform.log(moved, log_time=stamp_ns(output.t))
             case Path():
@@ -110,15 +117,12 @@ class FoxgloveServer:
     def _show_status(self, status: Status) -> None:
         time = stamp_ns(status.t)
         frame = status.odometry.frame if status.odometry is not None else "map"
-        self._driven.log(self._make.poses_in_frame(status.t, frame, status.driven), log_time=time)
-        self._scene.log(self._make.scene(self._history.seen(), frame), log_time=time)
-        said: dict[str, dict[str, Any] | None] = {
-            "state": state_of(status),
-            "parameters": parameters_of(status),
-            "slip": slip_of(status),
-            "nis": nis_of(status),
-        }
-        for topic, message in said.items():
+        if self._driven.has_sinks():  # nothing is made that nobody looks at
+            self._driven.log(self._make.poses_in_frame(status.t, frame, status.driven), log_time=time)
+        if self._scene.has_sinks():
+            self._scene.log(self._make.scene(self._history.seen(), frame), log_time=time)
+        for topic, made in _JSON.items():
+            message = made(status) if self._json[topic].has_sinks() else None
             if message is not None:
                 self._json[topic].log(message, log_time=time)
 

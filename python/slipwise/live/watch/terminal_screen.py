@@ -26,6 +26,11 @@ _WIDE = 110  # columns from which on the table has all of its columns
 _OF_STATE = {"learning": "bold green", "waiting": "bold yellow", "stuck": "bold red"}
 _OF_VALIDITY = {"estimated": "green", "unestimated": "yellow", "invalid": "red"}
 _RANKS = {"invalid": 0, "estimated": 1, "unestimated": 2}
+_HEADS = ("parameter", "value", "± σ", "prior σ", "applied", "validity")
+_HEADS_WIDE = (*_HEADS[:1], "unit", "prior -2σ … +2σ", *_HEADS[1:4], "at start", *_HEADS[4:])
+_RIGHT = frozenset({"value", "± σ", "prior σ", "at start", "applied"})
+_COLOURED = {False: (5,), True: (2, 8)}  # columns in the colour of the validity, narrow and wide
+_WIDEST_CELL = 26
 _LEVELS = "▁▂▃▄▅▆▇█"
 _SPARKS = 24  # segments of which the NIS is drawn
 _MOST_NOTES = 6
@@ -121,36 +126,58 @@ def _notes(seen: Seen, most: int, width: int) -> list[Text]:
     ]
 
 
-def _parameters(parameters: Sequence[ParameterNow], rows: int, width: int) -> list[RenderableType]:
+def _parameters(parameters: Sequence[ParameterNow], rows: int, width: int) -> list[Text]:
     """Return the table in at most `rows` lines with its heading, and how many parameters it leaves out."""
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
-
     if not parameters:
         return []
-    room = rows - 2  # its heading and the line below
+    room = rows - 1  # without its heading
     shown = parameters
     if len(parameters) > room:  # what says most comes first
         shown = sorted(parameters, key=lambda p: _RANKS.get(p.validity, 0))[: max(room - 1, 0)]
     wide = width >= _WIDE
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, header_style="bold")
-    table.add_column("parameter", no_wrap=True, overflow="ellipsis")
-    if wide:
-        table.add_column("unit", no_wrap=True, overflow="ellipsis", style="dim")
-        table.add_column("prior -2σ .. start .. +2σ", no_wrap=True)
-    for name in ("value", "± σ", "prior σ", *(("at start",) if wide else ()), "applied"):
-        table.add_column(name, justify="right", no_wrap=True)
-    table.add_column("validity", no_wrap=True, overflow="ellipsis")
-    for p in shown:
-        texts, colour = parameter_texts(p), _OF_VALIDITY.get(p.validity, "")
-        cells = [texts.value, texts.std, texts.prior, *((texts.start,) if wide else ()), texts.applied]
-        first = [Text(clean(texts.name))]
-        if wide:
-            first += [Text(clean(texts.unit)), Text(_bar(p), colour)]
-        table.add_row(*first, *(Text(cell) for cell in cells), Text(texts.validity, colour))
+    table = [_HEADS_WIDE if wide else _HEADS, *(_cells(p, wide=wide) for p in shown)]
+    columns = list(zip(*table, strict=True))
+    padded = [_padded(column, right=column[0] in _RIGHT) for column in columns]
+    lines = [_line([("  ".join(row[0] for row in padded), "bold underline")], width)]
+    for i, p in enumerate(shown, start=1):
+        colour = _OF_VALIDITY.get(p.validity, "")
+        cells = [
+            (column[i] + "  ", colour if k in _COLOURED[wide] else "") for k, column in enumerate(padded)
+        ]
+        lines.append(_line(cells, width))
     left = len(parameters) - len(shown)
-    return [table, *([_line([(f"and {left} more", "dim")], width)] if left else [])]
+    return [*lines, *([_line([(f"and {left} more", "dim")], width)] if left else [])]
+
+
+def _cells(p: ParameterNow, *, wide: bool) -> tuple[str, ...]:
+    texts = parameter_texts(p)
+    name = clean(texts.name)
+    if wide:
+        unit = clean(texts.unit)
+        return (
+            name,
+            unit,
+            _bar(p),
+            texts.value,
+            texts.std,
+            texts.prior,
+            texts.start,
+            texts.applied,
+            p.validity,
+        )
+    return (name, texts.value, texts.std, texts.prior, texts.applied, p.validity)
+
+
+def _padded(cells: Sequence[str], *, right: bool) -> list[str]:
+    """Return the cells of a column, as wide as the widest of them."""
+    from rich.cells import cell_len, set_cell_size
+
+    cut = [
+        cell if cell_len(cell) <= _WIDEST_CELL else set_cell_size(cell, _WIDEST_CELL - 1) + "…"
+        for cell in cells
+    ]
+    width = max(map(cell_len, cut))
+    return [" " * (width - cell_len(c)) + c if right else c + " " * (width - cell_len(c)) for c in cut]
 
 
 def _bar(p: ParameterNow) -> str:

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
+
+import numpy as np
 
 from slipwise.live.outputs import Floats, ParameterNow, Status
 from slipwise.live.watch.history import Seen
@@ -30,12 +32,12 @@ def snapshot(seen: Seen) -> str:
     content: dict[str, Any] = {
         "log": [[stamp_text(t), text] for t, text in seen.notes],
         "path": {
-            "driven": [] if status is None else _points(_thinned(status.driven)[:, :2].tolist()),
+            "driven": [] if status is None else _points(_thinned(status.driven)),
             "fused": _points(seen.fused),
-            "predicted": [] if seen.predicted is None else _points(seen.predicted.poses[:, :2].tolist()),
+            "predicted": [] if seen.predicted is None else _points(seen.predicted.poses),
             "ellipses": []
             if seen.predicted is None
-            else [_points(ring.tolist()) for ring in path_ellipses(seen.predicted)],
+            else [_points(ring) for ring in path_ellipses(seen.predicted)],
             "robot": _robot(seen),
         },
         "nis": [[_round(t - seen.nis[-1][0]), _round(value)] for t, value in seen.nis],
@@ -101,10 +103,14 @@ def _thinned(driven: Floats) -> Floats:
     return driven if step <= 1 else driven[::-1][::step][::-1]  # the newest stays
 
 
-def _points(rows: Iterable[Sequence[float]]) -> list[list[float | None]]:
-    """Return x and y apart, as they are drawn."""
-    pairs = [(_round(row[0]), _round(row[1])) for row in rows]
-    return [[x for x, _ in pairs], [y for _, y in pairs]]
+def _points(rows: Floats | Sequence[Sequence[float]]) -> list[list[float | None]]:
+    """Return x and y of [N, 2] or more apart, as they are drawn."""
+    if len(rows) == 0:
+        return [[], []]
+    points = np.asarray(rows, dtype=np.float64)
+    if np.isfinite(points).all():
+        return [points[:, i].round(_PLACES).tolist() for i in (0, 1)]
+    return [[_round(value) for value in points[:, i].tolist()] for i in (0, 1)]
 
 
 def _round(value: float) -> float | None:
