@@ -26,7 +26,7 @@ class Seen:
     predicted: Path | None
     odometry: Odometry | None
     fused: tuple[tuple[float, float], ...]  # x, y [m], oldest first
-    nis: tuple[tuple[float, float], ...]  # stamp [s], NIS of each segment, oldest first
+    nis: tuple[tuple[int, float], ...]  # which segment, its NIS; oldest first. Clocks may jump, counts do not
     notes: tuple[tuple[float, str], ...]  # stamp [s], text, newest first
 
 
@@ -40,7 +40,7 @@ class History:
         self._odometry: Odometry | None = None
         self._fused: deque[tuple[float, float]] = deque(maxlen=MOST_FUSED)
         self._frame = ""
-        self._nis: deque[tuple[float, float]] = deque(maxlen=MOST_NIS)
+        self._nis: deque[tuple[int, float]] = deque(maxlen=MOST_NIS)
         self._segments = 0
         self._notes: deque[tuple[float, str]] = deque(maxlen=MOST_NOTES)
         self._count = 0
@@ -86,7 +86,7 @@ class History:
         if status.segments < self._segments:  # another learner
             self._nis.clear()
         if status.segments != self._segments and status.nis is not None and math.isfinite(status.nis):
-            self._nis.append((status.t, status.nis))
+            self._nis.append((status.segments, status.nis))
         self._segments = status.segments
 
     def _take_fused(self, odometry: Odometry) -> None:

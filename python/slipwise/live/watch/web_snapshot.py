@@ -40,7 +40,7 @@ def snapshot(seen: Seen) -> str:
             else [_points(ring) for ring in path_ellipses(seen.predicted)],
             "robot": _robot(seen),
         },
-        "nis": [[_round(t - seen.nis[-1][0]), _round(value)] for t, value in seen.nis],
+        "nis": [[segment - seen.nis[-1][0], _round(value)] for segment, value in seen.nis],
         "status": None if status is None else _status(status),
     }
     return json.dumps(content, allow_nan=False, separators=(",", ":"))

@@ -116,6 +116,20 @@ def test_a_folder_and_a_place_that_is_none_are_refused(tmp_path: Path) -> None:
         Recorder(tmp_path / "file" / "out.mcap")
 
 
+def test_what_others_put_in_the_way_is_left_alone(tmp_path: Path) -> None:
+    part = tmp_path / "out.mcap.part"
+    part.write_text("mine")
+    with pytest.raises(OutputError, match="in the way"):
+        Recorder(tmp_path / "out.mcap")
+    assert part.read_text() == "mine"
+    part.unlink()
+    part.mkdir()
+    (part / "thesis.tex").write_text("mine")
+    with pytest.raises(OutputError, match="in the way"):
+        Recorder(tmp_path / "out.mcap")
+    assert (part / "thesis.tex").read_text() == "mine"
+
+
 def test_a_full_disk_ends_the_recording_and_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     recorder = Recorder(tmp_path / "out.mcap")
 

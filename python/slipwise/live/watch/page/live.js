@@ -273,7 +273,7 @@
   const drawNis = (nis) => {
     const x = nis.map((point) => point[0]);
     const layout = base({ l: 46, r: 8, t: 4, b: 34 });
-    layout.xaxis = axis("s before the newest segment", { nticks: 6, zeroline: false, range: x.length > 1 ? undefined : [-60, 0] });
+    layout.xaxis = axis("segments before the newest", { nticks: 6, zeroline: false, range: x.length > 1 ? undefined : [-20, 1] });
     layout.yaxis = axis("", { type: "log", range: [-1.3, 2], tickvals: [0.1, 1, 3, 10, 100], ticktext: ["0.1", "1", "3", "10", "100"] });
     layout.shapes = [
       { type: "rect", xref: "paper", x0: 0, x1: 1, y0: 0.216, y1: 9.35, fillcolor: twin("#e6d6ad"), opacity: 0.45, line: { width: 0 }, layer: "below" },
