@@ -68,8 +68,8 @@ class History:
             return Seen(
                 count=self._count,
                 status=status,
-                predicted=(status.predicted if status is not None else None) or self._predicted,
-                odometry=(status.odometry if status is not None else None) or self._odometry,
+                predicted=self._predicted if status is None else status.predicted,
+                odometry=self._odometry if status is None else status.odometry,
                 fused=tuple(self._fused),
                 nis=tuple(self._nis),
                 notes=tuple(reversed(said)),

@@ -123,11 +123,22 @@ def _bound(host: str, port: int) -> socket.socket:
     return bound
 
 
+def _reached_address(version: int) -> str:
+    """Return this machine's address in its network, or its name where it is in none; nothing is sent."""
+    family, elsewhere = (socket.AF_INET6, "2001:db8::1") if version == 6 else (socket.AF_INET, "192.0.2.1")
+    try:
+        with socket.socket(family, socket.SOCK_DGRAM) as probe:
+            probe.connect((elsewhere, 9))  # for documentation: nobody is there
+            return str(probe.getsockname()[0])
+    except OSError:
+        return socket.gethostname()
+
+
 def _address(host: str, port: int, token: str | None) -> str:
-    """Return the address to open; of a server at every address, by the name of this machine."""
+    """Return the address to open; of a server at every address, one that others reach."""
     with contextlib.suppress(ValueError):
-        if ipaddress.ip_address(host).is_unspecified:
-            host = socket.gethostname()
+        if (address := ipaddress.ip_address(host)).is_unspecified:
+            host = _reached_address(address.version)
     name = f"[{host}]" if ":" in host else host
     query = f"?{urlencode({'token': token})}" if token else ""
     return f"http://{name}:{port}/{query}"

@@ -68,3 +68,11 @@ def test_an_answer_to_a_request_is_not_the_path_of_the_present_command() -> None
     path = straight_path()
     history.take(path)
     assert history.seen().predicted is path
+
+
+def test_what_the_newest_status_does_not_know_is_not_shown_from_before() -> None:
+    history = History()
+    history.take(straight_path())
+    history.take(odometry_at(1.0))
+    history.take(waiting_status())
+    assert (history.seen().predicted, history.seen().odometry) == (None, None)
