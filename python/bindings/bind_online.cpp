@@ -225,6 +225,26 @@ void bind_events(nb::module_& m) {
       });
 }
 
+void bind_odometry(nb::module_& m) {
+  nb::class_<Odometry>(m, "Odometry", "Where the robot is, and how it moves, as nav_msgs/Odometry says it.")
+      .def_ro("t", &Odometry::t)
+      .def_ro("frame", &Odometry::frame)
+      .def_ro("pose", &Odometry::pose)
+      .def_ro("covariance", &Odometry::covariance)
+      .def_prop_ro(
+          "twist",
+          [](const Odometry& odometry) {
+            return Eigen::Vector3d(odometry.twist.v, odometry.twist.vy, odometry.twist.omega);
+          },
+          "(v, vy, omega) [m/s, m/s, rad/s].")
+      .def_ro("twist_covariance", &Odometry::twist_covariance)
+      .def_ro("since_pose", &Odometry::since_pose);
+  nb::class_<MotionState>(m, "MotionState", "How the robot moves beside what was expected of it.")
+      .def_ro("stuck", &MotionState::stuck)
+      .def_ro("fraction", &MotionState::fraction)
+      .def_ro("since", &MotionState::since);
+}
+
 }  // namespace
 
 void bind_online(nb::module_& m) {
@@ -239,6 +259,7 @@ void bind_online(nb::module_& m) {
   bind_recordings(m);
   bind_results(m);
   bind_events(m);
+  bind_odometry(m);
   nb::class_<MotionLearner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
       .def(nb::init<const LearnerSettings&>(), "settings"_a)
       .def("start_run", &MotionLearner::start_run)
@@ -274,6 +295,10 @@ void bind_online(nb::module_& m) {
             return learner.predict(samples(future, "future inputs"), horizon, embargo);
           },
           "future"_a, "horizon"_a, "embargo"_a)
+      .def("odometry", &MotionLearner::odometry,
+           "Where the robot is at the newest measurement; None before the first pose of the run.")
+      .def("motion_monitor", &MotionLearner::motion_monitor,
+           "Whether the robot moves as its inputs and the learned model say it must.")
       .def("model", &MotionLearner::model, "What was learned of all that was pushed.")
       .def("find_limits", &MotionLearner::find_limits, "wheel_separation"_a, nb::call_guard<nb::gil_scoped_release>(),
            "Looks for limits of the actuator; None where there are too few wheel speeds beside commands.")

@@ -153,6 +153,23 @@ ExpectedPoses DisturbanceFilter::predict_both(const MotionPosterior& posterior, 
           .nominal = predict_at(posterior, this->now(posterior, {}), at, driven.segment)};
 }
 
+ExpectedDeviation DisturbanceFilter::deviation(const MotionPosterior& posterior, const SlipNow& now,
+                                               const std::array<double, 2>& span) const {
+  const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
+  check_fits(now, law_, terms);
+  ExpectedDeviation found{.places = terms.places,
+                          .mean = Eigen::VectorXd::Zero(terms.size()),
+                          .covariance = Eigen::MatrixXd::Zero(terms.size(), terms.size())};
+  for (std::size_t i = 0; i < now.of_candidates.size(); ++i) {
+    const auto [deviation, covariance] = now.of_candidates[i].mean_over(span[0], span[1]);
+    const double weight = law_.weights[static_cast<Eigen::Index>(i)];
+    found.mean += weight * deviation;
+    found.covariance += weight * (covariance + deviation * deviation.transpose());
+  }
+  found.covariance -= found.mean * found.mean.transpose();
+  return found;
+}
+
 /// Adds the mean of the deviation over a time span, and its covariance, as mixed by the candidates' weights.
 ExpectedPose DisturbanceFilter::expected(const MotionPosterior& posterior, const SlipNow& now,
                                          const DisturbedTerms& terms, const SegmentLinearization& at,

@@ -43,8 +43,12 @@ void check(const std::vector<InputSample>& future, double horizon) {
 
 }  // namespace
 
-/// Of the nearest horizon whose errors are known.
 StudentT MotionLearner::student_for(double horizon, Structure structure) const {
+  return student_at(stream_.newest(), horizon, structure);
+}
+
+/// Of the nearest horizon whose errors are known at `t` [s].
+StudentT MotionLearner::student_at(double t, double horizon, Structure structure) const {
   const auto& horizons = settings_.stream.horizons;
   if (horizons.empty()) {
     return {.inflation = 1.0, .dof = kMostDof};
@@ -52,7 +56,7 @@ StudentT MotionLearner::student_for(double horizon, Structure structure) const {
   const auto apart = [&](double each) { return std::abs(std::log(each / horizon)); };
   const auto nearest = std::ranges::min_element(horizons, {}, apart);
   const HorizonErrors& errors = errors_[static_cast<std::size_t>(nearest - horizons.begin())];
-  return errors.before(stream_.newest() - std::max(*nearest, kReady)).students[index(structure)];
+  return errors.before(t - std::max(*nearest, kReady)).students[index(structure)];
 }
 
 /// Segments that are complete with all that was pushed, and not learned yet.

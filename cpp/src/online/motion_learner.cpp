@@ -64,6 +64,8 @@ MotionLearner::MotionLearner(const LearnerSettings& settings)
       stream_(settings.stream),
       hypotheses_(settings.hypotheses),
       disturbance_(disturbance_of(settings)),
+      pose_filter_(pose_filter_settings(settings)),
+      monitor_(pose_filter_settings(settings).nominal, settings.stream.rules.late_factor),
       errors_(settings.stream.horizons.size()),
       held_out_(settings.stream.horizons.size()),
       before_run_(-kNever) {
@@ -76,6 +78,8 @@ void MotionLearner::start_run() {
   stream_.start_run();
   recent_.clear();
   recent_slip_.restart();
+  pose_filter_.restart();
+  monitor_.restart();
   runs_ += run_begins_ ? 0 : 1;
   run_begins_ = true;
 }
@@ -106,6 +110,7 @@ void MotionLearner::push_command(double t, const BodyTwist& twist) {
   see_stamp(t);
   stream_.push_command({t, twist});
   take_in();
+  pose_filter_.forget_without(t);
   work();
 }
 
@@ -113,6 +118,7 @@ void MotionLearner::push_wheels(double t, const BodyTwist& twist) {
   see_stamp(t);
   stream_.push_wheels({t, twist});
   take_in();
+  pose_filter_.forget_without(t);
   work();
 }
 
@@ -122,12 +128,16 @@ void MotionLearner::push_attitude(double t, double roll, double pitch) {
   steepest_ = std::isfinite(tilt) ? std::max(steepest_, tilt) : steepest_;
   stream_.push_attitude(t, roll, pitch);
   take_in();
+  pose_filter_.forget_without(t);
   work();
 }
 
 void MotionLearner::push_pose(const MeasuredPose& pose) {
   see_stamp(pose.t);
-  stream_.push_pose(pose);
+  if (stream_.push_pose(pose)) {
+    pose_filter_.push(pose);
+    monitor_.push(pose);
+  }
   take_in();
   work();
 }

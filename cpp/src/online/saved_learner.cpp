@@ -36,6 +36,9 @@ MotionLearner MotionLearner::load(std::string_view saved) {
   reader(learner);
   reader.finish();
   learner.check_loaded();
+  const PoseFilterSettings poses = pose_filter_settings(learner.settings_);
+  learner.pose_filter_ = PoseFilter(poses);
+  learner.monitor_ = MotionMonitor(poses.nominal, poses.late_factor);
   return learner;
 }
 

@@ -123,13 +123,15 @@ void SegmentStream::push_attitude(double t, double roll, double pitch) {
   advance(newest_ - settings_.latency);
 }
 
-void SegmentStream::push_pose(const MeasuredPose& pose) {
+bool SegmentStream::push_pose(const MeasuredPose& pose) {
   const auto allowed = [](double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); };
   const std::array numbers{pose.x, pose.y, pose.yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
-  if (arrives(Stream::Pose, pose.t, numbers)) {
+  const bool taken = arrives(Stream::Pose, pose.t, numbers);
+  if (taken) {
     poses_.push_back(pose);
   }
   advance(newest_ - settings_.latency);
+  return taken;
 }
 
 /// Uses what cannot be preceded any more.
@@ -373,6 +375,18 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
   return {.inputs = inputs().slice(segment.start - back, segment.end, kind, repeated(future, segment.end)),
           .segment = std::move(segment),
           .known_at = newest_};
+}
+
+DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
+  const Tilt tilt = tilt_at(start);
+  Segment segment{.start = start, .end = end, .gx = tilt.gx, .gy = tilt.gy, .sensor = settings_.sensor};
+  if (settings_.from_commands) {
+    set_actuator_state(segment);
+  }
+  const SliceKind kind = settings_.from_commands ? SliceKind::Commands : SliceKind::Wheels;
+  return {.inputs = inputs().slice(start - std::min(back, kLookBack), end, kind),
+          .segment = std::move(segment),
+          .known_at = end};
 }
 
 }  // namespace slipwise

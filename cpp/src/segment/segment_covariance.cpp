@@ -58,6 +58,19 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
   return observed * covariance * observed.transpose();
 }
 
+Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise) {
+  Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();
+  for (std::size_t k = 0; k < path.tangents.size(); ++k) {
+    const Eigen::Matrix3d by_tangent = end_by_tangent(path, k);
+    const std::array<double, 3> motion = motion_of(path.drive[k]);
+    for (Eigen::Index c = 0; c < 3; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      constant.col(c) += by_tangent.col(c) * (noise.fraction[i] * motion[i]);
+    }
+  }
+  return sensor_by_robot(path.poses.back(), path.sensor) * constant;
+}
+
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
                                       const std::array<PoseStdRatio, 2>& ratio) {
   const Eigen::Matrix3d from_start = end_by_start(measured);

@@ -18,6 +18,7 @@ from slipwise.calibration.learned_log import held_out_predictions, kept_posterio
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
+from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
@@ -174,6 +175,29 @@ class MotionLearner:
             dof=np.array([student.dof for student in path.students]),
             structure=STRUCTURES[path.structure],
         )
+
+    def odometry(self) -> Odometry | None:
+        """Return where the robot is at the newest measurement; None before the first pose of the run.
+
+        Measured poses correct what the learned motion predicts since the last of them: slip, lag and delay as
+        they are known, with their uncertainty. A pose that comes late takes effect at its stamp; lone poses far
+        away move nothing. It changes nothing of what is learned, and it is not saved: a learner that was loaded
+        begins again with the next pose, since the robot may have been moved meanwhile. Call it at least every few
+        seconds: after ten seconds of poses that nobody asked about, it begins again within them.
+        """
+        found = self._core.odometry()
+        return None if found is None else odometry_of(found)
+
+    def motion_monitor(self) -> MotionState:
+        """Return whether the robot moves as its inputs and the learned model say it must.
+
+        It is stuck where the poses of the last 0.6 s are explained by a robot that moves by a fifth of that at
+        most, far better than by one that moves as expected, and this for 0.2 s. Nothing is said where less than
+        20 s were learned, inputs are not known, or too little motion is expected beside the noise of the poses.
+        It changes nothing of what is learned, and it is not saved. Call it several times a second.
+        """
+        state = self._core.motion_monitor()
+        return MotionState(stuck=state.stuck, fraction=state.fraction, since=state.since)
 
     def forget(self, fraction: float) -> None:
         """Give what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.

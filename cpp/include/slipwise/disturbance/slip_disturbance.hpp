@@ -35,6 +35,13 @@ struct SlipNow {
   std::vector<SlipDeviation> of_candidates;
 };
 
+/// How far the disturbed terms are expected to be from what was learned, as the candidates mix.
+struct ExpectedDeviation {
+  std::vector<Eigen::Index> places;  ///< of their parameters
+  Eigen::VectorXd mean;              ///< [places]
+  Eigen::MatrixXd covariance;        ///< [places, places]
+};
+
 /// A prediction that follows the slip disturbance of the moment, and one that knows nothing recent of it.
 struct ExpectedPoses {
   ExpectedPose now;
@@ -73,6 +80,11 @@ class DisturbanceFilter {
                                           const Segment& segment) const;
   /// The same, and what is predicted where nothing recent is known.
   ExpectedPoses predict_both(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& driven) const;
+
+  /// How far slip is from what was learned, as a mean over the time `span` [s], which follows all of `now`.
+  /// \throws std::invalid_argument when `now` comes from another law, or a model with other terms.
+  ExpectedDeviation deviation(const MotionPosterior& posterior, const SlipNow& now,
+                              const std::array<double, 2>& span) const;
 
   const DisturbanceModel& law() const { return law_; }
 

@@ -16,8 +16,11 @@
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/actuator_limits.hpp"
 #include "slipwise/online/held_out.hpp"
+#include "slipwise/online/motion_monitor.hpp"
+#include "slipwise/online/pose_filter.hpp"
 #include "slipwise/online/recent_slip.hpp"
 #include "slipwise/online/segment_stream.hpp"
+#include "slipwise/online/student_calibration.hpp"
 
 namespace slipwise {
 
@@ -27,6 +30,9 @@ struct LearnerSettings {
   DisturbanceSettings disturbance = {};
   bool learn_disturbance = true;  ///< how slip differs from what was learned, now and then
 };
+
+/// The filter over poses that goes with a learner.
+PoseFilterSettings pose_filter_settings(const LearnerSettings& settings);
 
 /// What a learner has to say. Which fields are meant depends on the kind.
 struct LearnerEvent {
@@ -52,6 +58,17 @@ struct PredictedPath {
   std::vector<Eigen::Matrix3d> covariances;  ///< [N] of a Student t each, its inflation included
   std::vector<StudentT> students;            ///< [N] of the nearest horizon whose errors are known
   Structure structure;                       ///< that predicts
+};
+
+/// Where the robot is, and how it moves, as nav_msgs/Odometry says it.
+struct Odometry {
+  double t;                          ///< [s] stamp of the newest measurement
+  long frame;                        ///< of the last pose used
+  Pose2 pose;                        ///< of base_link in the frame of the measured poses; its yaw is not wrapped
+  Eigen::Matrix3d covariance;        ///< of (x, y, yaw) [m, m, rad] in the axes of that frame
+  BodyTwist twist;                   ///< of base_link in its own axes, slip included
+  Eigen::Matrix3d twist_covariance;  ///< of (v, vy, omega) [m/s, m/s, rad/s]
+  double since_pose;                 ///< [s] since the last pose that was used
 };
 
 /// What was learned so far.
@@ -92,6 +109,13 @@ class MotionLearner {
   /// Parameters are those known `embargo` [s] before.
   /// \throws std::invalid_argument when the horizon is not positive or longer than an hour, or an input is impossible.
   PredictedPath predict(const std::vector<InputSample>& future, double horizon, double embargo = 0.0);
+  /// Where the robot is at the newest measurement: the measured poses, and the learned motion since the last of them.
+  /// Nothing before the first pose of the run. It changes nothing of what is learned, and it is not saved: a learner
+  /// that was loaded begins again with the next pose, for the robot may have been moved meanwhile.
+  std::optional<Odometry> odometry();
+  /// Whether the robot moves as its inputs and the learned model say it must. It changes nothing of what is learned,
+  /// and it is not saved.
+  MotionState motion_monitor();
   /// What was learned of all that was pushed; as if the run ended now.
   LearnedModel model() const;
   /// Looks for limits of the actuator in the last commands and wheel speeds, or twists between poses where there are no
@@ -135,6 +159,10 @@ class MotionLearner {
   std::vector<DrivenSegment> complete_now() const;
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
+  StudentT student_at(double t, double horizon, Structure structure) const;
+  LegKnowledge leg_knowledge(double t);
+  MotionLeg leg(const LegKnowledge& known, double start, double end) const;
+  Eigen::Matrix3d unknown_motion(double start, double end) const;
   void say(LearnerEvent event);
   void see_stamp(double t);
   void check_loaded() const;
@@ -151,6 +179,8 @@ class MotionLearner {
   std::deque<WheelSegment> twist_segments_;     ///< the same, of twists between poses
   std::deque<DrivenSegment> command_segments_;  ///< the last, by which limits are judged
   RecentSlip recent_slip_;                      ///< found again from the rest where it is loaded
+  PoseFilter pose_filter_;                      ///< not saved
+  MotionMonitor monitor_;                       ///< not saved
   std::vector<HorizonErrors> errors_;
   std::vector<std::deque<HeldOutPrediction>> held_out_;
   std::deque<LearnerEvent> events_;

@@ -74,7 +74,8 @@ class SegmentStream {
   void push_wheels(const InputSample& sample);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
-  void push_pose(const MeasuredPose& pose);
+  /// Whether it may be used; otherwise it is rejected.
+  bool push_pose(const MeasuredPose& pose);
 
   /// What became complete since the last call, in the order in which it is to be learned.
   std::vector<StreamItem> take_items();
@@ -96,6 +97,12 @@ class SegmentStream {
   /// The segment from now on over `horizon` [s], driven by `future` inputs. What is held for longer than any input that
   /// was measured is repeated, so that there are poses on the way.
   DrivenSegment segment_ahead(double horizon, const std::vector<InputSample>& future) const;
+
+  /// The motion over [start, end] [s] with the inputs that came so far, those of the last `back` [s] before it
+  /// included.
+  DrivenSegment stretch(double start, double end, double back) const;
+  /// What motion is predicted from.
+  const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -126,7 +133,6 @@ class SegmentStream {
   void emit_wheel_segments(const std::vector<SegmentCut>& cuts);
   void finish_cutters();
   void trim();
-  const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
   const InputBuffer& gate_inputs(double t) const;
   std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
   DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;

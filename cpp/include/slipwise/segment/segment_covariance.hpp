@@ -12,6 +12,9 @@ namespace slipwise {
 
 /// Covariance of the chart (x, y, theta) of T_start_end of the pose sensor that the slip noise causes along the path.
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise);
+/// How the chart of T_start_end of the pose sensor changes with a slip that is the same fraction of motion all along:
+/// column c is one standard deviation of channel c.
+Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise);
 /// Covariance of a measured T_start_end because both poses are measured: H R1 H^T + R2, with each pose's
 /// standard deviations times its ratios.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the robot moves as the model says it must: stuck, or slipping far more than was learned.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <limits>
+#include <optional>
+
+#include "slipwise/online/motion_leg.hpp"
+#include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/pose_noise.hpp"
+#include "slipwise/online/segment_cutter.hpp"
+
+namespace slipwise {
+
+/// How the robot moves beside what was expected of it.
+struct MotionState {
+  bool stuck = false;                   ///< it does not move although it must
+  std::optional<double> fraction = {};  ///< of the expected motion of late; nothing where too little is expected
+  std::optional<double> since = {};     ///< stamp at which this was first seen [s], while stuck
+};
+
+/// Compares the motion between measured poses, over a window of 0.6 s, with what was expected from the inputs before
+/// the model could learn from it. Two explanations are weighed: the robot moves as expected, with all that is unsure of
+/// the model, its lag and its delay; or it moves by a fifth of that at most. While the robot is stuck the model of
+/// before is kept, for the learner soon takes what it sees for slip.
+class MotionMonitor {
+ public:
+  /// What is known at a time, and what it expects of a stretch; nothing where the inputs are not known.
+  struct Model {
+    std::function<LegKnowledge(double t)> known;
+    std::function<std::optional<MotionLeg>(const LegKnowledge& known, double start, double end)> leg;
+  };
+
+  /// `nominal` is of poses that come without standard deviations; `late_factor` as in `SegmentRules`.
+  MotionMonitor(const PoseStd& nominal, double late_factor);
+
+  /// Another run begins.
+  void restart();
+  /// Takes a pose, whose stamp is later than those before.
+  void push(const MeasuredPose& pose);
+  /// The state at `t` [s], from the poses until `known_until`, the newest input.
+  MotionState at(double t, double known_until, const Model& model);
+
+ private:
+  /// What a window says.
+  enum class Finding : std::uint8_t { Unknown, Moves, Between, Stuck };
+
+  void take(const MeasuredPose& pose, const Model& model);
+  Finding judge(const MotionLeg& leg, const MeasuredPose& from, const MeasuredPose& to);
+  void follow(Finding finding, double t, const LegKnowledge& known);
+  Eigen::Matrix3d pose_noise(const Pose2& motion) const;
+
+  PoseStd nominal_;
+  double late_factor_;
+  PoseTimer timer_;
+  PoseAccuracy accuracy_;
+  PoseNoise noise_;
+  std::deque<TimedPose> waiting_;    ///< not judged yet
+  std::deque<MeasuredPose> window_;  ///< the last poses that were
+  MotionState state_;
+  std::optional<double> suspected_;     ///< since when windows say that the robot is stuck [s]
+  double expected_ = 0.0;               ///< when motion was expected last [s]
+  std::optional<LegKnowledge> before_;  ///< what was known before the robot was stuck
+  double asked_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace slipwise

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prediction leg by leg, updates by poses, and which poses are believed.
+#include "slipwise/online/pose_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/innovation.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kLongestLeg = 0.5;  // [s] so that a prediction need not begin at the last pose, however old that is
+constexpr double kMostLegs = 60.0;   // [s] before which one leg is as good as many
+constexpr double kUnasked = 10.0;    // [s] of poses that are kept for somebody who asks
+constexpr double kGate = 25.0;       // normalised square beyond which a pose is rejected: one in 10^5
+constexpr int kAgree = 3;            // poses that agree with a rejected one until it is followed
+constexpr double kCreep = 1e-6;      // [m^2/s, rad^2/s] a robot may be moved by what nobody measures
+
+constexpr double kLeastStd = 1e-6;  // [m, rad] of a pose that may be believed,
+constexpr double kMostStd = 1e4;    // and beyond which it says nothing
+
+/// What is stated of a pose, or the nominal where nothing is.
+PoseStd stated(const PoseStd& of_pose, const PoseStd& nominal) {
+  return {.xy = std::clamp(of_pose.xy > 0.0 ? of_pose.xy : nominal.xy, kLeastStd, kMostStd),
+          .yaw = std::clamp(of_pose.yaw > 0.0 ? of_pose.yaw : nominal.yaw, kLeastStd, kMostStd)};
+}
+
+/// Where the leg ends that begins at `start`, on the way to `end` [s].
+double leg_end(double start, double end) {
+  const double gap = end - start;
+  if (gap <= kLongestLeg) {
+    return end;
+  }
+  return gap > kMostLegs ? end - kMostLegs : start + kLongestLeg;
+}
+
+Pose2 vector_pose(const MeasuredPose& pose) { return {pose.x, pose.y, pose.yaw}; }
+
+}  // namespace
+
+void PoseFilter::restart() {
+  timer_.restart();
+  poses_.clear();
+  moments_.clear();
+  first_ = 0;
+  asked_ = -std::numeric_limits<double>::infinity();
+}
+
+void PoseFilter::push(const MeasuredPose& pose) {
+  MeasuredPose with_ratio = pose;
+  with_ratio.std_ratio = accuracy_.ratio(pose.std);
+  const bool late = !timer_.push(pose, settings_.late_factor);
+  poses_.push_back({with_ratio, late});
+  while (!moments_.empty() && moments_.back().main.t >= pose.t) {
+    moments_.pop_back();
+  }
+  if (pose.t - asked_ > kUnasked) {  // nobody asks: the filter begins again once somebody does
+    moments_.clear();
+    while (poses_.front().pose.t < pose.t - kUnasked) {
+      poses_.pop_front();
+      ++first_;
+    }
+  }
+}
+
+void PoseFilter::forget_without(double t) {
+  const auto changes = [&](const Moment& moment) { return moment.inputs_until > t; };
+  if (!moments_.empty()) {  // the first is older than any input that may still come, or begins at a pose
+    moments_.erase(std::find_if(std::next(moments_.begin()), moments_.end(), changes), moments_.end());
+  }
+}
+
+/// p' = p + R(theta) m; the covariance in the frame's axes, and with the lasting errors.
+double PoseFilter::advance(State& state, double t, const Legs& legs) {
+  const MotionLeg leg = legs(state.t, t);
+  if (state.posterior != leg.posterior) {
+    state.with_lasting = LastingColumns::Zero(3, leg.spread.cols());  // what was learned since has errors of its own
+    state.posterior = leg.posterior;
+  }
+  const Pose2 next = compose(state.pose, leg.motion);
+  const Eigen::Matrix3d phi = transition(state.pose, next);
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  turn.topLeftCorner<2, 2>() = rotation(state.pose.theta);
+  const Eigen::Matrix3d crossed = phi * state.with_lasting * leg.by_lasting.transpose() * turn.transpose();
+  state.covariance = (phi * state.covariance * phi.transpose() + crossed + crossed.transpose() +
+                      turn * leg.covariance() * turn.transpose())
+                         .eval();
+  state.covariance = (state.covariance + state.covariance.transpose()).eval() / 2.0;
+  state.covariance.diagonal().array() += kCreep * (t - state.t);
+  state.with_lasting = (phi * state.with_lasting + turn * leg.spread).eval();
+  state.pose = next;
+  state.t = t;
+  return leg.inputs_until;
+}
+
+void PoseFilter::advance(Moment& moment, double t, const Legs& legs) {
+  moment.inputs_until = advance(moment.main, t, legs);
+  if (moment.other) {
+    advance(*moment.other, t, legs);
+  }
+}
+
+PoseFilter::State PoseFilter::started(const MeasuredPose& pose, const PoseNoise& noise) const {
+  State state{.t = pose.t, .pose = vector_pose(pose)};
+  state.covariance = noise.variances(pose.std_ratio).asDiagonal();
+  return state;
+}
+
+PoseFilter::Moment PoseFilter::begun(const MeasuredPose& pose, std::size_t next) const {
+  const PoseNoise noise(stated(pose.std, settings_.nominal));
+  const State state = started(pose, noise);
+  return {.main = state,
+          .inputs_until = -std::numeric_limits<double>::infinity(),  // it begins at what was measured
+          .other = {},
+          .noise = noise,
+          .after_pose = state,
+          .last = pose,
+          .used = pose,
+          .next = next};
+}
+
+/// Variances of what is stated of a pose beyond its scatter: errors that last from one pose to the next.
+Eigen::Vector3d PoseFilter::lasting_error(const MeasuredPose& pose, const PoseNoise& noise) const {
+  const auto [xy, yaw] = stated(pose.std, settings_.nominal);
+  return (Eigen::Vector3d(xy * xy, xy * xy, yaw * yaw) - noise.variances(pose.std_ratio)).cwiseMax(0.0);
+}
+
+/// Whether the pose is within the gate; only then it changes the state.
+bool PoseFilter::correct(State& state, const MeasuredPose& pose, const PoseNoise& noise) const {
+  Eigen::Vector3d innovation = vector_pose(pose).vector() - state.pose.vector();
+  innovation.z() = wrap_angle(innovation.z());
+  const Eigen::Matrix3d r = noise.variances(pose.std_ratio).asDiagonal();
+  const Eigen::Matrix3d s = state.covariance + r;
+  const Eigen::Matrix3d gate = s + Eigen::Matrix3d(lasting_error(pose, noise).asDiagonal());
+  if (!(normalised_square(innovation, gate) <= kGate)) {
+    return false;
+  }
+  const Eigen::Matrix3d gain = kalman_gain(s, state.covariance);
+  const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain;
+  state.pose = Pose2::from_vector(state.pose.vector() + gain * innovation);
+  state.covariance = (left * state.covariance * left.transpose() + gain * r * gain.transpose()).eval();
+  state.with_lasting = (left * state.with_lasting).eval();
+  return true;
+}
+
+/// The motion since the last pose, as measured, minus what was expected.
+void PoseFilter::learn_noise(Moment& moment, const MeasuredPose& pose) const {
+  const Pose2& from = moment.after_pose.pose;
+  const Eigen::Vector3d measured = vector_pose(pose).vector() - vector_pose(*moment.last).vector();
+  Eigen::Vector3d error = measured - (moment.main.pose.vector() - from.vector());
+  error.head<2>() = (rotation(-moment.main.pose.theta) * error.head<2>()).eval();
+  error.z() = wrap_angle(error.z());
+  moment.noise.learn(error, pose.std_ratio);
+}
+
+/// A rejected pose is followed once those after it agree with it.
+void PoseFilter::consider_other(Moment& moment, const MeasuredPose& pose) const {
+  if (!moment.other || !correct(*moment.other, pose, moment.noise)) {
+    moment.other = started(pose, moment.noise);
+    moment.agreed = 0;
+    return;
+  }
+  if (++moment.agreed < kAgree) {
+    return;
+  }
+  moment.main = *moment.other;
+  moment.other.reset();
+  moment.used = pose;
+  moment.noise.pause();
+}
+
+void PoseFilter::use(Moment& moment, const Waiting& waiting) const {
+  const MeasuredPose& pose = waiting.pose;
+  ++moment.next;
+  if (pose.frame != moment.used.frame) {
+    const std::size_t next = moment.next;
+    moment = begun(pose, next);
+    return;
+  }
+  if (waiting.late) {
+    moment.noise.pause();
+    moment.last.reset();
+    moment.after_pose = moment.main;
+    return;
+  }
+  if (moment.last) {
+    learn_noise(moment, pose);
+  }
+  if (correct(moment.main, pose, moment.noise)) {
+    moment.other.reset();
+    moment.agreed = 0;
+    moment.used = pose;
+  } else {
+    consider_other(moment, pose);
+  }
+  moment.last = pose;
+  moment.after_pose = moment.main;
+}
+
+void PoseFilter::work(const Legs& legs) {
+  if (moments_.empty() && !poses_.empty()) {
+    moments_.push_back(begun(poses_.front().pose, first_ + 1));
+  }
+  while (!moments_.empty() && moments_.back().next < first_ + poses_.size()) {
+    Moment moment = moments_.back();
+    const Waiting& waiting = pose_at(moment.next);
+    const double end = leg_end(moment.main.t, waiting.pose.t);
+    advance(moment, end, legs);
+    if (end == waiting.pose.t) {
+      use(moment, waiting);
+    }
+    moments_.push_back(std::move(moment));
+  }
+}
+
+/// Poses before the first moment that is kept are not needed any more.
+void PoseFilter::trim(double t) {
+  while (moments_.size() > 1 && moments_[1].main.t <= t - settings_.keep) {
+    moments_.pop_front();
+  }
+  while (first_ + 1 < moments_.front().next) {
+    poses_.pop_front();
+    ++first_;
+  }
+}
+
+std::optional<SensorPose> PoseFilter::at(double t, const Legs& legs) {
+  asked_ = t;
+  work(legs);
+  if (moments_.empty()) {
+    return std::nullopt;
+  }
+  for (double end = leg_end(moments_.back().main.t, t); end < t; end = leg_end(end, t)) {
+    Moment moment = moments_.back();
+    advance(moment, end, legs);
+    moments_.push_back(std::move(moment));
+    trim(t);
+  }
+  trim(t);
+  const Moment& moment = moments_.back();
+  State now = moment.main;
+  if (t > now.t) {
+    advance(now, t, legs);
+  }
+  Eigen::Matrix3d covariance = now.covariance;
+  covariance.diagonal() += lasting_error(moment.used, moment.noise);
+  return SensorPose{
+      .t = t, .pose = now.pose, .covariance = covariance, .frame = moment.used.frame, .since_pose = t - moment.used.t};
+}
+
+}  // namespace slipwise

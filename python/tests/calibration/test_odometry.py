@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A learner says where the robot is: near the truth, in the frame of the poses, and with its uncertainty."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slipwise import MotionLearner
+
+
+def driven(seconds: float, *, poses_until: float, input_name: str = "command") -> MotionLearner:
+    """A robot that drives 0.5 m/s along a line at 3 rad, and is seen exactly where it is."""
+    learner = MotionLearner(input=input_name)
+    learner.start_run("line")
+    push = learner.push_command if input_name == "command" else learner.push_wheels
+    for t in np.arange(0.0, seconds, 0.05).tolist():
+        push(t, 0.5, 0.0)
+        if t < poses_until:
+            learner.push_pose(t, 0.5 * t * np.cos(3.0), 0.5 * t * np.sin(3.0), 3.0)
+        learner.odometry()
+    return learner
+
+
+def test_there_is_no_odometry_before_the_first_pose() -> None:
+    learner = MotionLearner()
+    learner.start_run("run")
+    assert learner.odometry() is None
+    learner.push_command(0.0, 0.5, 0.0)
+    assert learner.odometry() is None
+
+
+@pytest.mark.parametrize("input_name", ["command", "wheel"])
+def test_the_pose_goes_on_where_poses_stop(input_name: str) -> None:
+    odometry = driven(22.0, poses_until=20.0, input_name=input_name).odometry()
+    assert odometry is not None
+    assert odometry.since_pose == pytest.approx(2.0, abs=1e-6)
+    assert odometry.pose[:2] == pytest.approx(0.5 * odometry.t * np.array([np.cos(3.0), np.sin(3.0)]), abs=0.05)
+    assert odometry.pose[2] == pytest.approx(3.0, abs=0.02)
+    assert odometry.twist == pytest.approx([0.5, 0.0, 0.0], abs=0.02)
+    assert odometry.frame == 0
+
+
+def test_the_covariance_is_one_and_grows_without_poses_along_the_axes_of_the_frame() -> None:
+    seen, later = driven(20.0, poses_until=30.0).odometry(), driven(22.0, poses_until=20.0).odometry()
+    assert seen is not None
+    assert later is not None
+    for odometry in (seen, later):
+        for covariance in (odometry.covariance, odometry.twist_covariance):
+            assert covariance == pytest.approx(covariance.T)
+            assert np.linalg.eigvalsh(covariance)[0] > 0.0
+    assert np.all(np.diag(later.covariance) > np.diag(seen.covariance))
+
+
+def test_a_heading_is_wrapped() -> None:
+    learner = MotionLearner()
+    learner.start_run("run")
+    learner.push_command(0.0, 0.0, 0.0)
+    learner.push_pose(0.01, 0.0, 0.0, 7.0)
+    odometry = learner.odometry()
+    assert odometry is not None
+    assert odometry.pose[2] == pytest.approx(7.0 - 2.0 * np.pi)
+
+
+def test_a_learner_that_was_loaded_begins_again_with_the_next_pose() -> None:
+    learner = MotionLearner.load(driven(10.0, poses_until=30.0).save())
+    assert learner.odometry() is None
+    learner.push_pose(10.0, -4.0, 1.0, 3.0)
+    odometry = learner.odometry()
+    assert odometry is not None
+    assert odometry.pose[:2] == pytest.approx([-4.0, 1.0])
