@@ -95,12 +95,16 @@ MotionState MotionLearner::motion_monitor() {
   const InputBuffer& inputs = stream_.inputs();
   const double inputs_until = inputs.empty() ? -std::numeric_limits<double>::infinity() : inputs.newest();
   const double known_until = std::max(inputs_until, stream_.newest() - settings_.stream.latency);
+  const auto leg_of = [this](const LegKnowledge& known, double start, double end) -> std::optional<MotionLeg> {
+    const bool told = !stream_.inputs().unknown_since(start - kTold, end);
+    return told && seconds_ >= kLearned ? std::optional(leg(known, start, end)) : std::nullopt;
+  };
+  const auto asked = [&inputs](double start, double end) {
+    const InputBuffer::Driven driven = inputs.driven(start, end);
+    return end > start ? (driven.distance + kTurnRadius * driven.angle) / (end - start) : 0.0;
+  };
   return monitor_.at(stream_.newest(), known_until,
-                     {.known = [this](double t) { return leg_knowledge(t); },
-                      .leg = [this](const LegKnowledge& known, double start, double end) -> std::optional<MotionLeg> {
-                        const bool told = !stream_.inputs().unknown_since(start - kTold, end);
-                        return told && seconds_ >= kLearned ? std::optional(leg(known, start, end)) : std::nullopt;
-                      }});
+                     {.known = [this](double t) { return leg_knowledge(t); }, .leg = leg_of, .asked = asked});
 }
 
 }  // namespace slipwise

@@ -20,11 +20,14 @@ constexpr double kMovesFraction = 0.5;    // and by more it moves
 constexpr double kMisfit = 0.1;           // of the expected motion that a learned model may be off for a moment
 constexpr double kVisible = 25.0;         // normalised square of the expected motion from which on its lack would show
 constexpr double kOdds = 4.0;             // logarithm of the odds at which a window says that the robot is stuck
-constexpr double kDof = 8.0;              // of the Student t by which explanations are weighed
-constexpr double kExplained = 25.0;       // normalised square beyond which being stuck does not explain a window either
-constexpr double kConfirmed = 0.2;        // [s] for which windows must say so
-constexpr double kForgotten = 2.0;        // [s] without expected motion, after which nobody knows
-constexpr double kUnasked = 3.0;          // [s] of poses that are kept for somebody who asks
+constexpr double kStillAsked =
+    0.5;                         // of the window's mean input, below which the robot may have stopped as it was told
+constexpr double kLately = 0.1;  // [s] of the last inputs
+constexpr double kDof = 8.0;     // of the Student t by which explanations are weighed
+constexpr double kExplained = 25.0;  // normalised square beyond which being stuck does not explain a window either
+constexpr double kConfirmed = 0.2;   // [s] for which windows must say so
+constexpr double kForgotten = 2.0;   // [s] without expected motion, after which nobody knows
+constexpr double kUnasked = 3.0;     // [s] of poses that are kept for somebody who asks
 
 double log_student(double square, const Eigen::Matrix3d& scale) {
   return -0.5 * std::log(scale.determinant()) - 0.5 * (kDof + 3.0) * std::log1p(square / kDof);
@@ -142,7 +145,12 @@ void MotionMonitor::take(const MeasuredPose& pose, const Model& model) {
   if (!leg) {
     state_.fraction.reset();
   }
-  follow(leg ? judge(*leg, first, pose) : Finding::Unknown, pose.t, known);
+  Finding finding = leg ? judge(*leg, first, pose) : Finding::Unknown;
+  const bool asked = model.asked(pose.t - kLately, pose.t) >= kStillAsked * model.asked(first.t, pose.t);
+  if (finding == Finding::Stuck && !asked) {
+    finding = Finding::Unknown;
+  }
+  follow(finding, pose.t, known);
 }
 
 MotionState MotionMonitor::at(double t, double known_until, const Model& model) {

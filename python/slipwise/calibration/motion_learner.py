@@ -180,10 +180,11 @@ class MotionLearner:
         """Return where the robot is at the newest measurement; None before the first pose of the run.
 
         Measured poses correct what the learned motion predicts since the last of them: slip, lag and delay as
-        they are known, with their uncertainty. A pose that comes late takes effect at its stamp; lone poses far
-        away move nothing. It changes nothing of what is learned, and it is not saved: a learner that was loaded
-        begins again with the next pose, since the robot may have been moved meanwhile. Call it at least every few
-        seconds: after ten seconds of poses that nobody asked about, it begins again within them.
+        they are known, with their uncertainty. A pose that comes late takes effect at its stamp; lone poses
+        far away move nothing. It changes nothing of what is learned, and it is not saved: a learner that was
+        loaded begins again with the next pose, since the robot may have been moved meanwhile. Call it at
+        least every few seconds: after ten seconds of poses that nobody asked about, it begins again within
+        them.
         """
         found = self._core.odometry()
         return None if found is None else odometry_of(found)
@@ -191,10 +192,11 @@ class MotionLearner:
     def motion_monitor(self) -> MotionState:
         """Return whether the robot moves as its inputs and the learned model say it must.
 
-        It is stuck where the poses of the last 0.6 s are explained by a robot that moves by a fifth of that at
-        most, far better than by one that moves as expected, and this for 0.2 s. Nothing is said where less than
-        20 s were learned, inputs are not known, or too little motion is expected beside the noise of the poses.
-        It changes nothing of what is learned, and it is not saved. Call it several times a second.
+        It is stuck where the poses of the last 0.6 s are explained by a robot that moves by a fifth of that
+        at most, far better than by one that moves as expected, and this for 0.2 s. Nothing is said where less
+        than 20 s were learned, inputs are not known or have just ended, or too little motion is expected
+        beside the noise of the poses. It changes nothing of what is learned, and it is not saved. Call it
+        several times a second.
         """
         state = self._core.motion_monitor()
         return MotionState(stuck=state.stuck, fraction=state.fraction, since=state.since)

@@ -35,7 +35,8 @@ def test_the_pose_goes_on_where_poses_stop(input_name: str) -> None:
     odometry = driven(22.0, poses_until=20.0, input_name=input_name).odometry()
     assert odometry is not None
     assert odometry.since_pose == pytest.approx(2.0, abs=1e-6)
-    assert odometry.pose[:2] == pytest.approx(0.5 * odometry.t * np.array([np.cos(3.0), np.sin(3.0)]), abs=0.05)
+    along = 0.5 * odometry.t * np.array([np.cos(3.0), np.sin(3.0)])
+    assert odometry.pose[:2] == pytest.approx(along, abs=0.05)
     assert odometry.pose[2] == pytest.approx(3.0, abs=0.02)
     assert odometry.twist == pytest.approx([0.5, 0.0, 0.0], abs=0.02)
     assert odometry.frame == 0
@@ -60,6 +61,29 @@ def test_a_heading_is_wrapped() -> None:
     odometry = learner.odometry()
     assert odometry is not None
     assert odometry.pose[2] == pytest.approx(7.0 - 2.0 * np.pi)
+
+
+@pytest.mark.parametrize("input_name", ["command", "wheel"])
+def test_a_robot_that_stops_although_it_is_told_to_drive_is_stuck_until_it_drives(input_name: str) -> None:
+    random = np.random.default_rng(5)
+    learner = MotionLearner(input=input_name)
+    learner.start_run("line")
+    push = learner.push_command if input_name == "command" else learner.push_wheels
+    x, states = 0.0, {}
+    for t in np.arange(0.0, 48.0, 0.05).tolist():
+        speed = 0.4 + 0.2 * np.sin(0.7 * t)
+        push(t, speed, 0.0)
+        x += 0.0 if 40.0 <= t < 45.0 else 0.9 * speed * 0.05
+        learner.push_pose(t, *(random.normal((x, 0.0, 0.0), 0.005).tolist()))
+        states[round(t, 2)] = learner.motion_monitor()
+    stuck = [t for t, state in states.items() if state.stuck]
+    assert 40.0 < stuck[0] < 41.0
+    assert 45.0 < stuck[-1] < 46.0
+    assert states[43.0].since == pytest.approx(stuck[0], abs=0.3)
+    assert states[43.0].fraction == pytest.approx(0.0, abs=0.1)
+    assert states[39.5].fraction == pytest.approx(1.0, abs=0.15)
+    assert states[39.5].since is None
+    assert states[1.0].fraction is None
 
 
 def test_a_learner_that_was_loaded_begins_again_with_the_next_pose() -> None:

@@ -27,10 +27,12 @@ struct MotionState {
 /// before is kept, for the learner soon takes what it sees for slip.
 class MotionMonitor {
  public:
-  /// What is known at a time, and what it expects of a stretch; nothing where the inputs are not known.
+  /// What is known at a time, what it expects of a stretch, nothing where the inputs are not known, and how fast the
+  /// inputs of a stretch are [m/s, turns included].
   struct Model {
     std::function<LegKnowledge(double t)> known;
     std::function<std::optional<MotionLeg>(const LegKnowledge& known, double start, double end)> leg;
+    std::function<double(double start, double end)> asked;
   };
 
   /// `nominal` is of poses that come without standard deviations; `late_factor` as in `SegmentRules`.
