@@ -279,10 +279,10 @@ void bind_online(nb::module_& m) {
       .def(
           "push_pose",
           [](MotionLearner& learner, double t, double x, double y, double yaw, long frame, double std_xy,
-             double std_yaw) {
-            learner.push_pose({.t = t, .x = x, .y = y, .yaw = yaw, .frame = frame, .std = {std_xy, std_yaw}});
+             double std_yaw, bool learned) {
+            learner.push_pose({.t = t, .x = x, .y = y, .yaw = yaw, .frame = frame, .std = {std_xy, std_yaw}}, learned);
           },
-          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0)
+          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true)
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
           "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,

@@ -132,9 +132,9 @@ void MotionLearner::push_attitude(double t, double roll, double pitch) {
   work();
 }
 
-void MotionLearner::push_pose(const MeasuredPose& pose) {
+void MotionLearner::push_pose(const MeasuredPose& pose, bool learned) {
   see_stamp(pose.t);
-  if (stream_.push_pose(pose)) {
+  if (stream_.push_pose(pose, learned)) {
     pose_filter_.push(pose);
     monitor_.push(pose);
   }

@@ -114,6 +114,8 @@ class MotionLearner:
         std_xy: float | None = None,
         std_yaw: float | None = None,
         frame: int = 0,
+        *,
+        learned: bool = True,
     ) -> None:
         """Take a measured pose: its stamp [s], x, y [m], yaw [rad]; comparable in one frame alone.
 
@@ -126,8 +128,10 @@ class MotionLearner:
                 beside others. How large errors are on the whole is learned.
             std_yaw: the same of the heading [rad].
             frame: poses of different frames are not compared.
+            learned: whether slip may be learned from it; else it serves odometry alone, and nothing is
+                joined across it.
         """
-        self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0)
+        self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0, learned)
 
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
@@ -223,6 +227,11 @@ class MotionLearner:
             SettingsError: nothing was learned yet.
         """
         return self.judged_model(limits=limits)[0]
+
+    @property
+    def settings(self) -> Settings:
+        """What is learned and how."""
+        return self._settings
 
     @property
     def newest(self) -> float:

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from slipwise.calibration import Settings
     from slipwise.calibration.live_table import LiveTable
     from slipwise.live.build import Built
-    from slipwise.live.node import Watcher
     from slipwise.live.transport import Transport
+    from slipwise.live.watch.watcher import Watcher
     from slipwise.logs import Log, LogOptions
     from slipwise.models import Model
 
@@ -147,6 +147,7 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
         SlipwiseError: an address or a file cannot be used, or a package is missing.
     """
     found: list[Watcher] = []
+    headlines = []
     with contextlib.ExitStack() as undo:
         if show.web is not None:
             from slipwise.live.watch.web_page import WebPage
@@ -154,20 +155,31 @@ def watchers_for(show: Show, table: LiveTable) -> list[Watcher]:
             page = WebPage(host=show.host, port=show.web)
             undo.callback(page.close)
             found.append(page)
-            show.say(f"page: {page.url}")
+            headlines.append(f"page: {page.url}")
         if show.foxglove is not None:
             from slipwise.live.watch.foxglove_server import FoxgloveServer
 
-            server = FoxgloveServer(host=show.host, port=show.foxglove)
+            server = FoxgloveServer(host=show.host, port=show.foxglove, name=table.name)
             undo.callback(server.close)
             found.append(server)
-            show.say(f"Foxglove, Lichtblick: {server.url}")
+            headlines.append(f"Foxglove, Lichtblick: {server.url}")
         if show.record is not None:
             from slipwise.live.watch.recorder import Recorder
 
             found.append(Recorder(show.record, name=table.name))
+            undo.callback(found[-1].close)
+        if not show.quiet:
+            found.append(_terminal(show, headlines))
         undo.pop_all()
     return found
+
+
+def _terminal(show: Show, headlines: list[str]) -> Watcher:
+    from rich.console import Console
+
+    from slipwise.live.watch.terminal import terminal_watcher
+
+    return terminal_watcher(Console(markup=False, emoji=False), show.say, headlines=headlines)
 
 
 def model_of_replay(built: Built, log: Log | None) -> Model:

@@ -18,10 +18,11 @@ from slipwise.live.gates import Gates, rules_for
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
-from slipwise.live.node import LiveNode, NodeParts, Watcher
+from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
 from slipwise.live.status import Identity
 from slipwise.live.transport import Transport
+from slipwise.live.watch.watcher import Watcher
 from slipwise.models import Model, load_model
 
 

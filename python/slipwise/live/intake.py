@@ -18,7 +18,6 @@ class Intake:
         self._input = Command if input_name == "command" else Wheels
         self._clock = ClockWatch()
         self._frames: dict[str, int] = {}
-        self._frame_epoch = 0  # grows where poses before and after must not be compared
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
         self.why_not = ""  # nothing is learned now
@@ -75,20 +74,21 @@ class Intake:
     def _push_pose(self, pose: Pose) -> None:
         self.newest_pose = pose
         self._follow_gates(pose.t)
-        if self.why_not:
+        learned = not self.why_not
+        if not learned:
             self._said.count(f"poses not learned from: {self.why_not}")
-            return
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
-        number = self._frames.setdefault(f"{self._frame_epoch}/{pose.frame}", len(self._frames))
-        self._learner.push_pose(pose.t, pose.x, pose.y, pose.yaw, pose.std_xy, pose.std_yaw, number)
+        number = self._frames.setdefault(pose.frame, len(self._frames))
+        self._learner.push_pose(
+            pose.t, pose.x, pose.y, pose.yaw, pose.std_xy, pose.std_yaw, number, learned=learned
+        )
 
     def _follow_gates(self, t: float) -> None:
-        """Where the gates open again, what follows is not compared with what was before they closed."""
+        """Say when the gates close and open; the learner joins nothing across what it did not learn."""
         why = self._gates.why(t)
         if why:
             self._said.begins(t, "gates", f"nothing is learned: {why}")
         elif self.why_not:
-            self._frame_epoch += 1
             self._said.ends(t, "gates", "learning goes on")
         self.why_not = why

@@ -10,7 +10,6 @@ import threading
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from slipwise.live.said import Said
 from slipwise.live.samples import Override, Pose, Request, RunStart, Sample
 from slipwise.live.status import DrivenPath, Identity, Now, status_of
 from slipwise.live.transport import Transport
+from slipwise.live.watch.watcher import Watcher
 
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
@@ -36,16 +36,6 @@ STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
 SAVE_EVERY = 60.0  # s of the wall clock
 AHEAD = 2.0  # s that the present command is predicted
-
-
-class Watcher(Protocol):
-    """Sees all that the node gives."""
-
-    def take(self, output: Output) -> None:
-        """Take an output; neither waits nor raises."""
-
-    def close(self) -> None:
-        """End."""
 
 
 @dataclass(frozen=True)
@@ -214,8 +204,7 @@ class LiveNode:
         now = time.monotonic()
         if now >= self._next["notices"]:
             self._next["notices"] = now + NOTICES_EVERY
-            for text in self._parts.transport.notices():
-                self._parts.said.note(self._parts.intake.newest, text)
+            self._take_notices()
         for note in self._parts.said.take_new():
             self._publish(note)
         if now >= self._next["status"]:
@@ -224,6 +213,13 @@ class LiveNode:
         if now >= self._next["save"]:
             self._next["save"] = now + SAVE_EVERY
             self.save()
+
+    def _take_notices(self) -> None:
+        texts = self._parts.transport.notices()
+        for watcher in self._parts.watchers:
+            texts += watcher.notices()
+        for text in texts:
+            self._parts.said.note(self._parts.intake.newest, text)
 
     def _publish_status(self) -> None:
         parts = self._parts
@@ -267,6 +263,7 @@ class LiveNode:
         parts = self._parts
         parts.learning.take(parts.intake.events())
         self.save()
+        self._take_notices()
         for note in parts.said.take_new():
             self._publish(note)
         self._publish_status()

@@ -47,9 +47,12 @@ def path_ahead(
         SettingsError: nothing was measured yet, or the commands or the horizon are impossible.
     """
     ahead = learner.predict(commands, horizon=horizon)
-    x, y, yaw = odometry.pose.tolist()
-    start = _core.Pose2(x, y, yaw)
-    placed = [_core.compose(start, _core.Pose2(*pose)).vector() for pose in ahead.poses.tolist()]
+    sensor = _core.Pose2(*learner.settings.sensor_extrinsics.pose)
+    start = _core.compose(_core.Pose2(*odometry.pose.tolist()), sensor)
+    placed = [
+        _core.compose(_core.compose(start, _core.Pose2(*pose)), _core.inverse(sensor)).vector()
+        for pose in ahead.poses.tolist()
+    ]
     return Path(
         t=np.concatenate(([ahead.start], ahead.t)),
         frame=odometry.frame,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from slipwise.live.diagnostics import Diagnostic, diagnostics_of, note_diagnostic
-from slipwise.live.outputs import Floats, ModelText, Note, Odometry, Output, Path, Status
+from slipwise.live.outputs import AppliedParameters, Floats, ModelText, Note, Odometry, Output, Path, Status
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -105,6 +105,8 @@ class RosMessages:
                 return [self._string("model", output.t, output.text)]
             case Note():
                 return [self._diagnostics(output.t, (note_diagnostic(output, self._name),), "")]
+            case AppliedParameters():
+                return []  # for the node that it names alone
 
     def _odometry(self, now: Odometry) -> list[RosMessage]:
         stamp = stamp_ns(now.t)

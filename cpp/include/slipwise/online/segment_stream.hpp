@@ -75,7 +75,7 @@ class SegmentStream {
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
   /// Whether it may be used; otherwise it is rejected.
-  bool push_pose(const MeasuredPose& pose);
+  bool push_pose(const MeasuredPose& pose, bool learned = true);
 
   /// What became complete since the last call, in the order in which it is to be learned.
   std::vector<StreamItem> take_items();
@@ -111,7 +111,7 @@ class SegmentStream {
       self.wheels_ever_, self.range_);
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
       self.wheel_timer_, self.learned_, self.slip_);
-    a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_);
+    a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_, self.learned_last_);
   }
 
  private:
@@ -165,6 +165,8 @@ class SegmentStream {
   std::vector<SegmentCutter> targets_;
   std::vector<StreamItem> items_;
   std::vector<Rejected> rejected_;
+  long breaks_ = 0;           ///< times that poses were not learned from
+  bool learned_last_ = true;  ///< whether the last pose was
 };
 
 }  // namespace slipwise
