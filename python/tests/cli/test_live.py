@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise live` as a user runs it: as a process, with signals, a pipe and a settings file."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from sample_logs import simulated_log
+from scripted_node import SLIP
+
+import slipwise as sw
+from slipwise.cli.main import run
+
+SLIPWISE = (sys.executable, "-m", "slipwise")
+GRACE = 2.0  # s to end after a signal, and some for a busy machine
+BUSY = 5.0
+
+
+@pytest.fixture(scope="module")
+def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("live") / "drive.csv"
+    sw.save_log(simulated_log(SLIP), path)
+    return path
+
+
+def test_a_log_is_replayed_into_the_model_that_calibrate_writes(
+    drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    live, log = tmp_path / "live.yaml", tmp_path / "calibrate.yaml"
+    assert run(["live", "--replay", str(drive), "--rate", "0", "-o", str(live)]) == 0
+    assert "estimated" in capsys.readouterr().out
+    os.chdir(tmp_path)
+    assert run(["calibrate", str(drive), "--no-report", "-o", str(log)]) == 0
+    assert live.read_bytes() == log.read_bytes()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_ends_it_with_the_cache_written(drive: Path, tmp_path: Path, number: signal.Signals) -> None:
+    cache = tmp_path / "cache"
+    command = [*SLIPWISE, "live", "--replay", str(drive), "--rate", "5", "--cache", str(cache)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        time.sleep(8.0)
+        process.send_signal(number)
+        began = time.monotonic()
+        _, error = process.communicate(timeout=30.0)
+        assert time.monotonic() - began < GRACE + BUSY
+    assert process.returncode == 0
+    assert error == ""
+    assert (cache / "robot-command.state").stat().st_size > 10_000
+
+
+@pytest.mark.slow
+def test_the_next_start_goes_on_from_the_cache(drive: Path, tmp_path: Path) -> None:
+    common = ["live", "--replay", str(drive), "--rate", "0", "--cache", str(tmp_path), "--input", "wheel"]
+    first = subprocess.run([*SLIPWISE, *common], capture_output=True, text=True, check=True)
+    assert "goes on from" not in first.stdout
+    second = subprocess.run([*SLIPWISE, *common], capture_output=True, text=True, check=True)
+    assert "goes on from" in second.stdout
+    assert (tmp_path / "robot-wheel.yaml").exists()
+
+
+@pytest.mark.slow
+def test_lines_on_a_pipe_are_answered_with_lines(drive: Path) -> None:
+    (only,) = sw.open_log(drive).runs
+    wheels = only.wheels
+    assert wheels is not None
+    poses = only.poses
+    rows = zip(wheels.t, wheels.v, wheels.omega, poses.x, poses.y, poses.yaw, strict=True)
+    lines = ["t,odo_v,odo_omega,x,y,yaw", *(",".join(repr(float(value)) for value in row) for row in rows)]
+    lines.append(json.dumps({"predict": {"horizon": 1.0, "commands": [[float(wheels.t[-1]), 0.5, 0.0]]}}))
+    done = subprocess.run(
+        [*SLIPWISE, "live", "--transport", "stdin", "--results", "-"],
+        input="\n".join(lines),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    said = [json.loads(line) for line in done.stdout.splitlines()]
+    assert done.stderr == ""
+    assert any("prediction" in each for each in said)
+    assert any("model" in each for each in said)
+    assert said[-1]["validity"] == "estimated"
+
+
+def test_settings_stand_in_a_file_and_the_command_line_goes_before_it(drive: Path, tmp_path: Path) -> None:
+    settings = tmp_path / "live.toml"
+    settings.write_text(f'[live]\nvehicle = "from-file"\ncache = "{tmp_path}/cache"\ninput = "wheel"\n')
+    given = ["live", "--replay", str(drive), "--rate", "0", "--settings", str(settings), "--quiet"]
+    assert run(given) == 0
+    assert run([*given, "--vehicle", "from-line"]) == 0
+    assert sorted(path.name for path in (tmp_path / "cache").glob("*.state")) == [
+        "from-file-wheel.state",
+        "from-line-wheel.state",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--transport", "carrier-pigeon"], "transport"),
+        (["--apply", "always"], "apply"),
+        (["--name", "two words"], "name"),
+        (["--domain", "999"], "domain"),
+        (["--replay", "nowhere.csv"], "no such file"),
+        (["--transport", "udp", "--address", "nowhere"], "cannot listen"),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    options: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["live", *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line

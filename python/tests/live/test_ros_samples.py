@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Messages become the numbers that a bag's reader takes out of them."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace as Made
+
+import numpy as np
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
+from slipwise.live.samples import Command, Pose, Wheels
+from slipwise.live.stamps import Stamps
+from slipwise.logs.messages import ACKERMANN, JOINT_STATE, ODOMETRY, POSE_STAMPED, TWIST, TWIST_STAMPED
+from slipwise.logs.options import LogOptions
+
+
+def header(t: float = 2.0, frame: str = "map") -> Made:
+    return Made(stamp=Made(sec=int(t), nanosec=round((t - int(t)) * 1e9)), frame_id=frame)
+
+
+def twist(v: float, vy: float, omega: float) -> Made:
+    return Made(linear=Made(x=v, y=vy, z=0.0), angular=Made(x=0.0, y=0.0, z=omega))
+
+
+def pose(x: float, y: float, yaw: float) -> Made:
+    q = Made(x=0.0, y=0.0, z=math.sin(yaw / 2), w=math.cos(yaw / 2))
+    return Made(position=Made(x=x, y=y, z=0.0), orientation=q)
+
+
+def odometry(variance: float) -> Made:
+    covariance = np.zeros(36)
+    covariance[[0, 7, 35]] = variance
+    return Made(
+        header=header(),
+        pose=Made(pose=pose(1.0, 2.0, 0.5), covariance=covariance),
+        twist=Made(twist=twist(0.4, 0.1, 0.2)),
+    )
+
+
+def test_commands_of_every_type_are_scaled() -> None:
+    options = LogOptions(command_scale=(2.0, -1.0), wheelbase=2.0)
+    assert to_command(TWIST, options)(twist(0.5, 0.1, 0.2), 1.0) == Command(1.0, 1.0, -0.2, 0.2)
+    stamped = Made(twist=twist(0.5, 0.0, 0.2))
+    assert to_command(TWIST_STAMPED, options)(stamped, 1.0) == Command(1.0, 1.0, -0.2)
+    car = to_command(ACKERMANN, options)(Made(drive=Made(speed=1.0, steering_angle=0.3)), 1.0)
+    assert car is not None
+    assert car.omega == pytest.approx(-math.tan(0.3) / 2.0)
+    with pytest.raises(SettingsError, match="--wheelbase"):
+        to_command(ACKERMANN, LogOptions())
+
+
+def test_an_odometry_is_wheels_or_a_pose_with_its_deviations() -> None:
+    assert to_wheels(ODOMETRY, LogOptions())(odometry(0.0), 2.0) == Wheels(2.0, 0.4, 0.2, 0.1)
+    found = to_pose(ODOMETRY, LogOptions(pose_yaw_offset=0.1))(odometry(0.04), 2.0)
+    assert found == Pose(2.0, 1.0, 2.0, pytest.approx(0.6), pytest.approx(0.2), pytest.approx(0.2), "map")
+    unknown = to_pose(ODOMETRY, LogOptions())(odometry(0.0), 2.0)
+    assert unknown is not None
+    assert unknown.std_xy is None
+
+
+def test_a_pose_without_a_rotation_is_none() -> None:
+    wrong = Made(header=header(), pose=pose(1.0, 2.0, 0.5))
+    wrong.pose.orientation.w = 7.0
+    assert to_pose(POSE_STAMPED, LogOptions())(wrong, 2.0) is None
+
+
+def test_joint_states_become_a_twist_by_the_sizes_of_the_robot() -> None:
+    options = LogOptions(wheel_radius=0.1, wheel_separation=0.5)
+    convert = to_wheels(JOINT_STATE, options)
+    names = ["left_wheel", "right_wheel"]
+    found = convert(Made(name=names, velocity=[1.0, 3.0], position=[0.0, 0.0]), 1.0)
+    assert found == Wheels(1.0, pytest.approx(0.2), pytest.approx(0.4))
+    with pytest.raises(SettingsError, match="--wheel-radius"):
+        to_wheels(JOINT_STATE, LogOptions())
+
+
+def test_joints_without_speeds_are_differences_of_their_angles() -> None:
+    convert = to_wheels(JOINT_STATE, LogOptions(wheel_radius=0.1, wheel_separation=0.5))
+    names = ["left_wheel", "right_wheel"]
+    assert convert(Made(name=names, velocity=[], position=[0.0, 0.0]), 1.0) is None
+    found = convert(Made(name=names, velocity=[], position=[0.1, 0.3]), 1.1)
+    assert found == Wheels(1.1, pytest.approx(0.2), pytest.approx(0.4))
+
+
+def fix(latitude: float, status: int = 0) -> Made:
+    return Made(
+        header=header(frame="gps"),
+        latitude=latitude,
+        longitude=11.0,
+        altitude=500.0,
+        status=Made(status=status),
+        position_covariance=np.diag([0.01, 0.01, 0.04]).ravel(),
+        position_covariance_type=2,
+    )
+
+
+def test_fixes_are_poses_with_the_heading_of_an_imu_of_the_same_time() -> None:
+    fixes = FixPoses(LogOptions())
+    assert fixes.take_fix(fix(48.0), 1.0) is None  # no heading yet
+    q = Made(x=0.0, y=0.0, z=math.sin(0.4), w=math.cos(0.4))
+    fixes.take_imu(Made(orientation=q, orientation_covariance=np.zeros(9)), 1.9)
+    found = fixes.take_fix(fix(48.0 + 1e-5), 2.0)
+    assert found is not None
+    assert (found.x, found.y) == (pytest.approx(0.0, abs=1e-6), pytest.approx(1.112, abs=1e-2))
+    assert found.yaw == pytest.approx(0.8)
+    assert found.std_xy == pytest.approx(0.1)
+    assert fixes.take_fix(fix(48.0, status=-1), 2.0) is None
+    assert fixes.take_fix(fix(48.0), 9.0) is None  # the heading is old
+
+
+def test_stamps_are_those_of_headers_and_others_are_dated_by_their_clock() -> None:
+    stamps, no_header = Stamps(), twist(1.0, 0.0, 0.0)
+    assert stamps.of(no_header, 1000.0) == 1000.0
+    for k in range(50):  # headers of a clock that is 700 s behind, delivered 10 to 59 ms late
+        assert stamps.of(Made(header=header(300.0 + k)), 1000.01 + k + 0.001 * k) == 300.0 + k
+    assert stamps.of(no_header, 1100.0) == pytest.approx(399.99)
+    stamps.simulated = True
+    stamps.take_clock(Made(sec=12, nanosec=500_000_000))
+    assert stamps.of(no_header, 1100.0) == 12.5
