@@ -146,7 +146,8 @@ void MotionMonitor::take(const MeasuredPose& pose, const Model& model) {
     state_.fraction.reset();
   }
   Finding finding = leg ? judge(*leg, first, pose) : Finding::Unknown;
-  const bool asked = model.asked(pose.t - kLately, pose.t) >= kStillAsked * model.asked(first.t, pose.t);
+  const double lately = model.asked(pose.t - kLately, pose.t);
+  const bool asked = lately > 0.0 && lately >= kStillAsked * model.asked(first.t, pose.t);
   if (finding == Finding::Stuck && !asked) {
     finding = Finding::Unknown;
   }

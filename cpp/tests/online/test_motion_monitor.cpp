@@ -133,6 +133,20 @@ TEST_CASE("a robot that is not told to move, or whose inputs are unknown, is not
   }
 }
 
+TEST_CASE("a robot that stops at once when it is told to, where it lagged before, is not stuck") {
+  const TrueRobot robot = true_robot({.seconds = 40.0, .pose_xy = 0.005, .pose_yaw = 0.0025});
+  MotionLearner learner(learner_settings(true));
+  learner.start_run();
+  push_within(learner, robot.run, {0.0, 40.0}, {}, [&](double) { learner.motion_monitor(); });
+  const MeasuredPose last = robot.run.poses.back();
+  for (int i = 0; i < 60; ++i) {
+    const double t = 40.01 + 0.05 * i;
+    learner.push_command(t, {0.0, 0.0, 0.0});
+    learner.push_pose({.t = t + 0.001, .x = last.x, .y = last.y, .yaw = last.yaw});
+    CHECK_FALSE(learner.motion_monitor().stuck);
+  }
+}
+
 TEST_CASE("asking whether the robot moves changes nothing of what is learned") {
   const TrueRobot robot = true_robot({.seconds = 40.0});
   MotionLearner silent(learner_settings(true));

@@ -31,9 +31,7 @@ class MotionState:
     """How the robot moves beside what its inputs and the learned model say it must."""
 
     stuck: bool  # it does not move although it must
-    fraction: (
-        float | None
-    )  # of the expected motion of the last 0.6 s; None where too little is expected to tell
+    fraction: float | None  # of the motion expected of the last 0.6 s; None where too little to tell
     since: float | None  # s, stamp at which it was first seen to be stuck; None where it is not
 
 

@@ -61,6 +61,22 @@ def test_the_live_learner_learns_what_calibrate_learns(tmp_path: Path) -> None:
     assert f"{model.segments} segments; 5 s ahead" in said
 
 
+def test_the_robot_learns_goes_on_from_its_state_and_sets_a_broken_one_aside(tmp_path: Path) -> None:
+    program = built(ROOT / "examples/robot", tmp_path) / "robot"
+    state = tmp_path / "learner.state"
+    first = run(program, state, "60").splitlines()
+    assert len(first) == 60
+    assert "lon.V" not in first[0]
+    second = run(program, state, "60").splitlines()
+    assert second[0] == f"goes on from {state}"
+    assert "lon.V -0.1" in second[1]
+    off = [float(line.split(" m off")[0].split()[-1]) for line in second[1:]]
+    assert max(off) < 0.1
+    assert not any("stuck" in line for line in first + second)
+    state.write_bytes(b"broken")
+    assert run(program, state, "1").splitlines()[0].startswith(f"{state} is left aside: ")
+
+
 def eigen_prefix() -> Path:
     import cmeel
 
