@@ -21,8 +21,15 @@ constexpr double kGate = 25.0;       // normalised square beyond which a pose is
 constexpr int kAgree = 3;            // poses that agree with a rejected one until it is followed
 constexpr double kCreep = 1e-6;      // [m^2/s, rad^2/s] a robot may be moved by what nobody measures
 
-constexpr double kLeastStd = 1e-6;  // [m, rad] of a pose that may be believed,
-constexpr double kMostStd = 1e4;    // and beyond which it says nothing
+constexpr double kUnmodelled = 1e-3;    // [m^2/s, rad^2/s] per misfit, of motion that the inputs say nothing of
+constexpr double kFreedom = 3.0;        // mean of a normalised square that is as it should be
+constexpr double kMisfitMemory = 50.0;  // poses
+constexpr double kMostMisfit = 100.0;
+constexpr double kReach = 1.5;        // times the expected motion, within which a robot may be after a rejected pose,
+constexpr double kReachNear = 0.3;    // [m]
+constexpr double kReachTurned = 0.5;  // [rad] and this
+constexpr double kLeastStd = 1e-6;    // [m, rad] of a pose that may be believed,
+constexpr double kMostStd = 1e4;      // and beyond which it says nothing
 
 /// What is stated of a pose, or the nominal where nothing is.
 PoseStd stated(const PoseStd& of_pose, const PoseStd& nominal) {
@@ -40,6 +47,14 @@ double leg_end(double start, double end) {
 }
 
 Pose2 vector_pose(const MeasuredPose& pose) { return {pose.x, pose.y, pose.yaw}; }
+
+/// Whether a robot that was at `from` can be at `to`, where it was expected at `expected`.
+bool within_reach(const MeasuredPose& from, const Pose2& expected, const MeasuredPose& to) {
+  const double path = std::hypot(expected.x - from.x, expected.y - from.y);
+  const double turn = std::abs(wrap_angle(expected.theta - from.yaw));
+  return std::hypot(to.x - from.x, to.y - from.y) <= kReach * path + kReachNear &&
+         std::abs(wrap_angle(to.yaw - from.yaw)) <= kReach * turn + kReachTurned;
+}
 
 }  // namespace
 
@@ -76,7 +91,7 @@ void PoseFilter::forget_without(double t) {
 }
 
 /// p' = p + R(theta) m; the covariance in the frame's axes, and with the lasting errors.
-double PoseFilter::advance(State& state, double t, const Legs& legs) {
+double PoseFilter::advance(State& state, double t, const Legs& legs, double misfit) {
   const MotionLeg leg = legs(state.t, t);
   if (state.posterior != leg.posterior) {
     state.with_lasting = LastingColumns::Zero(3, leg.spread.cols());  // what was learned since has errors of its own
@@ -88,20 +103,20 @@ double PoseFilter::advance(State& state, double t, const Legs& legs) {
   turn.topLeftCorner<2, 2>() = rotation(state.pose.theta);
   const Eigen::Matrix3d crossed = phi * state.with_lasting * leg.by_lasting.transpose() * turn.transpose();
   state.covariance = (phi * state.covariance * phi.transpose() + crossed + crossed.transpose() +
-                      turn * leg.covariance() * turn.transpose())
+                      misfit * turn * leg.covariance() * turn.transpose())
                          .eval();
   state.covariance = (state.covariance + state.covariance.transpose()).eval() / 2.0;
-  state.covariance.diagonal().array() += kCreep * (t - state.t);
-  state.with_lasting = (phi * state.with_lasting + turn * leg.spread).eval();
+  state.covariance.diagonal().array() += (kCreep + kUnmodelled * (misfit - 1.0)) * (t - state.t);
+  state.with_lasting = (phi * state.with_lasting + misfit * turn * leg.spread).eval();
   state.pose = next;
   state.t = t;
   return leg.inputs_until;
 }
 
 void PoseFilter::advance(Moment& moment, double t, const Legs& legs) {
-  moment.inputs_until = advance(moment.main, t, legs);
+  moment.inputs_until = advance(moment.main, t, legs, moment.misfit);
   if (moment.other) {
-    advance(*moment.other, t, legs);
+    advance(*moment.other, t, legs, moment.misfit);
   }
 }
 
@@ -130,22 +145,23 @@ Eigen::Vector3d PoseFilter::lasting_error(const MeasuredPose& pose, const PoseNo
   return (Eigen::Vector3d(xy * xy, xy * xy, yaw * yaw) - noise.variances(pose.std_ratio)).cwiseMax(0.0);
 }
 
-/// Whether the pose is within the gate; only then it changes the state.
-bool PoseFilter::correct(State& state, const MeasuredPose& pose, const PoseNoise& noise) const {
+/// Normalised square of the innovation.
+double PoseFilter::distance(const State& state, const MeasuredPose& pose, const PoseNoise& noise) const {
+  Eigen::Vector3d innovation = vector_pose(pose).vector() - state.pose.vector();
+  innovation.z() = wrap_angle(innovation.z());
+  const Eigen::Vector3d variances = noise.variances(pose.std_ratio) + lasting_error(pose, noise);
+  return normalised_square(innovation, state.covariance + Eigen::Matrix3d(variances.asDiagonal()));
+}
+
+void PoseFilter::correct(State& state, const MeasuredPose& pose, const PoseNoise& noise) {
   Eigen::Vector3d innovation = vector_pose(pose).vector() - state.pose.vector();
   innovation.z() = wrap_angle(innovation.z());
   const Eigen::Matrix3d r = noise.variances(pose.std_ratio).asDiagonal();
-  const Eigen::Matrix3d s = state.covariance + r;
-  const Eigen::Matrix3d gate = s + Eigen::Matrix3d(lasting_error(pose, noise).asDiagonal());
-  if (!(normalised_square(innovation, gate) <= kGate)) {
-    return false;
-  }
-  const Eigen::Matrix3d gain = kalman_gain(s, state.covariance);
+  const Eigen::Matrix3d gain = kalman_gain(state.covariance + r, state.covariance);
   const Eigen::Matrix3d left = Eigen::Matrix3d::Identity() - gain;
   state.pose = Pose2::from_vector(state.pose.vector() + gain * innovation);
   state.covariance = (left * state.covariance * left.transpose() + gain * r * gain.transpose()).eval();
   state.with_lasting = (left * state.with_lasting).eval();
-  return true;
 }
 
 /// The motion since the last pose, as measured, minus what was expected.
@@ -158,28 +174,34 @@ void PoseFilter::learn_noise(Moment& moment, const MeasuredPose& pose) const {
   moment.noise.learn(error, pose.std_ratio);
 }
 
-/// A rejected pose is followed once those after it agree with it.
+/// A rejected pose is followed once those after it agree: each is where the robot can be that was at the last, even by
+/// a model that is far off.
 void PoseFilter::consider_other(Moment& moment, const MeasuredPose& pose) const {
-  if (!moment.other || !correct(*moment.other, pose, moment.noise)) {
+  const bool agrees = moment.other && moment.last && within_reach(*moment.last, moment.other->pose, pose);
+  if (agrees && distance(*moment.other, pose, moment.noise) <= kGate) {
+    correct(*moment.other, pose, moment.noise);
+  } else {
     moment.other = started(pose, moment.noise);
+  }
+  moment.agreed = agrees ? moment.agreed + 1 : 0;
+  if (moment.agreed >= kAgree) {
+    moment.main = *moment.other;
+    moment.other.reset();
     moment.agreed = 0;
-    return;
+    moment.used = pose;
+    moment.noise.pause();
   }
-  if (++moment.agreed < kAgree) {
-    return;
-  }
-  moment.main = *moment.other;
-  moment.other.reset();
-  moment.used = pose;
-  moment.noise.pause();
 }
 
 void PoseFilter::use(Moment& moment, const Waiting& waiting) const {
   const MeasuredPose& pose = waiting.pose;
   ++moment.next;
   if (pose.frame != moment.used.frame) {
-    const std::size_t next = moment.next;
-    moment = begun(pose, next);
+    moment.main = started(pose, moment.noise);
+    moment.other.reset();
+    moment.noise.pause();
+    moment.after_pose = moment.main;
+    moment.last = moment.used = pose;
     return;
   }
   if (waiting.late) {
@@ -191,7 +213,12 @@ void PoseFilter::use(Moment& moment, const Waiting& waiting) const {
   if (moment.last) {
     learn_noise(moment, pose);
   }
-  if (correct(moment.main, pose, moment.noise)) {
+  const double square = distance(moment.main, pose, moment.noise);
+  const double excess = std::isfinite(square) ? std::min(square, 2.0 * kGate) / kFreedom : 1.0;
+  moment.misfit = std::max(moment.misfit + (excess * moment.misfit - moment.misfit) / kMisfitMemory, 1.0);
+  moment.misfit = std::min(moment.misfit, kMostMisfit);
+  if (square <= kGate) {
+    correct(moment.main, pose, moment.noise);
     moment.other.reset();
     moment.agreed = 0;
     moment.used = pose;
@@ -245,7 +272,7 @@ std::optional<SensorPose> PoseFilter::at(double t, const Legs& legs) {
   const Moment& moment = moments_.back();
   State now = moment.main;
   if (t > now.t) {
-    advance(now, t, legs);
+    advance(now, t, legs, moment.misfit);
   }
   Eigen::Matrix3d covariance = now.covariance;
   covariance.diagonal() += lasting_error(moment.used, moment.noise);

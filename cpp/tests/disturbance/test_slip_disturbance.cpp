@@ -191,6 +191,27 @@ TEST_CASE(
                   std::invalid_argument);
 }
 
+TEST_CASE("the deviation that is expected is the one that moves a prediction") {
+  const Setting s;
+  const MotionPosterior posterior = known_posterior(s.model);
+  const auto segments = drive(s.model, s.inputs, 20, [](int) { return Eigen::Vector2d(-0.1, -0.3); });
+  DisturbanceFilter slip(DisturbanceSettings{});
+  SlipNow now = slip.now(posterior, {});
+  for (std::size_t i = 0; i < 19; ++i) {
+    slip.follow(posterior, now, {.inputs = s.inputs, .segment = segments[i]});
+  }
+  const Segment& last = segments.back();
+  const auto at = linearize_segment(s.model, posterior.estimate.mean, s.inputs, last);
+  const ExpectedDeviation found = slip.deviation(posterior, now, {last.start, last.end});
+  const ExpectedPose pose = slip.predict_at(posterior, now, at, last);
+  const Eigen::MatrixXd h = at.by_parameter(Eigen::all, found.places);
+  CHECK(found.mean.norm() > 0.01);
+  CHECK((at.predicted.vector() + h * found.mean - pose.pose).norm() < 1e-12);
+  const Eigen::Matrix3d without =
+      prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
+  CHECK((without + h * found.covariance * h.transpose() - pose.covariance).norm() < 1e-12);
+}
+
 TEST_CASE("sizes that are no sizes are refused") {
   CHECK_THROWS_AS(DisturbanceFilter(DisturbanceSettings{.fractions = {0.1, 0.0}}), std::invalid_argument);
   CHECK_THROWS_AS(DisturbanceFilter(DisturbanceSettings{.time_constants = {std::numeric_limits<double>::quiet_NaN()}}),

@@ -87,6 +87,14 @@ TEST_CASE("the covariance of a slip that lasts the whole segment is that of simu
   CHECK(worst_ratio(sample_covariance(kDraws, drive_once), slip_covariance(path, noise)) < tolerance(kDraws));
 }
 
+TEST_CASE("the covariance of a lasting slip is made of its columns, one for each channel") {
+  SegmentPath path = sample_path();
+  path.sensor = {0.4, -0.1, 0.3};
+  const MotionNoise noise{.fraction = {0.05, 0.1, 0.2}};
+  const Eigen::Matrix3d columns = constant_slip(path, noise);
+  CHECK((columns * columns.transpose() - slip_covariance(path, noise)).norm() < 1e-14);
+}
+
 TEST_CASE("the covariance of pose noise is that of two noisy poses observed from the first") {
   const MotionNoise noise{.pose_std_xy = 0.02, .pose_std_yaw = 0.01};
   const Pose2 start{3.0, -1.0, 0.7};

@@ -68,6 +68,7 @@ class PoseFilter {
     double inputs_until;         ///< later inputs change nothing of it [s]
     std::optional<State> other;  ///< where the robot is if poses that were rejected are right
     int agreed = 0;              ///< poses that say so too
+    double misfit = 1.0;         ///< factor of the legs' covariance by which innovations are explained
     PoseNoise noise;
     State after_pose;                  ///< `main` after the last pose
     std::optional<MeasuredPose> last;  ///< the last pose
@@ -79,12 +80,13 @@ class PoseFilter {
     bool late;
   };
 
-  static double advance(State& state, double t, const Legs& legs);
+  static double advance(State& state, double t, const Legs& legs, double misfit);
   void advance(Moment& moment, double t, const Legs& legs);
   State started(const MeasuredPose& pose, const PoseNoise& noise) const;
   Moment begun(const MeasuredPose& pose, std::size_t next) const;
   Eigen::Vector3d lasting_error(const MeasuredPose& pose, const PoseNoise& noise) const;
-  bool correct(State& state, const MeasuredPose& pose, const PoseNoise& noise) const;
+  double distance(const State& state, const MeasuredPose& pose, const PoseNoise& noise) const;
+  static void correct(State& state, const MeasuredPose& pose, const PoseNoise& noise);
   void use(Moment& moment, const Waiting& waiting) const;
   void learn_noise(Moment& moment, const MeasuredPose& pose) const;
   void consider_other(Moment& moment, const MeasuredPose& pose) const;
