@@ -13,7 +13,9 @@ namespace slipwise {
 namespace {
 
 constexpr double kOffsets = 1.5;    // [s] states are kept for longer than streams are late: no clock offset is larger
-constexpr double kShortest = 1.0;   // [s] horizon whose errors say how large those of a leg are
+constexpr double kOfPoses = 5.0;    // [s] horizon whose errors say how large those of legs are beside poses: there the
+                                    // noise of the poses, which the filter knows by itself, counts least,
+constexpr double kOfWindow = 1.0;   // [s] and beside a window of the monitor
 constexpr double kInstant = 1e-3;   // [s] over which the twist is taken,
 constexpr double kTwistTime = 0.1;  // [s] and over which its white noise is averaged
 constexpr double kUnknownSpeed = 1.0;  // [m/s, rad/s] of a robot of which no input is known,
@@ -34,12 +36,12 @@ PoseFilterSettings pose_filter_settings(const LearnerSettings& settings) {
 }
 
 /// What was known a while before `t` [s], so that it does not depend on how fast segments are learned.
-LegKnowledge MotionLearner::leg_knowledge(double t) {
+LegKnowledge MotionLearner::leg_knowledge(double t, double horizon) {
   const Knowledge& known = known_at(t - kReady);
   return {.posterior = known.motion,
           .disturbance = known.disturbance,
           .slip = recent_slip_.after(*known.disturbance, known.motion, recent_before(t - kReady)),
-          .inflation = spread(student_at(t, kShortest, known.motion->structure))};
+          .inflation = spread(student_at(t, horizon, known.motion->structure))};
 }
 
 MotionLeg MotionLearner::leg(const LegKnowledge& known, double start, double end) const {
@@ -67,7 +69,7 @@ Eigen::Matrix3d MotionLearner::unknown_motion(double start, double end) const {
 std::optional<Odometry> MotionLearner::odometry() {
   const double now = stream_.newest();
   const auto legs = [this](double start, double end) {
-    MotionLeg found = leg(leg_knowledge(end), start, end);
+    MotionLeg found = leg(leg_knowledge(end, kOfPoses), start, end);
     found.white += unknown_motion(start, end);
     return found;
   };
@@ -103,8 +105,9 @@ MotionState MotionLearner::motion_monitor() {
     const InputBuffer::Driven driven = inputs.driven(start, end);
     return end > start ? (driven.distance + kTurnRadius * driven.angle) / (end - start) : 0.0;
   };
-  return monitor_.at(stream_.newest(), known_until,
-                     {.known = [this](double t) { return leg_knowledge(t); }, .leg = leg_of, .asked = asked});
+  return monitor_.at(
+      stream_.newest(), known_until,
+      {.known = [this](double t) { return leg_knowledge(t, kOfWindow); }, .leg = leg_of, .asked = asked});
 }
 
 }  // namespace slipwise

@@ -165,9 +165,9 @@ void PoseFilter::correct(State& state, const MeasuredPose& pose, const PoseNoise
 }
 
 /// The motion since the last pose, as measured, minus what was expected.
-void PoseFilter::learn_noise(Moment& moment, const MeasuredPose& pose) const {
+void PoseFilter::learn_noise(Moment& moment, const MeasuredPose& last, const MeasuredPose& pose) {
   const Pose2& from = moment.after_pose.pose;
-  const Eigen::Vector3d measured = vector_pose(pose).vector() - vector_pose(*moment.last).vector();
+  const Eigen::Vector3d measured = vector_pose(pose).vector() - vector_pose(last).vector();
   Eigen::Vector3d error = measured - (moment.main.pose.vector() - from.vector());
   error.head<2>() = (rotation(-moment.main.pose.theta) * error.head<2>()).eval();
   error.z() = wrap_angle(error.z());
@@ -211,7 +211,7 @@ void PoseFilter::use(Moment& moment, const Waiting& waiting) const {
     return;
   }
   if (moment.last) {
-    learn_noise(moment, pose);
+    learn_noise(moment, *moment.last, pose);
   }
   const double square = distance(moment.main, pose, moment.noise);
   const double excess = std::isfinite(square) ? std::min(square, 2.0 * kGate) / kFreedom : 1.0;
@@ -262,11 +262,13 @@ std::optional<SensorPose> PoseFilter::at(double t, const Legs& legs) {
   if (moments_.empty()) {
     return std::nullopt;
   }
-  for (double end = leg_end(moments_.back().main.t, t); end < t; end = leg_end(end, t)) {
+  double end = leg_end(moments_.back().main.t, t);
+  while (end < t) {
     Moment moment = moments_.back();
     advance(moment, end, legs);
     moments_.push_back(std::move(moment));
     trim(t);
+    end = leg_end(end, t);
   }
   trim(t);
   const Moment& moment = moments_.back();

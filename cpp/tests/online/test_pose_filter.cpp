@@ -99,8 +99,13 @@ TEST_CASE("the filter does not claim too much where errors of poses last, and is
   }
 }
 
-/// Distance from the truth after 5 s without poses.
-double missed_after_gap(bool wheels, std::uint64_t seed, bool learn) {
+/// Distance from the truth after 5 s without poses, and the normalised squared error.
+struct Missed {
+  double distance = 0.0;
+  double nees = 0.0;
+};
+
+Missed missed_after_gap(bool wheels, std::uint64_t seed, bool learn) {
   const TrueRobot robot = true_robot({.seed = seed, .seconds = 80.0, .wheels = wheels, .gap = {60.0, 65.0}});
   MotionLearner learner(learner_settings(!wheels));
   learner.start_run();
@@ -108,7 +113,8 @@ double missed_after_gap(bool wheels, std::uint64_t seed, bool learn) {
   const std::optional<Odometry> odometry = learner.odometry();
   REQUIRE(odometry);
   CHECK(odometry->since_pose == doctest::Approx(5.04).epsilon(0.01));
-  return error_of(odometry->pose, robot.at(odometry->t)).head<2>().norm();
+  const Eigen::Vector3d error = error_of(odometry->pose, robot.at(odometry->t));
+  return {error.head<2>().norm(), normalised_square(error, odometry->covariance)};
 }
 
 TEST_CASE("over a gap of 5 s between poses, what was learned at least halves the error of what was not") {
@@ -116,13 +122,32 @@ TEST_CASE("over a gap of 5 s between poses, what was learned at least halves the
     CAPTURE(wheels);
     double learned = 0.0;
     double baseline = 0.0;
+    double nees = 0.0;
     for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-      learned += missed_after_gap(wheels, seed, true);
-      baseline += missed_after_gap(wheels, seed, false);
+      const Missed missed = missed_after_gap(wheels, seed, true);
+      learned += missed.distance / 6.0;
+      nees += missed.nees / 6.0;
+      baseline += missed_after_gap(wheels, seed, false).distance / 6.0;
     }
-    MESSAGE("after 5 s: " << learned / 6 << " m, unlearned " << baseline / 6 << " m");
+    MESSAGE("after 5 s: " << learned << " m, unlearned " << baseline << " m, NEES " << nees);
     CHECK(learned < 0.5 * baseline);
+    CHECK(nees < 6.0);
   }
+}
+
+TEST_CASE("poses that the inputs do not explain are followed") {
+  MotionLearner learner(learner_settings(true));
+  learner.start_run();
+  int unused = 0;
+  for (int i = 0; i < 200; ++i) {  // pushed at 1 m/s, with wheels that stand still
+    const double t = 0.05 * i;
+    learner.push_command(t, {0.0, 0.0, 0.0});
+    learner.push_pose({.t = t + 0.001, .x = t < 2.0 ? 0.0 : t - 2.0, .y = 0.0, .yaw = 0.0});
+    const Odometry odometry = learner.odometry().value();
+    CHECK(std::abs(odometry.pose.x - (t < 2.0 ? 0.0 : t - 2.0)) < 0.35);
+    unused += odometry.since_pose > 0.01 ? 1 : 0;
+  }
+  CHECK(unused < 40);
 }
 
 TEST_CASE("measurements that come late lead to the same pose as those that come in order") {

@@ -161,7 +161,7 @@ class MotionLearner {
   Knowledge now_known(double until) const;
   StudentT student_for(double horizon, Structure structure) const;
   StudentT student_at(double t, double horizon, Structure structure) const;
-  LegKnowledge leg_knowledge(double t);
+  LegKnowledge leg_knowledge(double t, double horizon);
   MotionLeg leg(const LegKnowledge& known, double start, double end) const;
   Eigen::Matrix3d unknown_motion(double start, double end) const;
   void say(LearnerEvent event);

@@ -88,7 +88,7 @@ class PoseFilter {
   double distance(const State& state, const MeasuredPose& pose, const PoseNoise& noise) const;
   static void correct(State& state, const MeasuredPose& pose, const PoseNoise& noise);
   void use(Moment& moment, const Waiting& waiting) const;
-  void learn_noise(Moment& moment, const MeasuredPose& pose) const;
+  static void learn_noise(Moment& moment, const MeasuredPose& last, const MeasuredPose& pose);
   void consider_other(Moment& moment, const MeasuredPose& pose) const;
   const Waiting& pose_at(std::size_t number) const { return poses_[number - first_]; }
   void work(const Legs& legs);
