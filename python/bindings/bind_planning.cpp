@@ -142,6 +142,17 @@ MppiReference reference_of(const Rows<3>& rows) {
   return reference;
 }
 
+using Motions = std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>>>;
+
+std::vector<RolloutProgram> programs_of(const Motions& motions, double period) {
+  std::vector<RolloutProgram> programs;
+  for (const auto& [model, parameters, limits] : motions) {
+    programs.emplace_back(model, parameters,
+                          RolloutSetting{.period = period, .limits = limits.value_or(CommandLimits{})});
+  }
+  return programs;
+}
+
 void bind_mppi(nb::module_& m) {
   nb::class_<MppiResult>(m, "MppiResult", "The next command and the plan that it begins.")
       .def_prop_ro("v", [](const MppiResult& result) { return result.command.v; })
@@ -160,16 +171,8 @@ void bind_mppi(nb::module_& m) {
   nb::class_<Mppi>(m, "Mppi", "Model predictive path integral control through learned models.")
       .def(
           "__init__",
-          [](Mppi* self,
-             const std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>>>& models,
-             const MppiSettings& settings) {
-            std::vector<RolloutProgram> programs;
-            for (const auto& [model, parameters, limits] : models) {
-              programs.emplace_back(
-                  model, parameters,
-                  RolloutSetting{.period = settings.period, .limits = limits.value_or(CommandLimits{})});
-            }
-            new (self) Mppi(std::move(programs), settings);
+          [](Mppi* self, const Motions& models, const MppiSettings& settings) {
+            new (self) Mppi(programs_of(models, settings.period), settings);
           },
           "models"_a, "settings"_a)
       .def(
@@ -181,6 +184,10 @@ void bind_mppi(nb::module_& m) {
             return self.step(state, reference_of(reference), map);
           },
           "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
+      .def(
+          "adopt",
+          [](Mppi& self, const Motions& models) { self.adopt(programs_of(models, self.settings().period)); },
+          "models"_a, "Drives through other models from the next step on; the last plan stays.")
       .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);
 }
 

@@ -19,6 +19,13 @@ void need(bool fine, const char* fault) {
 bool positive(double value) { return value > 0.0 && std::isfinite(value); }
 bool not_negative(double value) { return value >= 0.0 && std::isfinite(value); }
 
+void check_models(const std::vector<RolloutProgram>& models, const MppiSettings& settings) {
+  need(!models.empty(), "give at least one model to drive through");
+  for (const RolloutProgram& model : models) {
+    need(model.setting().period == settings.period, "the models' period must be that of the controller");
+  }
+}
+
 float correlation(const MppiSettings& settings) {
   return settings.colour > 0.0 ? static_cast<float>(std::exp(-settings.period / settings.colour)) : 0.0F;
 }
@@ -76,13 +83,15 @@ Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings)
       free_(settings.rollouts),
       map_sum_(settings.rollouts),
       map_highest_(settings.rollouts) {
-  need(!models_.empty(), "give at least one model to drive through");
-  for (const RolloutProgram& model : models_) {
-    need(model.setting().period == settings_.period, "the models' period must be that of the controller");
-  }
+  check_models(models_, settings_);
   for (auto* values : {&v_, &omega_, &x_, &y_, &theta_}) {
     values->resize(settings_.rollouts * settings_.periods);
   }
+}
+
+void Mppi::adopt(std::vector<RolloutProgram> models) {
+  check_models(models, settings_);
+  models_ = std::move(models);
 }
 
 void Mppi::reset(const DriveCommand& command) {

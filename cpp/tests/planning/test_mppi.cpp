@@ -131,6 +131,24 @@ TEST_CASE("the same seed and state give the same plan") {
   }
 }
 
+TEST_CASE("other models take the place of those before, and the plan stays") {
+  const MppiSettings settings = quick_settings();
+  const tests::SampleModel sample = skidding();
+  tests::SampleModel other = sample;
+  other.parameters.head(other.motion.slip_size()) *= -1.0;
+  const MppiReference reference = line(0.5, settings);
+  Mppi kept(programs(sample, settings), settings), renewed(programs(sample, settings), settings);
+  for (int i = 0; i < 3; ++i) {
+    kept.step({}, reference, nullptr);
+    renewed.step({}, reference, nullptr);
+  }
+  renewed.adopt(programs(sample, settings));
+  CHECK(renewed.step({}, reference, nullptr).plan.back().omega == kept.step({}, reference, nullptr).plan.back().omega);
+  renewed.adopt(programs(other, settings));
+  CHECK(renewed.step({}, reference, nullptr).plan.back().omega != kept.step({}, reference, nullptr).plan.back().omega);
+  CHECK_THROWS_AS(renewed.adopt({}), std::invalid_argument);
+}
+
 TEST_CASE("risk counts the worst of several models") {
   MppiSettings settings = quick_settings();
   const tests::SampleModel sample = skidding();

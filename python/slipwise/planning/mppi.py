@@ -113,6 +113,10 @@ def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap
     return Costmap(cells, grid.resolution, grid.origin, LETHAL)
 
 
+def _as_core(motions: list[Motion]) -> list[tuple[_core.MotionModel, Floats, _core.CommandLimits | None]]:
+    return [(motion.model, motion.parameters, motion.limits) for motion in motions]
+
+
 def _sent(command: tuple[float, float]) -> Floats:
     values = np.asarray(command, dtype=np.float64)
     if values.shape != (2,) or not np.isfinite(values).all():
@@ -144,11 +148,21 @@ class Controller:
         self.reference, self.options = reference, options
         self._obstacles = obstacles  # keeps the cells
         try:
-            models = [(motion.model, motion.parameters, motion.limits) for motion in motions]
-            self._core = _core.Mppi(models, options.to_core())
+            self._core = _core.Mppi(_as_core(motions), options.to_core())
         except (ValueError, TypeError, OverflowError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
         self._past = np.zeros((0, 2))
+
+    def adopt(self, motions: list[Motion]) -> None:
+        """Drive through other motions from the next command on; the plan and the commands sent are kept.
+
+        Raises:
+            SettingsError: there is no motion, or one has no sense.
+        """
+        try:
+            self._core.adopt(_as_core(motions))
+        except (ValueError, TypeError) as problem:
+            raise SettingsError(str(problem).splitlines()[0], where="controller's motions") from problem
 
     def command(
         self, pose: Pose, drive: tuple[float, float], *, last: tuple[float, float] | None = None

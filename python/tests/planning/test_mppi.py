@@ -51,6 +51,18 @@ def test_the_controller_steers_back_to_its_track() -> None:
         assert left[1] < 0.0 < right[1]
 
 
+def test_motions_are_exchanged_under_way() -> None:
+    kept, other = (Controller([vendor_motion(1.5)], straight(), options=QUICK) for _ in range(2))
+    at = ((1.0, 0.8, 0.0), (0.5, 0.0))
+    assert kept.command(*at) == other.command(*at)
+    other.adopt([vendor_motion(1.5)])
+    assert kept.command(*at) == other.command(*at)
+    other.adopt(learned_motions(learned_model()))
+    assert kept.command(*at) != other.command(*at)
+    with pytest.raises(SettingsError, match="at least one model"):
+        other.adopt([])
+
+
 def test_drawn_motions_differ_as_their_covariance_says_and_follow_the_seed() -> None:
     disturbed = make_model(Made(basis=_core.named_basis("edd-2"), commands=True, disturbance=(0.1, 0.3, 8.0)))
     for model in (learned_model(), disturbed):

@@ -81,6 +81,9 @@ class Mppi {
   /// \throws std::invalid_argument when the reference does not fit, something is not finite, or the start is where the
   /// map is lethal.
   MppiResult step(const MppiState& state, const MppiReference& reference, const Costmap* map);
+  /// Drives through other models from the next step on; the last plan stays.
+  /// \throws std::invalid_argument without a model, or where one has another period than the settings.
+  void adopt(std::vector<RolloutProgram> models);
   /// Forgets the last plan; the next begins with this command, held.
   void reset(const DriveCommand& command);
 
