@@ -139,7 +139,7 @@ def _noise(learned: Learned, settings: Settings) -> schema.Noise:
 
 
 def _slip_disturbance(posterior: Posterior, segment: float) -> schema.SlipDisturbanceSection | None:
-    if posterior.disturbance is None:
+    if posterior.disturbance is None or not posterior.disturbance.law.candidates:  # it was not to be learned
         return None
     law = posterior.disturbance.law
     candidates = [

@@ -130,6 +130,15 @@ def test_forgetting_makes_slip_less_sure() -> None:
         learner.forget(1.5)
 
 
+def test_a_learner_that_follows_no_disturbance_has_a_model_without_one(log: Log) -> None:
+    settings = sw.make_settings({"slip_disturbance": {"learn": False}})
+    learner = sw.MotionLearner("command", settings)
+    learner.start_run("run")
+    push_rows(learner, rows_of(log))
+    assert learner.model(limits=False).content.slip_disturbance is None
+    assert sw.calibrate(log, input="command", settings=settings).model.content.slip_disturbance is None
+
+
 def test_too_little_is_said_in_one_line() -> None:
     learner = sw.MotionLearner("command")
     learner.start_run("empty")
