@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The model file and the model read from it."""
 
-from slipwise.models.model import Model, load_model
+from slipwise.models.model import Model, load_model, parse_model
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 
-__all__ = ["SCHEMA_VERSION", "Model", "ModelFile", "load_model"]
+__all__ = ["SCHEMA_VERSION", "Model", "ModelFile", "load_model", "parse_model"]

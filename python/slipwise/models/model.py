@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import yaml
@@ -21,7 +21,7 @@ from slipwise.frames import data_frame
 from slipwise.models.limits import core_limits
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 from slipwise.models.upgrade import READ_VERSIONS, upgraded
-from slipwise.models.yaml_file import read_yaml
+from slipwise.models.yaml_file import parse_yaml, read_yaml
 from slipwise.validation_text import first_problem
 
 if TYPE_CHECKING:
@@ -275,14 +275,25 @@ def load_model(path: str | Path) -> Model:
     Raises:
         ModelError: the file is missing, not plain YAML, or does not fit this schema version.
     """
-    source = Path(path)
-    content = read_yaml(source)
+    return _model_of(read_yaml(Path(path)), str(path))
+
+
+def parse_model(text: str, *, where: str) -> Model:
+    """Read the text of a model file that came from `where`, such as a topic.
+
+    Raises:
+        ModelError: the text is not plain YAML, or does not fit this schema version.
+    """
+    return _model_of(parse_yaml(text, where=where), where)
+
+
+def _model_of(content: dict[str, Any], where: str) -> Model:
     version = content.get("slipwise_model")
     if isinstance(version, bool) or version not in READ_VERSIONS:
         known = " and ".join(map(str, READ_VERSIONS))
         raise ModelError(
             f"the file has schema version {version!r}, this slipwise reads {known}",
-            where=str(source),
+            where=where,
             advice="is it a slipwise model? calibrate again, or use the slipwise version that wrote it",
         )
     try:
@@ -290,7 +301,7 @@ def load_model(path: str | Path) -> Model:
         return Model(ModelFile.model_validate(read))
     except ValidationError as problem:
         raise ModelError(
-            first_problem(problem), where=str(source), advice="calibrate again, or restore the file"
+            first_problem(problem), where=where, advice="calibrate again, or restore the file"
         ) from problem
     except ModelError as problem:
-        raise ModelError(problem.what, where=str(source), advice=problem.advice) from problem
+        raise ModelError(problem.what, where=where, advice=problem.advice) from problem

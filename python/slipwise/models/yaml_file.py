@@ -56,7 +56,17 @@ def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[st
     Raises:
         SlipwiseError: of type `error`: the file is missing, too large, not plain YAML or not a mapping.
     """
-    data = read_whole(path, most=MAX_BYTES, error=error)
+    return parse_yaml(read_whole(path, most=MAX_BYTES, error=error), where=str(path), error=error)
+
+
+def parse_yaml(data: bytes | str, *, where: str, error: type[SlipwiseError] = ModelError) -> dict[str, Any]:
+    """Return the mapping in YAML text that came from `where`.
+
+    Raises:
+        SlipwiseError: of type `error`: the text is too large, not plain YAML or not a mapping.
+    """
+    if len(data) > MAX_BYTES:
+        raise error("the text is too long", where=where, advice="is it a slipwise file?")
     try:
         content = yaml.load(data, Loader=_PlainLoader)  # noqa: S506 - a SafeLoader with more refusals
     except (yaml.YAMLError, ValueError, RecursionError) as problem:
@@ -64,8 +74,8 @@ def read_yaml(path: Path, *, error: type[SlipwiseError] = ModelError) -> dict[st
         line = f", line {mark.line + 1}" if mark is not None else ""
         what = getattr(problem, "problem", None) or str(problem).splitlines()[0]
         raise error(
-            f"not a plain YAML file: {what}", where=f"{path}{line}", advice="write plain keys and values"
+            f"not a plain YAML file: {what}", where=f"{where}{line}", advice="write plain keys and values"
         ) from problem
     if not isinstance(content, dict):
-        raise error("the file holds no keys", where=str(path), advice="write `key: value` lines")
+        raise error("the file holds no keys", where=where, advice="write `key: value` lines")
     return content

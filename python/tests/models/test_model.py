@@ -19,7 +19,7 @@ from sample_models import Made, make_model
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError
-from slipwise.models import Model, ModelFile, load_model
+from slipwise.models import Model, ModelFile, load_model, parse_model
 from slipwise.prediction import predict
 
 Content = dict[str, Any]
@@ -56,6 +56,14 @@ def test_round_trip_is_exact(model: Model, tmp_path: Path) -> None:
     assert again.mean.tobytes() == model.mean.tobytes()
     assert again.covariance.tobytes() == model.covariance.tobytes()
     assert again.to_yaml() == model.to_yaml() == path.read_text(encoding="utf-8")
+
+
+def test_a_model_is_read_from_its_text_too(model: Model) -> None:
+    assert parse_model(model.to_yaml(), where="a topic").content == model.content
+    with pytest.raises(ModelError, match=r"schema version 'x'.*a topic"):
+        parse_model("slipwise_model: x", where="a topic")
+    with pytest.raises(ModelError, match="too long"):
+        parse_model("#" * 5_000_000, where="a topic")
 
 
 def test_read_model_predicts_to_the_last_bit_as_the_learned_one(model: Model, tmp_path: Path) -> None:
