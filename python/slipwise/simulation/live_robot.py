@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from slipwise.errors import SettingsError
 from slipwise.simulation.land_tamer import wheel_names
 from slipwise.simulation.physics import LONGEST_STEP, World, planar_truth, start_physics
 from slipwise.simulation.truth import Truth
+from slipwise.simulation.tyre_force import TyreLaw, tyre_force
 
 
 @dataclass(frozen=True)
@@ -47,7 +49,6 @@ class LiveRobot:
         self._side = np.arange(len(names)) % 2
         self._spins = np.array([self._physics.model.joint(f"spin_{name}").dofadr[0] for name in names])
         self._underway: deque[tuple[float, float, float]] = deque()  # arrival [s], v, omega
-        self._acting = (0.0, 0.0)
         self._done = 0  # physics steps
         self._yaw = 0.0
 
@@ -77,12 +78,22 @@ class LiveRobot:
         self._underway.append((self._done * self._step + self._vehicle.command_delay, v, omega))
         for _ in range(self._steps):
             while self._underway and self._underway[0][0] <= (self._done + 0.5) * self._step:
-                self._acting = self._underway.popleft()[1:]
-            speed, turn = (np.array([value]) for value in self._acting)
-            self._physics.data.ctrl = self._vehicle.side_rates(speed, turn)[0, self._side]
+                speed, turn = (np.array([value]) for value in self._underway.popleft()[1:])
+                self._physics.data.ctrl = self._vehicle.side_rates(speed, turn)[0, self._side]
             self._physics.advance()
             self._done += 1
         return self.state()
+
+    def stand_on(self, law: TyreLaw) -> None:
+        """Put another floor under the wheels: from the next physics step on its law gives the forces.
+
+        Raises:
+            SettingsError: the world's terrain has no law that could be replaced.
+        """
+        if self._physics.tyres is None:
+            advice = 'use the terrain "tyre-force"'
+            raise SettingsError("a contact-friction terrain cannot change", where="terrain", advice=advice)
+        self._physics.tyres.law = partial(tyre_force, law)
 
     def _truth(self) -> Truth:
         velocity = self._physics.data.qvel[None].copy()

@@ -35,6 +35,24 @@ def test_a_robot_that_is_told_nothing_new_stands_still() -> None:
     assert robot.tell(0.0, 0.0).pose == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
 
 
+def test_another_floor_changes_what_wheels_make_of_the_motion() -> None:
+    robot = LiveRobot(WORLD, period=PERIOD)
+    loss = []
+    for law in (TyreLaw(), TyreLaw(slip_stiffness=7.0, cornering_stiffness=8.5)):
+        robot.stand_on(law)
+        states = [robot.tell(1.0, 0.5) for _ in range(160)][80:]
+        turned = (states[-1].pose[2] - states[0].pose[2]) / (states[-1].t - states[0].t)
+        loss.append(1.0 - turned / np.mean([state.drive[1] for state in states]))
+    assert loss[0] == pytest.approx(0.39, abs=0.04)
+    assert loss[1] == pytest.approx(0.57, abs=0.04)
+
+
+def test_contact_friction_cannot_change() -> None:
+    robot = LiveRobot(World(LandTamer(), "contact-friction", TyreLaw()), period=PERIOD)
+    with pytest.raises(SettingsError, match="cannot change"):
+        robot.stand_on(TyreLaw())
+
+
 def test_wrong_use_is_refused() -> None:
     with pytest.raises(SettingsError, match="the period is 0"):
         LiveRobot(WORLD, period=0.0)
