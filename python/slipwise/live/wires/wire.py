@@ -22,8 +22,12 @@ class WireTopic:
 class RosWire(Protocol):
     """Messages are CDR with its header of 4 bytes (rosbags' `serialize_cdr`); ROS 1's wire converts.
 
-    Callbacks come from threads of the wire.
+    Callbacks come from threads of the wire. Names of topics and services are absolute ("/odom").
     """
+
+    @property
+    def name(self) -> str:
+        """What carries the messages: "rclpy", "cyclonedds", "zenoh" or "rospy"."""
 
     def topics(self) -> list[WireTopic]:
         """Return what is published by others now."""
@@ -42,7 +46,7 @@ class RosWire(Protocol):
         """Announce a topic before its first message."""
 
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
-        """Call a service, such as SetParameters; None where nobody answers in time [s]."""
+        """Call a service, such as one of "rcl_interfaces/srv/SetParameters"; None: no answer in time [s]."""
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
