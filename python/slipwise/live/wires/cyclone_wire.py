@@ -162,6 +162,18 @@ class CycloneWire:
             asked = self._services[service]
         return asked.call(request, until)
 
+    def connections(self, topic: str) -> int:
+        """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
+        with self._lock:
+            heard = {
+                handle
+                for subscription in self._subscriptions
+                if subscription.topic == topic
+                for handle in subscription.reader.get_matched_publications()
+            }
+            writer = self._writers.get(topic)
+            return len(heard) + (len(writer.get_matched_subscriptions()) if writer is not None else 0)
+
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
         return self._silence.notices()

@@ -48,6 +48,9 @@ class RosWire(Protocol):
     def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
         """Call a service, such as one of "rcl_interfaces/srv/SetParameters"; None: no answer in time [s]."""
 
+    def connections(self, topic: str) -> int:
+        """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
+
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
 
