@@ -18,8 +18,8 @@ from slipwise.live.wires.cyclone_service import CycloneService
 from slipwise.live.wires.cyclone_types import cyclone_type
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.quality import Quality, hearing_all
-from slipwise.live.wires.ros_types import require_topic
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
+from slipwise.live.wires.topic_names import require_topic
 from slipwise.live.wires.wire import OnMessage, WireTopic
 
 _log = logging.getLogger(__name__)

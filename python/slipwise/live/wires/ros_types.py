@@ -111,17 +111,3 @@ def ros_type(dds_name: str) -> str:
 def type_hash(type_name: str) -> str:
     """Return the hash of a type by REP-2016, "RIHS01_" and 64 digits."""
     return ros_types().hash_rihs01(require_type(type_name))
-
-
-def require_topic(name: str) -> str:
-    """Return the name of a topic or service, which has to be absolute.
-
-    Raises:
-        SettingsError: it is not.
-    """
-    parts = name.split("/")[1:]
-    if not name.startswith("/") or not all(part and part.replace("_", "a").isalnum() for part in parts):
-        raise SettingsError(
-            f'"{name}" is no name of a topic', advice='write it with its slash, such as "/odom"'
-        )
-    return name

@@ -12,7 +12,7 @@ from live.wires.peer import ROOT, Peer
 
 
 def ros_python_path() -> Path:
-    """Return the Python that has rclpy and pyzeros: of `SLIPWISE_ROS_VENV`, or of `.venv-ros` (`make ros-peer`)."""
+    """Return the Python that has rclpy and pyzeros, of `SLIPWISE_ROS_VENV` or of `.venv-ros`."""
     return Path(os.environ.get("SLIPWISE_ROS_VENV", str(ROOT / ".venv-ros"))) / "bin" / "python"
 
 

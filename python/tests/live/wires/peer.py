@@ -6,6 +6,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import threading
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -47,7 +48,10 @@ class Peer:
     def hear(self) -> Any:
         """Return the next line; fails where the peer has ended."""
         assert self._process.stdout is not None
+        watchdog = threading.Timer(60.0, self._process.kill)
+        watchdog.start()
         line = self._process.stdout.readline()
+        watchdog.cancel()
         assert line, f"the peer has ended with code {self._process.wait()}"
         return json.loads(line)
 

@@ -1,0 +1,263 @@
+# SPDX-License-Identifier: Apache-2.0
+"""ROS 2 by its own Python client, where that can be imported: any middleware that the robot has."""
+
+from __future__ import annotations
+
+import logging
+import os
+import threading
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from slipwise.errors import SettingsError
+from slipwise.live.wires.options import WireOptions
+from slipwise.live.wires.quality import Quality, hearing_all
+from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
+from slipwise.live.wires.topic_names import require_topic
+from slipwise.live.wires.wire import OnMessage, WireTopic
+
+_log = logging.getLogger(__name__)
+_DEPTH = 1000  # messages kept for a subscription while Python is busy
+_LOOK = 0.25  # s between looks at who publishes
+
+
+@dataclass
+class _Subscription:
+    topic: str
+    type_name: str
+    on_message: OnMessage
+    latched: bool
+    quality: Quality
+    entity: Any
+
+
+class RclpyWire:
+    """A node in a context and a thread of its own, whose subscriptions give bytes.
+
+    Signals stay with the program. Where neither the options nor ROS_AUTOMATIC_DISCOVERY_RANGE ask for the
+    network, that variable is set to this host alone.
+
+    Raises:
+        SettingsError: rclpy does not start with these options.
+    """
+
+    name = "rclpy"
+
+    def __init__(self, options: WireOptions) -> None:
+        rclpy: Any = import_module("rclpy")
+        signals: Any = import_module("rclpy.signals")
+        if not options.network:
+            os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        self._context: Any = import_module("rclpy.context").Context()
+        try:
+            rclpy.init(
+                context=self._context,
+                domain_id=options.domain_number(),
+                signal_handler_options=signals.SignalHandlerOptions.NO,
+            )
+            self._node: Any = rclpy.create_node(
+                options.node_name,
+                context=self._context,
+                namespace=options.namespace,
+                use_global_arguments=False,
+            )
+        except (RuntimeError, ValueError) as error:
+            self._context.try_shutdown()
+            raise SettingsError(f"rclpy does not start: {error}", advice="look at the node's name") from error
+        self._middleware = str(rclpy.get_rmw_implementation_identifier())
+        self._publishers: dict[str, Any] = {}
+        self._clients: dict[str, Any] = {}
+        self._subscriptions: list[_Subscription] = []
+        self._silence = SilenceWatch()
+        self._lock = threading.RLock()
+        self._closed = threading.Event()
+        self._node.create_timer(_LOOK, self._look)
+        self._executor: Any = import_module("rclpy.executors").SingleThreadedExecutor(context=self._context)
+        self._executor.add_node(self._node)
+        self._thread = threading.Thread(target=self._spin, name="slipwise-rclpy", daemon=True)
+        self._thread.start()
+
+    def topics(self) -> list[WireTopic]:
+        """Return what is published by others now."""
+        own = self._node.get_name(), self._node.get_namespace()
+        found = []
+        for topic, types in self._node.get_topic_names_and_types():
+            publishers = self._node.get_publishers_info_by_topic(topic)
+            for type_name in types:
+                others = [
+                    publisher
+                    for publisher in publishers
+                    if publisher.topic_type == type_name
+                    and (publisher.node_name, publisher.node_namespace) != own
+                ]
+                if others:
+                    found.append(WireTopic(topic, type_name, len(others)))
+        return found
+
+    def subscribe(self, topic: str, type_name: str, on_message: OnMessage, *, latched: bool = False) -> None:
+        """Deliver every message of a topic.
+
+        Raises:
+            SettingsError: there is no such type, or no such name of a topic.
+        """
+        require_topic(topic)
+        with self._lock:
+            self._require_open()
+            quality = hearing_all(self._offered(topic), latched=latched)
+            made = _Subscription(topic, type_name, on_message, latched, quality, None)
+            made.entity = self._make_subscription(made)
+            self._silence.want(topic, type_name)
+            self._subscriptions.append(made)
+
+    def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> None:
+        """Announce a topic before its first message.
+
+        Raises:
+            SettingsError: there is no such type, or no such name of a topic.
+        """
+        with self._lock:
+            self._require_open()
+            if require_topic(topic) not in self._publishers:
+                quality = _profile(Quality(reliable=True, latched=latched), depth=1 if latched else 10)
+                self._publishers[topic] = self._node.create_publisher(_class_of(type_name), topic, quality)
+
+    def publish(self, topic: str, type_name: str, payload: bytes, *, latched: bool = False) -> None:
+        """Send a message; the topic is announced at the first one, or by `advertise`.
+
+        Raises:
+            SettingsError: there is no such type, or no such name of a topic.
+        """
+        with self._lock:
+            self.advertise(topic, type_name, latched=latched)
+            self._publishers[topic].publish(payload)
+
+    def call(self, service: str, type_name: str, request: bytes, *, timeout: float) -> bytes | None:
+        """Call a service; None where nobody answers in time [s]. A callback of a topic must not call.
+
+        Raises:
+            SettingsError: there is no such service type, or no such name of a service.
+        """
+        serialization: Any = import_module("rclpy.serialization")
+        with self._lock:
+            self._require_open()
+            kind = _class_of(type_name)
+            if require_topic(service) not in self._clients:
+                self._clients[service] = self._node.create_client(kind, service)
+            client = self._clients[service]
+        if not client.wait_for_service(timeout_sec=timeout):
+            return None
+        answered = threading.Event()
+        future = client.call_async(serialization.deserialize_message(request, kind.Request))
+        future.add_done_callback(lambda _: answered.set())
+        if not answered.wait(timeout):
+            client.remove_pending_request(future)
+            return None
+        return bytes(serialization.serialize_message(future.result()))
+
+    def connections(self, topic: str) -> int:
+        """Return how many publishers we hear on a topic, and how many subscriptions hear us."""
+        with self._lock:
+            heard = [made.entity.get_publisher_count() for made in self._subscriptions if made.topic == topic]
+            publisher = self._publishers.get(topic)
+            return max(heard, default=0) + (
+                publisher.get_subscription_count() if publisher is not None else 0
+            )
+
+    def notices(self) -> list[str]:
+        """Return what is to be said since the last call: topics on which nothing comes, and the ways out."""
+        return self._silence.notices()
+
+    def close(self) -> None:
+        """Leave the graph; may be called twice."""
+        with self._lock:
+            if self._closed.is_set():
+                return
+            self._closed.set()
+        self._executor.shutdown()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+        self._node.destroy_node()
+        self._context.try_shutdown()
+
+    def _spin(self) -> None:
+        external: Any = import_module("rclpy.executors").ExternalShutdownException
+        while not self._closed.is_set():
+            try:
+                self._executor.spin()
+            except external:
+                return
+            except Exception:
+                _log.exception("rclpy stumbled, and goes on")
+
+    def _look(self) -> None:
+        """Subscribe anew where a publisher offers less than is asked for, and note who publishes."""
+        with self._lock:
+            if self._closed.is_set():
+                return
+            for made in self._subscriptions:
+                quality = hearing_all(self._offered(made.topic), latched=made.latched)
+                if quality != made.quality:
+                    made.quality = quality
+                    before, made.entity = made.entity, self._make_subscription(made)
+                    self._node.destroy_subscription(before)
+                publishers = self._node.get_publishers_info_by_topic(made.topic)
+                connected = made.entity.get_publisher_count() > 0
+                seen = [PublisherSeen(self._middleware, found.topic_type, connected) for found in publishers]
+                self._silence.seen(made.topic, seen)
+
+    def _make_subscription(self, made: _Subscription) -> Any:
+        def deliver(message: bytes) -> None:
+            if self._closed.is_set():
+                return
+            self._silence.heard(made.topic)
+            try:
+                made.on_message(message)
+            except Exception:
+                _log.exception("a message of %s was not understood", made.topic)
+
+        profile = _profile(made.quality, depth=_DEPTH)
+        return self._node.create_subscription(
+            _class_of(made.type_name), made.topic, deliver, profile, raw=True
+        )
+
+    def _offered(self, topic: str) -> list[Quality]:
+        policies: Any = import_module("rclpy.qos")
+        return [
+            Quality(
+                reliable=found.qos_profile.reliability != policies.ReliabilityPolicy.BEST_EFFORT,
+                latched=found.qos_profile.durability == policies.DurabilityPolicy.TRANSIENT_LOCAL,
+            )
+            for found in self._node.get_publishers_info_by_topic(topic)
+        ]
+
+    def _require_open(self) -> None:
+        if self._closed.is_set():
+            raise SettingsError("the connection to ROS is closed", advice="open another one")
+
+
+def _class_of(type_name: str) -> Any:
+    """Return the class of a message or service such as "nav_msgs/msg/Odometry".
+
+    Raises:
+        SettingsError: this ROS does not have it.
+    """
+    package, _, rest = type_name.partition("/")
+    kind, _, name = rest.partition("/")
+    try:
+        return getattr(import_module(f"{package}.{kind}"), name)
+    except (ImportError, AttributeError) as error:
+        raise SettingsError(
+            f'there is no message type "{type_name}" in this ROS',
+            advice=f"look for a typing error, or install the ROS package {package}",
+        ) from error
+
+
+def _profile(quality: Quality, *, depth: int) -> Any:
+    qos: Any = import_module("rclpy.qos")
+    reliability, durability = qos.ReliabilityPolicy, qos.DurabilityPolicy
+    return qos.QoSProfile(
+        depth=depth,
+        reliability=reliability.RELIABLE if quality.reliable else reliability.BEST_EFFORT,
+        durability=durability.TRANSIENT_LOCAL if quality.latched else durability.VOLATILE,
+    )
