@@ -227,7 +227,7 @@ class CycloneWire:
                 _log.exception("a message of %s was not understood", subscription.topic)
 
     def _adapt(self) -> None:
-        """Read anew where a publisher offers less than is asked for."""
+        """Read again where a publisher offers less than is asked for."""
         for subscription in self._subscriptions:
             quality = hearing_all(self._offered(subscription.topic), latched=subscription.latched)
             if quality == subscription.quality:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import dataclass
 
 from slipwise.errors import SettingsError
@@ -19,8 +20,7 @@ class WireOptions:
     network: bool = (
         False  # talk to other hosts, by multicast where the middleware does; otherwise to this one alone
     )
-    router: str = "tcp/localhost:7447"  # of Zenoh, to connect to; nothing is listened on
-    peers: bool = False  # of Zenoh: listen on loopback too, so that peers find each other without a router
+    router: str = "tcp/localhost:7447"  # of Zenoh: the router or peer to connect to
 
     def domain_number(self) -> int:
         """Return the domain, from the environment where none is given.
@@ -29,6 +29,6 @@ class WireOptions:
             SettingsError: it is no number of a domain.
         """
         text = str(self.domain) if self.domain is not None else os.environ.get("ROS_DOMAIN_ID", "") or "0"
-        if not text.isdigit() or not 0 <= int(text) <= 232:
+        if not re.fullmatch("[0-9]{1,3}", text) or int(text) > 232:
             raise SettingsError(f'"{text}" is no ROS domain', advice="domains are numbers from 0 to 232")
         return int(text)

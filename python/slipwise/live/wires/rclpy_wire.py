@@ -191,7 +191,7 @@ class RclpyWire:
                 _log.exception("rclpy stumbled, and goes on")
 
     def _look(self) -> None:
-        """Subscribe anew where a publisher offers less than is asked for, and note who publishes."""
+        """Subscribe again where a publisher offers less than is asked for, and note who publishes."""
         with self._lock:
             if self._closed.is_set():
                 return
