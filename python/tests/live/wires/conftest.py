@@ -11,18 +11,16 @@ import pytest
 from live.wires.peer import ROOT, Peer
 
 
-def ros_python_path() -> Path:
-    """Return the Python that has rclpy and pyzeros, of `SLIPWISE_ROS_VENV` or of `.venv-ros`."""
-    return Path(os.environ.get("SLIPWISE_ROS_VENV", str(ROOT / ".venv-ros"))) / "bin" / "python"
-
-
 @pytest.fixture(scope="session")
 def ros_python() -> Path:
-    """Return the Python that has rclpy; skip without it, or fail where SLIPWISE_REQUIRE_ROS=1 asks for it."""
-    python = ros_python_path()
-    if python.exists():
-        return python
-    reason = f"there is no ROS 2 for tests: {python} (`make ros-peer` installs it)"
+    """Return the Python that has rclpy and pyzeros; skip, or fail with SLIPWISE_REQUIRE_ROS=1, without.
+
+    It is that of SLIPWISE_ROS_VENV, or of `.venv-ros`.
+    """
+    folder = Path(os.environ.get("SLIPWISE_ROS_VENV") or ROOT / ".venv-ros")
+    if (folder / "installed.txt").exists():
+        return folder / "bin" / "python"
+    reason = f"there is no ROS 2 for tests in {folder} (`make ros-peer` installs it)"
     if os.environ.get("SLIPWISE_REQUIRE_ROS") == "1":
         pytest.fail(reason, pytrace=False)
     pytest.skip(reason)

@@ -24,10 +24,15 @@ class Peer:
     Args:
         python: that runs it.
         script: its name in this folder.
+        arguments: of the script.
         environment: what it is told besides the domain.
+        patience: after which a peer that does not answer is ended [s].
     """
 
-    def __init__(self, python: Path, script: str, *arguments: str, environment: dict[str, str]) -> None:
+    def __init__(
+        self, python: Path, script: str, *arguments: str, environment: dict[str, str], patience: float = 60.0
+    ) -> None:
+        self._patience = patience
         kept = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "CYCLONE"))}
         told = {
             "ROS_DOMAIN_ID": str(DOMAIN),
@@ -48,7 +53,7 @@ class Peer:
     def hear(self) -> Any:
         """Return the next line; fails where the peer has ended."""
         assert self._process.stdout is not None
-        watchdog = threading.Timer(60.0, self._process.kill)
+        watchdog = threading.Timer(self._patience, self._process.kill)
         watchdog.start()
         line = self._process.stdout.readline()
         watchdog.cancel()

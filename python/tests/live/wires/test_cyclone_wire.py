@@ -101,7 +101,7 @@ def test_a_closed_wire_leaves_no_thread_and_may_be_closed_again() -> None:
     opened.subscribe("/odom", ODOMETRY, lambda message: None)
     opened.close()
     opened.close()
-    assert set(threading.enumerate()) == before
+    assert set(threading.enumerate()) <= before
     with pytest.raises(SettingsError, match="closed"):
         opened.publish("/x", STRING, to_cdr(STRING, data="x"))
 

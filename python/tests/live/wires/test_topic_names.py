@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names of topics are absolute, and of letters, digits and underscores."""
+
+from __future__ import annotations
+
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.live.wires.topic_names import require_topic
+
+
+@pytest.mark.parametrize("name", ["/odom", "/robot_1/cmd_vel", "/_hidden/a/b"])
+def test_absolute_names_are_taken(name: str) -> None:
+    assert require_topic(name) == name
+
+
+@pytest.mark.parametrize(
+    "name", ["", "/", "odom", "~/odom", "/odom/", "//odom", "/1st", "/o dom", "/odom*", "/ödom"]
+)
+def test_other_names_are_refused(name: str) -> None:
+    with pytest.raises(SettingsError, match="no name of a topic"):
+        require_topic(name)
