@@ -114,7 +114,7 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
     from slipwise.live.ros_roles import find_roles
     from slipwise.live.ros_transport import RosTransport
-    from slipwise.live.wires.choice import make_wire
+    from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
     named = WireOptions(node_name=table.name, domain=table.domain, network=table.network)
