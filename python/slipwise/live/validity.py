@@ -30,7 +30,7 @@ class Hysteresis:
         return self.state
 
     def doubt(self) -> None:
-        """Take back what speaks for another state: the terrain changed, and judgements begin anew."""
+        """Take back what speaks for another state: the terrain changed, and judgements begin again."""
         self._agreed = 0
 
 
@@ -76,6 +76,6 @@ class ModelValidity:
         return "unestimated" if found is None else found.state
 
     def terrain_changed(self) -> None:
-        """Begin to count agreeing judgements anew."""
+        """Begin to count agreeing judgements again."""
         for each in (self._whole, *self._parameters.values()):
             each.doubt()

@@ -15,6 +15,7 @@ pytest.importorskip("cyclonedds")
 @pytest.mark.parametrize(
     ("name", "message"),
     [(TWIST, command(3)), ("rcl_interfaces/srv/SetParameters_Request", set_parameter("gain", 2.5))],
+    ids=["a command", "parameters"],
 )
 def test_bytes_are_read_and_written_as_ros_has_them(name: str, message: bytes) -> None:
     kind = cyclone_type(name)

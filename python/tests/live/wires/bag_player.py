@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A real ROS 2 node that plays messages: run with a Python that has rclpy, given a file of JSON lines.
+
+Each line has the time of sending [s], the topic, the type and the message as base64; subscribers of all
+topics are waited for. What the node under test publishes is counted, and printed at the end.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import sys
+import threading
+import time
+from collections import Counter
+from pathlib import Path
+
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rosidl_runtime_py.utilities import get_message
+
+HEARD = {
+    "odometry": "nav_msgs/msg/Odometry",
+    "twist": "geometry_msgs/msg/TwistWithCovarianceStamped",
+    "predicted_path": "nav_msgs/msg/Path",
+    "diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
+    "model": "std_msgs/msg/String",
+}
+
+
+def main(file: str, rate: float) -> None:
+    rclpy.init()
+    node = rclpy.create_node("player")
+    lines = [json.loads(line) for line in Path(file).read_text().splitlines()]
+    types = {line["topic"]: line["type"] for line in lines}
+    publishers = {
+        topic: node.create_publisher(get_message(kind), topic, 1000) for topic, kind in types.items()
+    }
+    heard: Counter[str] = Counter()
+    last: dict[str, object] = {}
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+    def take(name: str, message: object) -> None:
+        heard[name] += 1
+        last[name] = message
+
+    for name, kind in HEARD.items():
+        quality = latched if name == "model" else 100
+        node.create_subscription(
+            get_message(kind), f"/slipwise/{name}", lambda message, n=name: take(n, message), quality
+        )
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    spinning = threading.Thread(target=executor.spin, daemon=True)
+    spinning.start()
+    until = time.monotonic() + 60.0
+    while not all(each.get_subscription_count() for each in publishers.values()) and time.monotonic() < until:
+        time.sleep(0.05)
+    time.sleep(1.0)
+    begin = time.monotonic()
+    for line in lines:
+        time.sleep(max(0.0, begin + (line["t"] - lines[0]["t"]) / rate - time.monotonic()))
+        publishers[line["topic"]].publish(base64.b64decode(line["message"]))
+    time.sleep(2.0)
+    odometry, model = last.get("odometry"), last.get("model")
+    found = {
+        "heard": dict(heard),
+        "frame": odometry.header.frame_id if odometry else "",
+        "model": model.data[:40] if model else "",
+        "nodes": node.get_node_names(),
+    }
+    print(json.dumps(found), flush=True)
+    executor.shutdown()
+    spinning.join()
+    node.destroy_node()
+    rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], float(sys.argv[2]))
