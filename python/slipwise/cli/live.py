@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Basis, Input, SettingsFile, chosen_settings, optional, takes_log_options
+from slipwise.cli.options import (
+    Basis,
+    Input,
+    Seed,
+    SettingsFile,
+    chosen_settings,
+    optional,
+    takes_log_options,
+)
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -37,6 +45,11 @@ def live(
     ] = None,
     replay: Annotated[Path | None, optional("LOG", "Take the samples of a log.")] = None,
     rate: Annotated[float, typer.Option(metavar="TIMES", help="Speed of --replay; 0: no waits.")] = 1.0,
+    demo: Annotated[
+        bool,
+        typer.Option("--demo", help="Drive a simulated robot through a slalom whose floor changes (MuJoCo)."),
+    ] = False,
+    seed: Seed = 1,
     input_name: Input = None,
     basis: Basis = None,
     settings: SettingsFile = None,
@@ -86,9 +99,10 @@ def live(
       slipwise live --pose-topic /rtk/odom --cache ~/.slipwise --vehicle husky-1
       slipwise live --transport cyclonedds --web --apply auto --settings live.toml
       slipwise live --replay drive.mcap --rate 10 --web
+      slipwise live --demo --web
       robot-log | slipwise live --transport stdin --results -
     """  # noqa: D301
-    from slipwise.cli.live_parts import live_settings, model_of_replay, open_robot, watchers_for
+    from slipwise.cli.live_parts import Source, live_settings, model_of_replay, open_robot, watchers_for
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.live.build import build_node
 
@@ -101,7 +115,8 @@ def live(
     refuse_unwritable(output, record, inputs=(replay, settings, model))
     shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove, host, record)
     with stopped_by_signals() as stopping:
-        robot = open_robot(chosen, log_options, replay=replay, rate=rate, results=results, say=shown.say)
+        source = Source(replay, demo, seed, rate, results)
+        robot = open_robot(chosen, log_options, source, say=shown.say)
         watchers = watchers_for(shown, chosen.live)
         built = build_node(robot.transport, robot.input_name, chosen, watchers=watchers, run=robot.run)
         stopping.node = built.node

@@ -34,6 +34,17 @@ class Robot:
     log: Log | None = None  # that is replayed
 
 
+@dataclass(frozen=True)
+class Source:
+    """What stands in for a robot on ROS."""
+
+    replay: Path | None
+    demo: bool
+    seed: int
+    rate: float  # times real time
+    results: Path | None
+
+
 class Show(Protocol):
     """What the user wants to see."""
 
@@ -74,10 +85,8 @@ def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
 def open_robot(
     settings: Settings,
     options: LogOptions,
+    source: Source,
     *,
-    replay: Path | None,
-    rate: float,
-    results: Path | None,
     say: Callable[[str], None],
 ) -> Robot:
     """Return where samples come from.
@@ -86,12 +95,16 @@ def open_robot(
         SlipwiseError: the log, the topics or the address cannot be used.
     """
     table = settings.live
-    if replay is not None:
-        return _replayed(table, options, replay, rate)
+    if source.demo:
+        from slipwise.demo.simulated_robot import SimulatedRobot
+
+        return Robot(SimulatedRobot(seed=source.seed, rate=source.rate), "wheel", "the slalom")
+    if source.replay is not None:
+        return _replayed(table, options, source.replay, source.rate)
     if table.transport == "stdin":
         from slipwise.live.pipe import Pipe
 
-        return Robot(Pipe(sys.stdin, _results(results)), table.input or "wheel", "standard input")
+        return Robot(Pipe(sys.stdin, _results(source.results)), table.input or "wheel", "standard input")
     if table.transport == "udp":
         from slipwise.live.udp import DEFAULT_ADDRESS, Udp
 

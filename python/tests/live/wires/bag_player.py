@@ -13,12 +13,12 @@ import sys
 import threading
 import time
 from collections import Counter
+from importlib import import_module
 from pathlib import Path
 
 import rclpy
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from rosidl_runtime_py.utilities import get_message
 
 HEARD = {
     "odometry": "nav_msgs/msg/Odometry",
@@ -27,6 +27,11 @@ HEARD = {
     "diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
     "model": "std_msgs/msg/String",
 }
+
+
+def get_message(name: str) -> type:
+    package, kind, message = name.split("/")
+    return getattr(import_module(f"{package}.{kind}"), message)
 
 
 def main(file: str, rate: float) -> None:
