@@ -185,8 +185,7 @@ void bind_mppi(nb::module_& m) {
           },
           "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
       .def(
-          "adopt",
-          [](Mppi& self, const Motions& models) { self.adopt(programs_of(models, self.settings().period)); },
+          "adopt", [](Mppi& self, const Motions& models) { self.adopt(programs_of(models, self.settings().period)); },
           "models"_a, "Drives through other models from the next step on; the last plan stays.")
       .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);
 }

@@ -229,6 +229,7 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "MotionLearner.load saved": lambda: _learner().save(),
     "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
     "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None)],
+    "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None)],
     "Mppi.step past": lambda: np.zeros((2, 2)),
     "Mppi.step reference": lambda: np.zeros((8, 3)),
     "NoiseGroup.__init__ residuals": lambda: list(np.ones((9, 3, 2))),
