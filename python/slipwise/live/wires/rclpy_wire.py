@@ -18,7 +18,7 @@ from slipwise.live.wires.topic_names import require_topic
 from slipwise.live.wires.wire import OnMessage, WireTopic
 
 _log = logging.getLogger(__name__)
-_DEPTH = 1000  # messages kept for a subscription while Python is busy
+_DEPTH = 1000  # messages kept for who is busy, on either side
 _LOOK = 0.25  # s between looks at who publishes
 
 
@@ -119,7 +119,7 @@ class RclpyWire:
         with self._lock:
             self._require_open()
             if require_topic(topic) not in self._publishers:
-                quality = _profile(Quality(reliable=True, latched=latched), depth=1 if latched else 10)
+                quality = _profile(Quality(reliable=True, latched=latched), depth=1 if latched else _DEPTH)
                 self._publishers[topic] = self._node.create_publisher(_class_of(type_name), topic, quality)
 
     def publish(self, topic: str, type_name: str, payload: bytes, *, latched: bool = False) -> None:

@@ -26,13 +26,13 @@ class Robot(Node):
         self.declare_parameter("gain", 1.0)
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-        self.odometry = self.create_publisher(Odometry, "/odom", 10)
+        self.odometry = self.create_publisher(Odometry, "/odom", 1000)
         self.imu = self.create_publisher(Imu, "/imu", best_effort)
         self.text = self.create_publisher(String, "/robot_description", latched)
         self.text.publish(String(data="<robot/>"))
         self.commands: list[tuple[int, float]] = []  # number, latency [s]
         self.models: list[str] = []
-        self.create_subscription(TwistStamped, "/cmd_vel", self.on_command, 100)
+        self.create_subscription(TwistStamped, "/cmd_vel", self.on_command, 1000)
         self.create_subscription(
             String, "/slipwise/model", lambda text: self.models.append(text.data), latched
         )

@@ -38,6 +38,7 @@ class Peer:
             "ROS_DOMAIN_ID": str(DOMAIN),
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "PYTHONUNBUFFERED": "1",
+            "CYDR_CACHE_DIR": str(python.parents[1] / "compiled"),  # of pyzeros; `make ros-peer` fills it
             **environment,
         }
         self._process = subprocess.Popen(

@@ -83,7 +83,16 @@ class Robot:
         return self.pressed if asked["do"] == "pressed" else self.commands
 
 
+def compile_messages() -> None:
+    """Let pyzeros compile what it needs; it keeps that in the folder that CYDR_CACHE_DIR names."""
+    for kind in (Attachment, Odometry, TwistStamped, Trigger.Request, Trigger.Response):
+        kind.deserialize(kind().serialize())
+
+
 async def main() -> None:
+    compile_messages()
+    if sys.argv[1] == "compile":
+        return
     robot = Robot(sys.argv[1])
     serving = asyncio.create_task(robot.serve())
     loop = asyncio.get_running_loop()

@@ -68,7 +68,7 @@ def other(router: str) -> Iterator[ZenohWire]:
 def met(ros_python: Path) -> Iterator[tuple[Peer, ZenohWire]]:
     """Start a node of pyzeros, and a wire that connects to it without a router."""
     address = free_address()
-    with Peer(ros_python, "pyzeros_node.py", address, environment={}) as peer:
+    with Peer(ros_python, "pyzeros_node.py", address, environment={}, patience=240.0) as peer:
         wire = ZenohWire(WireOptions(domain=DOMAIN, router=address))
         yield peer, wire
         wire.close()
