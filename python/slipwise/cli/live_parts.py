@@ -98,7 +98,7 @@ def open_robot(
     if source.demo:
         from slipwise.demo.simulated_robot import SimulatedRobot
 
-        return Robot(SimulatedRobot(seed=source.seed, rate=source.rate), "wheel", "the slalom")
+        return Robot(SimulatedRobot(seed=source.seed, rate=source.rate), "command", "the slalom")
     if source.replay is not None:
         return _replayed(table, options, source.replay, source.rate)
     if table.transport == "stdin":
