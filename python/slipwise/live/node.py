@@ -52,6 +52,7 @@ class NodeParts:
     applied: AppliedModel | None = None
     handover: Handover | None = None
     cache: Cache | None = None
+    save_every: float = SAVE_EVERY  # s of the wall clock
 
 
 class LiveNode:
@@ -79,7 +80,7 @@ class LiveNode:
             SlipwiseError: the transport cannot be used.
         """
         parts = self._parts
-        self._next["save"] = time.monotonic() + SAVE_EVERY
+        self._next["save"] = time.monotonic() + parts.save_every
         try:
             parts.transport.subscribe(self._arrive)
             while not self._stopped.is_set():
@@ -211,7 +212,7 @@ class LiveNode:
             self._next["status"] = now + STATUS_EVERY
             self._publish_status()
         if now >= self._next["save"]:
-            self._next["save"] = now + SAVE_EVERY
+            self._next["save"] = now + self._parts.save_every
             self.save()
 
     def _take_notices(self) -> None:
