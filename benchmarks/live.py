@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What `slipwise live` costs and survives: processor time, memory over a day, kill -9 at random instants.
 
-Processor time: the command as a process of its own on Cyclone DDS, hearing commands at 100 Hz, wheel speeds at
-50 Hz and poses at 20 Hz from another process in real time, publishing all it has. Memory: the node over a
+Processor time: the command as a process of its own on Cyclone DDS, hearing commands at 100 Hz, wheel speeds
+at 50 Hz and poses at 20 Hz from another process in real time, publishing all it has. Memory: the node over a
 simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is killed at
 random instants; then its cache is read, and a node goes on from it.
 
@@ -117,7 +117,9 @@ def processor_time(seconds: float) -> Cost:
             str(DOMAIN),
         ]
         topics = ["--command-topic", "/cmd_vel", "--wheel-topic", "/odom", "--pose-topic", "/pose"]
-        with subprocess.Popen([*command, *topics, "--cache", folder], stdout=output) as live:
+        with subprocess.Popen(
+            [*command, "--domain", str(DOMAIN), *topics, "--cache", folder], stdout=output
+        ) as live:
             try:
                 with publishing(seconds + WARM + 5.0):
                     time.sleep(WARM + 3.0)
@@ -243,7 +245,7 @@ def kills(count: int) -> Kills:
     """Kill a node that saves often, again and again; it always goes on from its cache."""
     random.seed(SEED)
     folder = Path(tempfile.mkdtemp())
-    table = LiveTable(cache=str(folder))
+    table = LiveTable(cache=str(folder), save_every=SAVES)
     settings = Settings().model_copy(update={"live": table})
     key = CacheKey.of(table.vehicle, "command", settings)
     readable = models = went_on = 0
@@ -272,7 +274,7 @@ def kills(count: int) -> Kills:
 
 
 def _live(settings: Settings, seconds: float, *, seed: int = SEED) -> None:
-    built = build_node(Driving(seconds, seed=seed), "command", settings, run=f"run {seed}", save_every=SAVES)
+    built = build_node(Driving(seconds, seed=seed), "command", settings, run=f"run {seed}")
     built.node.run()
 
 
@@ -281,9 +283,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument(
-        "--seconds", type=float, default=60.0, help="of processor time's run; 0: leave it out"
-    )
+    parser.add_argument("--seconds", type=float, default=60.0, help="of processor time; 0: leave it out")
     parser.add_argument("--hours", type=float, default=24.0, help="of the simulated day; 0: leave it out")
     parser.add_argument("--kills", type=int, default=200, help="0: leave them out")
     parser.add_argument("--json", type=Path, help="write the figures here")

@@ -57,5 +57,6 @@ class LiveTable(_Table):
     input: Literal["command", "wheel"] | None = None
     model: str | None = None  # start model
     cache: str | None = None  # folder
+    save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written
     gates: GatesTable = GatesTable()
     apply: ApplyTable = ApplyTable()

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from importlib.metadata import version
 
 import numpy as np
@@ -82,7 +83,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         range=facts.range,
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
-            slipwise_version=version("slipwise"),
+            slipwise_version=_version(),
             logs=facts.logs,
             settings=facts.settings.model_dump(exclude_defaults=True),
             learned_seconds=facts.seconds,
@@ -152,3 +153,9 @@ def _slip_disturbance(posterior: Posterior, segment: float) -> schema.SlipDistur
         for disturbance, weight in zip(law.candidates, law.weights, strict=True)
     ]
     return schema.SlipDisturbanceSection(segment=segment, candidates=candidates)
+
+
+@cache
+def _version() -> str:
+    """Looked up once: the lookup reads files."""
+    return version("slipwise")

@@ -18,7 +18,7 @@ from slipwise.live.gates import Gates, rules_for
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
-from slipwise.live.node import SAVE_EVERY, LiveNode, NodeParts
+from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
 from slipwise.live.status import Identity
 from slipwise.live.transport import Transport
@@ -42,7 +42,6 @@ def build_node(
     *,
     watchers: Sequence[Watcher] = (),
     run: str | None = None,
-    save_every: float = SAVE_EVERY,
 ) -> Built:
     """Return a node.
 
@@ -52,7 +51,6 @@ def build_node(
         settings: those of learning, and of [live].
         watchers: see all that the node gives.
         run: name of the run that begins; None: the transport says when one does.
-        save_every: s of the wall clock between two times that the cache is written.
 
     Raises:
         SettingsError: settings contradict themselves.
@@ -87,7 +85,7 @@ def build_node(
         applied=AppliedModel(table.apply, start) if applying else None,
         handover=Handover(table.apply, said) if applying else None,
         cache=cache,
-        save_every=save_every,
+        save_every=table.save_every,
     )
     return Built(LiveNode(parts), learning, said)
 

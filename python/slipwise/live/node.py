@@ -34,7 +34,6 @@ LONGEST_WAIT = 0.05  # s for a sample
 ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
-SAVE_EVERY = 60.0  # s of the wall clock
 AHEAD = 2.0  # s that the present command is predicted
 
 
@@ -52,7 +51,7 @@ class NodeParts:
     applied: AppliedModel | None = None
     handover: Handover | None = None
     cache: Cache | None = None
-    save_every: float = SAVE_EVERY  # s of the wall clock
+    save_every: float = 60.0  # s of the wall clock
 
 
 class LiveNode:

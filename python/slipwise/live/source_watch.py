@@ -4,12 +4,11 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
-
-from slipwise.live.outputs import Floats
 
 LOOKED_AT = 40  # newest values
 FEWEST = 8  # times that the courses take turns among these; an outlier is two
@@ -19,7 +18,7 @@ CLOSED_FOR = 5.0  # s after two sources were seen last
 
 @dataclass
 class _Course:
-    value: Floats
+    value: tuple[float, ...]
     number: int  # of the last value on it
 
 
@@ -39,29 +38,31 @@ class SourceWatch:
     """
 
     def __init__(self, far: tuple[float, ...], *, relative: float = 0.0) -> None:
-        self._far, self._relative = np.array(far), relative
+        self._far, self._relative = far, relative
         self._courses: list[_Course] = []
         self._assigned: deque[_Assigned] = deque(maxlen=LOOKED_AT)
         self._count = 0
-        self._until = -np.inf
+        self._until = -math.inf
 
     def take(self, t: float, values: tuple[float, ...]) -> bool:
         """Take a value [K] at its stamp [s]; return whether two sources speak now."""
-        value = np.array(values)
-        if np.isfinite(value).all():
+        if all(map(math.isfinite, values)):
             self._count += 1
-            self._assign(value)
+            self._assign(values)
             if self._assigned and self._assigned[-1].other > 1.0 and self._two():
                 self._until = t + CLOSED_FOR
-        return bool(t < self._until)
+        return t < self._until
 
-    def _assign(self, value: Floats) -> None:
-        far = np.maximum(self._far, self._relative * np.abs(value))
-        apart = [float(np.max(np.abs(value - course.value) / far)) for course in self._courses]
+    def _assign(self, value: tuple[float, ...]) -> None:
+        far = [max(least, self._relative * abs(each)) for least, each in zip(self._far, value, strict=True)]
+        apart = [
+            max(abs(a - b) / most for a, b, most in zip(value, course.value, far, strict=True))
+            for course in self._courses
+        ]
         if len(apart) < 2 and (not apart or apart[0] > 1.0):
             self._courses.append(_Course(value, self._count))
             return
-        nearer = int(np.argmin(apart))
+        nearer = apart.index(min(apart))
         if len(apart) == 2 and apart[nearer] > 1.0:  # near none: it replaces the one that was left longer ago
             nearer = int(self._courses[0].number > self._courses[1].number)
         self._courses[nearer] = _Course(value, self._count)

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from slipwise.models.parameter_table import PhysicalParameter
 
+_DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # the same text, several times faster in C
 EXTRINSICS_PARAMETERS = 3  # the last ones, where there are any
 LONGEST_CHAIN = 1000.0  # s; no drive answers its commands later
 
@@ -246,8 +247,12 @@ class Model:
         head = (
             f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
         )
-        body = yaml.safe_dump(
-            self.content.model_dump(mode="json"), sort_keys=False, width=120, default_flow_style=None
+        body = yaml.dump(
+            self.content.model_dump(mode="json"),
+            Dumper=_DUMPER,
+            sort_keys=False,
+            width=120,
+            default_flow_style=None,
         )
         return head + body
 
