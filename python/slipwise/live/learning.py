@@ -13,8 +13,8 @@ from slipwise.live.said import Said
 from slipwise.live.validity import ModelValidity
 from slipwise.models import Model
 
-OFTEN, SELDOM = 2.0, 10.0  # s between judgements: a long drive has many predictions to judge
-MANY = 200  # segments, from which on judgements are seldom
+OFTEN, SELDOM = 2.0, 5.0  # s between judgements: a long drive has many predictions to judge
+MANY = 100  # segments, from which on judgements are seldom
 AFTER_CHANGE = 60.0  # s after a change of terrain in which judgements are frequent all the same
 
 

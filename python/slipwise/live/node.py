@@ -5,9 +5,9 @@ from __future__ import annotations
 
 import json
 import math
-import queue
 import threading
 import time
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -21,16 +21,16 @@ from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
 from slipwise.live.odometry import odometry_of, path_ahead
-from slipwise.live.outputs import ModelText, Odometry, Output, Path
+from slipwise.live.outputs import ModelText, Odometry, Output, ParameterNow, Path
 from slipwise.live.said import Said
 from slipwise.live.samples import Override, Pose, Request, RunStart, Sample
-from slipwise.live.status import DrivenPath, Identity, Now, status_of
+from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
 
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
-LONGEST_WAIT = 0.05  # s for a sample
+REST = 0.005  # s between two looks for samples
 ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
@@ -59,12 +59,13 @@ class LiveNode:
 
     def __init__(self, parts: NodeParts) -> None:
         self._parts = parts
-        self._waiting: queue.Queue[Sample] = queue.Queue(MOST_WAITING)
+        self._waiting: deque[Sample] = deque()
         self._driven = DrivenPath()
         self._stopped = threading.Event()
         self._last_odometry = -math.inf  # s, stamp
         self._odometry: Odometry | None = None
         self._stuck = False
+        self._parameters: tuple[ParameterNow, ...] = ()
         self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
         self._given: object = self  # the model that others have; none yet
 
@@ -83,7 +84,7 @@ class LiveNode:
         try:
             parts.transport.subscribe(self._arrive)
             while not self._stopped.is_set():
-                if not self._take_some() and parts.transport.finished and self._waiting.empty():
+                if not self._take_some() and parts.transport.finished and not self._waiting:
                     break
                 self._tick()
         finally:
@@ -92,21 +93,17 @@ class LiveNode:
 
     def _arrive(self, sample: Sample) -> None:
         """Called from the transport's threads."""
-        while not self._stopped.is_set():
-            try:
-                self._waiting.put(sample, timeout=0.2)
-            except queue.Full:
-                continue
-            return
+        while len(self._waiting) >= MOST_WAITING and not self._stopped.is_set():
+            time.sleep(REST)
+        self._waiting.append(sample)
 
     def _take_some(self) -> bool:
         """Take what waits, up to a number; return whether there was anything."""
-        try:
-            self._take(self._waiting.get(timeout=LONGEST_WAIT))
-            for _ in range(AT_ONCE):
-                self._take(self._waiting.get_nowait())
-        except queue.Empty:
-            return not self._waiting.empty()
+        if not self._waiting:
+            time.sleep(REST)  # a lock for each sample would cost more than what is done with it
+            return False
+        for _ in range(min(len(self._waiting), AT_ONCE)):
+            self._take(self._waiting.popleft())
         return True
 
     def _take(self, sample: Sample) -> None:
@@ -124,6 +121,7 @@ class LiveNode:
             parts.learning.take(parts.intake.events())
             if parts.learning.judge(t):
                 self._publish_model(t)
+                self._parameters = parameters_now(parts.learning, parts.applied)
             self._watch_motion(t)
         if not isinstance(sample, Override):
             self._publish_odometry(t)
@@ -199,6 +197,7 @@ class LiveNode:
         else:
             parts.applied.jump(valid, parts.learning.validity.of)
             self._hand_on(t)
+            self._parameters = parameters_now(parts.learning, parts.applied)
 
     def _tick(self) -> None:
         now = time.monotonic()
@@ -227,8 +226,8 @@ class LiveNode:
         if predicted is not None:
             self._publish(predicted)
         now = Now(self._odometry, predicted, self._stuck, parts.gates.waits(parts.intake.newest))
-        shown = (parts.learning, parts.intake, parts.applied, parts.said)
-        self._publish(status_of(parts.who, shown, self._driven, now))
+        shown = (parts.learning, parts.intake, parts.said)
+        self._publish(status_of(parts.who, shown, self._parameters, self._driven, now))
 
     def _present_path(self) -> Path | None:
         newest = self._parts.intake.newest_input

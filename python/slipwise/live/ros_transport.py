@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 from slipwise.errors import SlipwiseError
-from slipwise.live.outputs import AppliedParameters, Output
+from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
 from slipwise.live.ros_messages import TOPICS, RosMessages
 from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
@@ -26,6 +26,7 @@ from slipwise.logs.topics import Roles
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 BOOL, EMPTY, STRING = "std_msgs/msg/Bool", "std_msgs/msg/Empty", "std_msgs/msg/String"
+DIAGNOSTICS_EVERY = 1.0  # s of the wall clock
 ANSWER_WITHIN = 2.0  # s, of a node whose parameters are set
 
 ToSample = Callable[[Any, float], Any]
@@ -61,6 +62,7 @@ class RosTransport:
         self._calls: queue.SimpleQueue[AppliedParameters | None] = queue.SimpleQueue()
         self._caller = threading.Thread(target=self._call_nodes, name="parameters", daemon=True)
         self._closed = False
+        self._said, self._said_at = ("", ""), -DIAGNOSTICS_EVERY
 
     def subscribe(self, on_sample: OnSample) -> None:
         """Subscribe to the topics of the roles, and announce what is published.
@@ -89,11 +91,21 @@ class RosTransport:
         if isinstance(output, AppliedParameters):
             self._calls.put(output)
             return
+        if isinstance(output, Status) and not self._is_news(output):
+            return
         for message in self._messages.of(output):
             with contextlib.suppress(SlipwiseError):
                 self._wire.publish(
                     self._full(message.topic), message.type, message.payload, latched=message.latched
                 )
+
+    def _is_news(self, status: Status) -> bool:
+        """Diagnostics come once a second, as is usual in ROS, or where something changed."""
+        now, said = time.monotonic(), (status.state, status.validity)
+        if said == self._said and now < self._said_at + DIAGNOSTICS_EVERY:
+            return False
+        self._said, self._said_at = said, now
+        return True
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call."""

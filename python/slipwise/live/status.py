@@ -58,10 +58,14 @@ class Now:
 
 
 def status_of(
-    who: Identity, parts: tuple[Learning, Intake, AppliedModel | None, Said], driven: DrivenPath, now: Now
+    who: Identity,
+    parts: tuple[Learning, Intake, Said],
+    parameters: tuple[ParameterNow, ...],
+    driven: DrivenPath,
+    now: Now,
 ) -> Status:
     """Return the state."""
-    learning, intake, applied, said = parts
+    learning, intake, said = parts
     state, why = _state(learning, intake, now)
     newest = intake.newest_input
     slip = None
@@ -79,7 +83,7 @@ def status_of(
         why=why,
         validity=learning.validity.whole,
         validity_why=learning.validity.why,
-        parameters=parameters_now(learning, applied),
+        parameters=parameters,
         driven=driven.rows(),
         odometry=now.odometry,
         predicted=now.predicted,
