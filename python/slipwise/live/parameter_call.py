@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,25 +17,35 @@ REQUEST, RESPONSE = f"{SET_PARAMETERS}_Request", f"{SET_PARAMETERS}_Response"
 _BOOL, _DOUBLE, _STRING, _DOUBLES = 1, 3, 4, 8  # of rcl_interfaces/msg/ParameterType
 
 
-def request_of(values: Mapping[str, Any], store: Typestore) -> tuple[bytes, list[str]]:
-    """Return the request as CDR with its header, and what was left out since it has no such type."""
+@dataclass(frozen=True)
+class ParameterRequest:
+    """What a node is asked to take."""
+
+    payload: bytes  # CDR with its header
+    names: list[str]  # of the parameters in it
+    left_out: list[str]  # sentences about those that have no type that ROS knows
+
+
+def request_of(values: Mapping[str, Any], store: Typestore) -> ParameterRequest:
+    """Return the request for values by their names."""
     types: dict[str, Any] = dict(store.types)
-    parameters, left_out = [], []
+    parameters, names, left_out = [], [], []
     for name, value in values.items():
         made = _value(types, value)
         if made is None:
             left_out.append(f"{name} has no type that SetParameters knows")
         else:
             parameters.append(types["rcl_interfaces/msg/Parameter"](name, made))
-    return bytes(store.serialize_cdr(types[REQUEST](parameters), REQUEST)), left_out
+            names.append(name)
+    return ParameterRequest(bytes(store.serialize_cdr(types[REQUEST](parameters), REQUEST)), names, left_out)
 
 
-def refused(answer: bytes, values: Mapping[str, Any], store: Typestore) -> list[str]:
+def refused(answer: bytes, names: Sequence[str], store: Typestore) -> list[str]:
     """Return what the node did not take, and why."""
     message: Any = store.deserialize_cdr(answer, RESPONSE)
     return [
         f"{name} was refused: {result.reason or 'without a reason'}"
-        for name, result in zip(values, message.results, strict=False)
+        for name, result in zip(names, message.results, strict=False)
         if not result.successful
     ]
 

@@ -171,13 +171,13 @@ class RosTransport:
 
     def _call_nodes(self) -> None:
         while (applied := self._calls.get()) is not None:
-            request, left_out = request_of(applied.values, self._reading)
+            request = request_of(applied.values, self._reading)
             service = f"{applied.node}/set_parameters"
-            answer = self._wire.call(service, SET_PARAMETERS, request, timeout=ANSWER_WITHIN)
+            answer = self._wire.call(service, SET_PARAMETERS, request.payload, timeout=ANSWER_WITHIN)
             if answer is None:
                 self._notices.put(f"{applied.node} does not answer: its parameters are as they were")
                 continue
-            for text in (*left_out, *refused(answer, applied.values, self._reading)):
+            for text in (*request.left_out, *refused(answer, request.names, self._reading)):
                 self._notices.put(f"{applied.node}: {text}")
 
 

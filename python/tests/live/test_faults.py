@@ -16,7 +16,8 @@ from scripted_node import Scripted, driven, run_node
 from slipwise.calibration import Settings
 from slipwise.calibration.live_table import LiveTable
 from slipwise.live.build import Built, build_node
-from slipwise.live.samples import Command, Pose, Sample, Wheels
+from slipwise.live.gates import RECOVERY
+from slipwise.live.samples import Command, Override, Pose, Sample, Wheels
 from slipwise.models import Model
 
 BEGIN, END = 45.0, 55.0  # s; the drive goes on until 90 s
@@ -127,6 +128,28 @@ def test_a_second_robot_on_the_same_topic_teaches_nothing(what: str) -> None:
     assert farthest(learned(after), learned(before)) <= 0.1
     closed = {key: n for key, n in transport.statuses[-1].counts.items() if "two sources" in key}
     assert sum(closed.values()) > 100
+
+
+def test_an_operator_who_drives_past_the_commands_teaches_nothing() -> None:
+    """Wheels say that the robot stands while an operator pushes it along."""
+    script: list[Sample] = []
+    for sample in drive():
+        t = stamped(sample)
+        if BEGIN <= t < END and isinstance(sample, Wheels):
+            sample = replace(sample, v=0.0, omega=0.0)
+        if t == BEGIN and isinstance(sample, Command):
+            script.append(Override(t, True))
+        if t == END and isinstance(sample, Command):
+            script.append(Override(t, False))
+        script.append(sample)
+    assert sum(isinstance(each, Override) for each in script) == 2
+    before, _ = run_node([s for s in drive() if stamped(s) < BEGIN])
+    until = [s for s in script if isinstance(s, Override) or stamped(s) < END + RECOVERY]
+    after, transport = run_node(until)
+    assert farthest(learned(after), learned(before)) <= 0.1
+    check_said_once(transport, "nothing is learned: an operator drives")
+    whole, _ = run_node(script)
+    assert whole.learning.segments > after.learning.segments + 10
 
 
 def test_a_full_disk_is_said_once_and_the_state_is_saved_when_there_is_room(tmp_path: Path) -> None:
