@@ -24,6 +24,7 @@ from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.show import show
 from slipwise.cli.simulate import simulate
+from slipwise.cli.terrain import terrain
 
 DEBUG = "--debug"
 #: Options that have another name since version 0.2; scripts that use the older one are told, and go on.
@@ -59,6 +60,7 @@ _COMMANDS = (
 )
 for _command, _summary in _COMMANDS:
     app.command(_command.__name__, short_help=_summary)(_command)
+app.add_typer(terrain, name="terrain", short_help="Name the surface by vibration and motor currents.")
 
 
 def _show_version(asked: bool) -> None:

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Names the surface under a robot by what its IMU and its motor currents feel, or says that it is unknown."""
+
+from slipwise.terrain.classifier import UNKNOWN, Answer, TerrainClassifier
+from slipwise.terrain.labels import write_labels
+from slipwise.terrain.recordings import Recording, Stream, read_recordings
+from slipwise.terrain.scores import Score, score_of
+from slipwise.terrain.terrain_file import load_classifier, save_classifier
+from slipwise.terrain.train import Training, train
+from slipwise.terrain.windows import Windows, cut_windows
+
+__all__ = [
+    "UNKNOWN",
+    "Answer",
+    "Recording",
+    "Score",
+    "Stream",
+    "TerrainClassifier",
+    "Training",
+    "Windows",
+    "cut_windows",
+    "load_classifier",
+    "read_recordings",
+    "save_classifier",
+    "score_of",
+    "train",
+    "write_labels",
+]

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What was learned about surfaces, and its answer for each window: probabilities, or "unknown"."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.errors import ModelError, SettingsError
+from slipwise.terrain.kernel_expert import KernelExpert
+from slipwise.terrain.pool import Pool, pooled, rejection_at
+from slipwise.terrain.tree_expert import TreeExpert
+from slipwise.terrain.windows import Cutting, Windows
+
+Floats = NDArray[np.float64]
+
+UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True)
+class TerrainClassifier:
+    """Experts for vibration and currents, and how their answers are pooled."""
+
+    surfaces: tuple[str, ...]
+    cutting: Cutting
+    vibration: KernelExpert | None
+    current: TreeExpert | None
+    pools: Mapping[str, Pool]  # by what a window has: "vibration", "current" or "both"
+
+    def answer(self, windows: Windows) -> Answer:
+        """Return what each window says, with all the sensors that it has.
+
+        Raises:
+            ModelError: no window has a measurement that the classifier was trained with.
+        """
+        shape = (len(windows), len(self.surfaces))
+        vibration, current = np.full(shape, np.nan), np.full(shape, np.nan)
+        newness = np.zeros(len(windows))
+        if self.vibration is not None:
+            rows = windows.has_vibration
+            vibration[rows] = self.vibration.probabilities(windows.vibration[rows])
+            newness[rows] = self.vibration.newness(windows.vibration[rows])
+        if self.current is not None:
+            rows = windows.has_current
+            current[rows] = self.current.probabilities(windows.current[rows])
+        kinds = kinds_of(vibration, current)
+        if len(windows) and not (kinds != "").any():
+            raise ModelError(
+                "the log has none of the sensors that the classifier was trained with",
+                advice=f"it knows {' and '.join(sorted(self.pools))}",
+            )
+        probability, unknown = np.full(shape, np.nan), np.full(len(windows), np.nan)
+        for kind, pool in self.pools.items():
+            rows = _equal(kinds, kind)
+            probability[rows] = pooled(pool, vibration[rows], current[rows])
+            unknown[rows] = pool.unknown(probability[rows], newness[rows])
+        return Answer(self.surfaces, kinds, probability, unknown)
+
+    def labels(self, answer: Answer, share: float) -> NDArray[np.object_]:
+        """Return the most probable surface of each window, or "unknown"; empty without a measurement.
+
+        Args:
+            answer: of `answer`.
+            share: which share of windows of unknown surfaces to call unknown; 0 calls none so.
+
+        Raises:
+            SettingsError: the share is not below 1.
+        """
+        if not 0.0 <= share < 1.0:
+            raise SettingsError(f"{share:g} is no share", where="--unknown", advice="from 0 to below 1")
+        named = np.array([*self.surfaces, ""], dtype=object)[answer.nearest]
+        for kind, pool in self.pools.items():
+            if share > 0.0 and pool.rejections:
+                bound = rejection_at(pool.rejections, share).bound
+                named[_equal(answer.kind, kind) & (answer.unknown >= bound)] = UNKNOWN
+        return named
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Probabilities for windows; NaN where a window has no measurement that is known."""
+
+    surfaces: tuple[str, ...]
+    kind: NDArray[np.object_]  # [N] "vibration", "current", "both", or empty
+    probability: Floats  # [N, K] of each surface, if it is one of those that were trained
+    unknown: Floats  # [N] that it is none of them, were that as likely as not beforehand
+
+    @property
+    def nearest(self) -> NDArray[np.int64]:
+        """Return the most probable surface of each window, [N]; K where nothing is known."""
+        known = np.asarray(np.isfinite(self.probability).all(axis=1))
+        best = np.where(known[:, None], self.probability, 0.0).argmax(axis=1)
+        return np.where(known, best, len(self.surfaces))
+
+
+def _equal(names: NDArray[np.object_], name: str) -> NDArray[np.bool_]:
+    return np.array([own == name for own in names], dtype=bool)
+
+
+def kinds_of(vibration: Floats, current: Floats) -> NDArray[np.object_]:
+    """Return what each window has, [N], from the experts' answers [N, K], NaN where they have none."""
+    has_vibration, has_current = np.isfinite(vibration).all(axis=1), np.isfinite(current).all(axis=1)
+    names = np.array(["", "current", "vibration", "both"], dtype=object)
+    return np.asarray(names[2 * has_vibration + has_current])
