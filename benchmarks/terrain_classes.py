@@ -59,7 +59,7 @@ def forest_probabilities(train: Windows, test: Windows, surfaces: Sequence[str])
     from sklearn.ensemble import RandomForestClassifier
 
     train = train.only(train.has_vibration & train.has_current)
-    forest = RandomForestClassifier(400, random_state=0, n_jobs=2)
+    forest = RandomForestClassifier(400, random_state=0, n_jobs=1)
     forest.fit(np.hstack([train.vibration, train.current]), train.label.astype(str))
     found = forest.predict_proba(np.hstack([test.vibration, test.current]))
     return np.asarray(found[:, [list(forest.classes_).index(name) for name in surfaces]])

@@ -56,7 +56,7 @@ def show_training(out: Output, training: Training) -> None:
     )
     for kind, pool in training.classifier.pools.items():
         if pool.rejections:
-            costs = (rejection_at(pool.rejections, share) for share in (0.5, 0.8))
+            costs = (rejection_at(pool.rejections, share) for share in (0.5, 0.85))
             text = ", ".join(f"{entry.unknown:.0%} costs {entry.known:.0%}" for entry in costs)
             out.line(f"Calling unknown surfaces unknown, of windows on known ones ({_SENSORS[kind]}): {text}")
 

@@ -20,7 +20,7 @@ from slipwise.planning.pgm import write_pgm
 Slipwise = Callable[..., Result]
 
 #: Paths that commands take: what they read, and what they write. `runs` is a folder that gets new folders.
-READ = {"logs", "poses", "settings", "model", "first", "second", "map_file", "data"}
+READ = {"classifier", "logs", "poses", "settings", "model", "first", "second", "map_file", "data"}
 WRITTEN = {"output", "report", "json", "predictions", "runs"}
 
 
@@ -78,6 +78,11 @@ def files(folder: Path, drive_csv: Path) -> None:
 
 ROUTE = ("--from=-1,-1,0", "--to", "1,1,0")
 DESTROYING = (
+    "terrain train drive.csv -o drive.csv",
+    "terrain train drive.csv -o new.json --json drive.csv",
+    "terrain classify m.yaml drive.csv -o drive.csv",
+    "terrain classify m.yaml drive.csv -o m.yaml",
+    "terrain classify m.yaml drive.csv -o new.csv --json m.yaml",
     "calibrate drive.csv -o drive.csv",
     "calibrate drive.csv --report drive.csv",
     "calibrate drive.csv --json drive.csv",
@@ -103,6 +108,8 @@ DESTROYING = (
     "plan --model m.yaml --map map.yaml -o map",
 )
 TWICE = (
+    "terrain train drive.csv -o x --json x",
+    "terrain classify m.yaml drive.csv -o x --json x",
     "calibrate drive.csv -o x --report x",
     "calibrate drive.csv -o x --json x",
     "evaluate drive.csv --predictions x --report x",
@@ -130,13 +137,17 @@ def test_every_command_refuses_and_leaves_everything_as_it_was(slipwise: Slipwis
 
 def test_every_path_that_a_command_takes_is_known_here() -> None:
     """A new option for a file must be named above, and in a line that says what it must not destroy."""
-    for command in app.registered_commands:
+    commands = [("", command) for command in app.registered_commands]
+    for group in app.registered_groups:
+        assert group.typer_instance is not None
+        commands += [(f"{group.name} ", command) for command in group.typer_instance.registered_commands]
+    for before, command in commands:
         assert command.callback is not None
+        name = before + command.callback.__name__
         signature = inspect.signature(command.callback, eval_str=True)
         paths = {name for name, parameter in signature.parameters.items() if "Path" in str(parameter)}
-        assert paths <= READ | WRITTEN, command.callback.__name__
-        lines = " ".join(line for line in (*DESTROYING, *TWICE) if line.startswith(command.callback.__name__))
-        assert lines, command.callback.__name__
+        assert paths <= READ | WRITTEN, name
+        assert any(line.startswith(f"{name} ") for line in (*DESTROYING, *TWICE)), name
 
 
 def test_calibrate_writes_through_a_link_and_keeps_the_mode(slipwise: Slipwise, drive_csv: Path) -> None:

@@ -4,6 +4,7 @@
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
@@ -62,13 +63,16 @@ def command_lines() -> list[tuple[str, str]]:
 @pytest.mark.parametrize(("page", "line"), command_lines())
 def test_a_command_line_is_understood(page: str, line: str) -> None:
     import typer
+    from typer.core import TyperGroup
 
     from slipwise.cli.main import app
 
-    name, *arguments = shlex.split(line, comments=True)[1:]
-    group = typer.main.get_command(app)
-    assert name in group.commands, f"{page}: no command {name}"  # type: ignore[attr-defined]
-    context = group.commands[name].make_context(name, arguments)  # type: ignore[attr-defined]
+    command: Any = typer.main.get_command(app)
+    words = shlex.split(line, comments=True)[1:]
+    while isinstance(command, TyperGroup):  # `slipwise terrain train` is a command of a command
+        assert words[0] in command.commands, f"{page}: no command {words[0]}"
+        command, words = command.commands[words[0]], words[1:]
+    context = command.make_context(command.name, words)
     assert context.params
 
 
