@@ -19,7 +19,10 @@ from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
 from slipwise.logs.unpacking import unpacking_at_most
 
-_KNOWN = "give a tidy CSV, CSV.gz or Parquet file, or a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder)"
+_KNOWN = (
+    "give a tidy CSV, CSV.gz or Parquet file, a ROS bag (.mcap, .db3, .bag, or a rosbag2 folder), "
+    "or the log of an autopilot (.bin, .tlog, .ulg)"
+)
 
 _GUESS = LogOptions()
 
@@ -28,7 +31,8 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     """Read one or several files as one log; runs of different files are never joined.
 
     Args:
-        paths: tidy tables (CSV, CSV.gz, Parquet) and bags (rosbag1, rosbag2 folder or .db3, MCAP).
+        paths: tidy tables (CSV, CSV.gz, Parquet), bags (rosbag1, rosbag2 folder or .db3, MCAP), and logs of
+            autopilots (ArduPilot .bin and .tlog, PX4 .ulg).
         options: what cannot be guessed.
 
     Raises:
@@ -97,6 +101,10 @@ def _read(file: Path, options: LogOptions, *, bag: bool) -> Log:
         from slipwise.logs.bag import read_bag
 
         return read_bag(file, options)
+    from slipwise.logs.flight_log import flight_format, read_flight_log
+
+    if flight_format(file) is not None:
+        return read_flight_log(file, options)
     from slipwise.logs.tidy import read_tidy
 
     return read_tidy(file, options)

@@ -47,11 +47,14 @@ def survey_log(path: str | Path, options: LogOptions) -> Survey:
     Raises:
         LogError: the file is missing, damaged or of an unknown kind.
     """
+    from slipwise.logs.flight_log import flight_format
     from slipwise.logs.open_log import named_in_errors, readable
 
     path = Path(path)
     file, bag = readable(path)
     with named_in_errors(path, file):
+        if not bag and (kind := flight_format(file)) is not None:
+            return _survey_flight(path, file, kind, options)
         return (_survey_bag if bag else _survey_table)(path, file, options)
 
 
@@ -87,6 +90,23 @@ def _part(topic: Topic, found: TopicRoles) -> Part:
     else:
         why = "; ".join(against) or "its type is no pose, command or wheel speed"
     return Part(topic.name, topic.type, topic.count, topic.rate, ", ".join(uses), why)
+
+
+def _survey_flight(path: Path, file: Path, kind: str, options: LogOptions) -> Survey:
+    from slipwise.logs.flight_log import flight_streams, read_flight_messages
+
+    messages = read_flight_messages(file, kind)
+    chosen = flight_streams(messages, options)
+    roles = {"command": chosen.commands, "wheel": chosen.wheels, "pose": chosen.poses}
+    parts = []
+    for name, columns in messages.topics.items():
+        used = [role for role, stream in roles.items() if stream and name in stream.topic.split(", ")]
+        t = columns["t"]
+        span = float(t[-1] - t[0])
+        rate = (len(t) - 1) / span if span > 0.0 else float("nan")
+        why = "; ".join(note for note in chosen.notes if name in note)
+        parts.append(Part(name, "message", len(t), rate, ", ".join(used), why))
+    return Survey(str(path), kind, tuple(parts))
 
 
 def _survey_table(path: Path, file: Path, options: LogOptions) -> Survey:

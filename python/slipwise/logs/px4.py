@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Chooses commands, wheels and poses of a rover among the topics of PX4."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from slipwise.logs.flight_roles import (
+    Columns,
+    FlightMessages,
+    FlightStream,
+    FlightStreams,
+    between,
+    held,
+    yaw_from_heading,
+)
+from slipwise.logs.kinematics import twist_from_wheels
+from slipwise.logs.log import Floats
+from slipwise.logs.options import LogOptions
+
+#: Where the commanded speed stands, newest version of PX4 first.
+SPEEDS = (
+    ("rover_speed_setpoint", "speed_body_x"),
+    ("rover_velocity_setpoint", "speed"),
+    ("rover_differential_setpoint", "speed"),
+    ("rover_differential_setpoint", "forward_speed_setpoint"),
+)
+YAW_RATES = (
+    ("rover_rate_setpoint", "yaw_rate_setpoint"),
+    ("rover_differential_setpoint", "yaw_rate"),
+    ("rover_differential_setpoint", "yaw_rate_setpoint"),
+)
+POSES, ATTITUDE, WHEELS = "vehicle_local_position", "vehicle_attitude", "wheel_encoders"
+TRACK = "RD_WHEEL_TRACK"  # [m] parameter of differential rovers
+
+
+def px4_streams(messages: FlightMessages, options: LogOptions) -> FlightStreams:
+    """Choose the streams; what is missing stays None, and what was guessed is noted."""
+    made = FlightStreams()
+    made.commands = _commands(messages, made.notes)
+    made.wheels = _wheels(messages, options, made.notes)
+    if POSES in messages.topics:
+        made.poses = _poses(messages.topics[POSES], messages.topics.get(ATTITUDE), made.notes)
+    return made
+
+
+def _found(messages: FlightMessages, names: tuple[tuple[str, str], ...]) -> tuple[str, Floats, Floats] | None:
+    """Return the first topic that has a finite value of the field, with its stamps and values."""
+    for topic, field in names:
+        columns = messages.topics.get(topic, {})
+        if field in columns and np.isfinite(columns[field]).any():
+            return topic, columns["t"], columns[field]
+    return None
+
+
+def _commands(messages: FlightMessages, notes: list[str]) -> FlightStream | None:
+    speed, rate = _found(messages, SPEEDS), _found(messages, YAW_RATES)
+    if speed is None or rate is None:
+        missing = "speed" if speed is None else "yaw rate"
+        notes.append(f"no commands: the log has no setpoint of {missing}, as where a pilot drives directly")
+        return None
+    notes.append(f"commands are PX4's setpoints: speed of {speed[0]}, yaw rate of {rate[0]}")
+    stamps = np.union1d(speed[1], rate[1])
+    columns = {"v": held(stamps, *speed[1:]), "omega": -held(stamps, *rate[1:])}
+    return FlightStream(f"{speed[0]}, {rate[0]}", stamps, columns)
+
+
+def _wheels(messages: FlightMessages, options: LogOptions, notes: list[str]) -> FlightStream | None:
+    topic = messages.topics.get(WHEELS)
+    if topic is None or "wheel_speed[1]" not in topic:
+        return None
+    separation = options.wheel_separation or messages.parameters.get(TRACK, 0.0)
+    if options.wheel_radius is None or not separation > 0.0:
+        notes.append(f"{WHEELS} is not used: give --wheel-radius and --wheel-separation in metres")
+        return None
+    if options.wheel_separation is None:
+        notes.append(f"the distance of the wheels is the parameter {TRACK}, {separation:g} m")
+    notes.append(f"{WHEELS}: 0 is taken to be the left wheel, 1 the right one, in rad/s")
+    v, omega = twist_from_wheels(
+        topic["wheel_speed[0]"],
+        topic["wheel_speed[1]"],
+        wheel_radius=options.wheel_radius,
+        wheel_separation=separation,
+    )
+    return FlightStream(WHEELS, topic["t"], {"v": v, "omega": omega})
+
+
+def _poses(topic: Columns, attitude: Columns | None, notes: list[str]) -> FlightStream:
+    """Make poses east-north-up; where the estimator jumps by a reset, a new frame begins."""
+    t = topic["t"]
+    count = len(t)
+    valid = topic.get("xy_valid", np.ones(count)) > 0.0
+    columns: dict[str, Floats] = {
+        "x": np.where(valid, topic["y"], np.nan),
+        "y": np.where(valid, topic["x"], np.nan),
+        "yaw": yaw_from_heading(topic["heading"] if "heading" in topic else topic["yaw"]),
+        "z": -topic["z"],
+    }
+    resets = [topic[name] for name in ("xy_reset_counter", "heading_reset_counter") if name in topic]
+    columns["frame"] = (
+        np.cumsum([np.diff(each, prepend=each[:1]) != 0.0 for each in resets], axis=1).sum(
+            axis=0, dtype=np.float64
+        )
+        if resets
+        else np.zeros(count)
+    )
+    if "eph" in topic:
+        columns["std_xy"] = topic["eph"] / np.sqrt(2.0)
+    if attitude is not None and "q[3]" in attitude:
+        w, x, y, z = (attitude[f"q[{k}]"] for k in range(4))
+        roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+        pitch = -np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))
+        columns |= {"roll": between(t, attitude["t"], roll), "pitch": between(t, attitude["t"], pitch)}
+    notes.append(
+        f"poses are those of PX4's estimator ({POSES}), which uses what it fuses; x is east, y north"
+    )
+    return FlightStream(POSES, t, columns)

@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Reads PX4's logs (.ulg) with pyulog."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from slipwise.errors import LogError
+from slipwise.logs.flight_roles import FlightMessages
+
+#: The topics that say anything about a rover's motion; those of several versions of PX4.
+TOPICS = (
+    "rover_differential_setpoint",
+    "rover_rate_setpoint",
+    "rover_speed_setpoint",
+    "rover_velocity_setpoint",
+    "vehicle_attitude",
+    "vehicle_local_position",
+    "wheel_encoders",
+)
+
+
+def read_ulog(path: Path) -> FlightMessages:
+    """Read a ULog; where a topic has several instances, the first.
+
+    Raises:
+        LogError: it is damaged, or pyulog is not installed.
+    """
+    try:
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            from pyulog import ULog
+
+            log = ULog(str(path), message_name_filter_list=list(TOPICS))
+            topics = {item.name: _columns(item) for item in log.data_list if item.multi_id == 0}
+            parameters = {str(name): float(value) for name, value in log.initial_parameters.items()}
+    except ImportError as error:
+        raise LogError(
+            "pyulog is not installed", where=str(path), advice="pip install 'slipwise[px4]'"
+        ) from error
+    except Exception as error:  # damaged bytes make the library raise anything
+        reason = f"{type(error).__name__} {error}"[:200]
+        raise LogError(
+            f"not a readable ULog: {reason}", where=str(path), advice="copy it again from the vehicle"
+        ) from error
+    return FlightMessages("ulog", {name: each for name, each in topics.items() if len(each["t"])}, parameters)
+
+
+def _columns(item: Any) -> dict[str, Any]:
+    columns = {name: np.asarray(values, dtype=np.float64) for name, values in item.data.items()}
+    return columns | {"t": columns["timestamp"] * 1e-6}
