@@ -16,6 +16,7 @@ from slipwise.cli.convert import convert
 from slipwise.cli.demo import demo
 from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
+from slipwise.cli.excite import excite
 from slipwise.cli.export import export
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
@@ -54,6 +55,7 @@ _COMMANDS = (
     (export, "Write a model into files for other tools."),
     (plan, "Plan a route through a map with a learned model."),
     (lattice, "Write primitives that the robot can drive, for Nav2."),
+    (excite, "Find the drive that teaches most, inside an area."),
     (simulate, "Record a simulated drive."),
     (convert, "Write logs as a tidy table or as MCAP."),
     (reproduce, "Make the thesis's figures and tables again."),

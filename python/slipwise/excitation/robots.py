@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Robots drawn from what is known, and how far they come under a drive that nobody corrects."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.excitation.knowledge import Knowledge
+
+Floats = NDArray[np.float64]
+
+PERIOD = 0.1  # s, of the rollouts
+THREE_SIGMA = 2.782  # normal quantile of 99.73 %, which three standard deviations hold in one dimension
+
+
+@dataclass(frozen=True, eq=False)
+class Robots:
+    """Drawn robots, each a program of the core."""
+
+    programs: tuple[_core.RolloutProgram, ...]
+
+    def paths(self, commands: Floats) -> Floats:
+        """Return where each robot comes under one sequence of commands [K, 2]: [S, 3, K] m, m, rad."""
+        return np.stack([_rolled(program, commands[None])[:, :, 0] for program in self.programs])
+
+    def box(self, commands: Floats) -> Floats:
+        """Return least and largest x, y [4] m that any robot reaches under a sequence of commands [K, 2]."""
+        boxes, _ = self._boxes(commands[None], np.full(2, np.inf))
+        return np.asarray(boxes[0])
+
+    def inside(self, commands: Floats, room: Floats) -> tuple[NDArray[np.bool_], Floats]:
+        """Return which sequences of commands [N, K, 2] keep the robots within a room, and where they end.
+
+        Args:
+            commands: what every robot is commanded.
+            room: width and depth [2] m; where the room stands about the start is free.
+
+        Returns:
+            whether all robots fit [N], and how far from the start the farthest one ends [N] m, where they do.
+        """
+        box, end = self._boxes(commands, room)
+        return fits(box, room), end
+
+    def _boxes(self, commands: Floats, room: Floats) -> tuple[Floats, Floats]:
+        """Return boxes [N, 4] and farthest ends [N]; a sequence that leaves the room is not followed on."""
+        box, end = np.zeros((len(commands), 4)), np.zeros(len(commands))  # all begin at the start
+        left = np.arange(len(commands))
+        for program in self.programs:
+            path = _rolled(program, commands[left])
+            lowest, highest = path[:2].min(axis=1), path[:2].max(axis=1)
+            box[left, ::2] = np.minimum(box[left, ::2], lowest.T)
+            box[left, 1::2] = np.maximum(box[left, 1::2], highest.T)
+            end[left] = np.maximum(end[left], np.hypot(path[0, -1], path[1, -1]))
+            left = left[fits(box[left], room)]
+            if len(left) == 0:
+                break
+        return box, end
+
+
+def fits(box: Floats, room: Floats) -> NDArray[np.bool_]:
+    """Whether boxes [N, 4] are no wider and deeper than the room [2] m."""
+    return np.asarray((box[:, 1] - box[:, 0] <= room[0]) & (box[:, 3] - box[:, 2] <= room[1]))
+
+
+def drawn_robots(knowledge: Knowledge, count: int, *, seed: int) -> Robots:
+    """Draw robots from the spread of what is known, a normal distribution."""
+    return _robots(knowledge, np.random.default_rng(seed).standard_normal((count, len(knowledge.mean))))
+
+
+def edge_robots(knowledge: Knowledge, count: int, *, seed: int) -> Robots:
+    """Draw robots from the edge of the region that holds 99.73 % of them, and the mean robot.
+
+    In one dimension that region is three standard deviations wide.
+    """
+    size = len(knowledge.mean)
+    drawn = np.random.default_rng(seed).standard_normal((count, size))
+    if size:
+        drawn *= edge_radius(size) / np.linalg.norm(drawn, axis=1, keepdims=True)
+    return _robots(knowledge, np.vstack((np.zeros(size), drawn)))
+
+
+def edge_radius(size: int) -> float:
+    """Return the Mahalanobis radius of the region that holds 99.73 % (Wilson and Hilferty 1931)."""
+    part = 2.0 / (9.0 * size)
+    return math.sqrt(size * (1.0 - part + THREE_SIGMA * math.sqrt(part)) ** 3)
+
+
+def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:
+    values, vectors = np.linalg.eigh(knowledge.spread)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    parameters = knowledge.mean + drawn @ root.T
+    motion, limits = knowledge.motion, knowledge.limits
+    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, 0.0, 0.0, limits) for row in parameters))
+
+
+def _rolled(program: _core.RolloutProgram, commands: Floats) -> Floats:
+    """Return the path [3, K, N] from rest in the origin."""
+    rollouts, periods = commands.shape[:2]
+    path = np.empty((3, periods, rollouts))
+    start = _core.StartList(np.zeros((1, 5)), np.zeros((1, 0, 2)))
+    level = _core.instruction_levels()[-1]
+    _core.rollout_batch(program, commands, start, path, None, None, None, 1, level, None)
+    return path

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise excite` writes a table, a bag and a page, or says what is wrong."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from cli.conftest import Result
+from sample_models import make_model, named
+
+Slipwise = Callable[..., Result]
+QUICK = ("--area", "20x20", "--minutes", "0.4")
+
+
+@pytest.mark.slow
+def test_excite_writes_table_bag_page_and_document(slipwise: Slipwise, folder: Path) -> None:
+    result = slipwise("excite", *QUICK, "--vehicle", "husky", "-o", "first", "--json", "first.json")
+    assert (result.code, result.err) == (0, "")
+    assert "moves of 2.00 s" in result.out
+    assert Path("first.csv").read_text(encoding="utf-8").startswith("t,cmd_v,cmd_omega\n")
+    assert Path("first.mcap").read_bytes().startswith(b"\x89MCAP")
+    assert "What each move teaches" in Path("first.html").read_text(encoding="utf-8")
+    document = json.loads(Path("first.json").read_text(encoding="utf-8"))
+    assert document["lessons"][-1]["worst_yaw_std"] < document["lessons"][0]["worst_yaw_std"]
+    assert len(document["parameters"]) == len(document["lessons"][0]["std"])
+
+
+@pytest.mark.slow
+def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Path) -> None:
+    make_model(named("edd-2", ang__w=-0.3)).save(folder / "model.yaml")
+    result = slipwise("excite", *QUICK, "--model", "model.yaml", "-o", "second", "--json", "-")
+    assert (result.code, result.err) == (0, "")
+    document = json.loads(result.out)
+    assert document["parameters"][0] == "lon.V"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--vehicle", "unicycle"), "husky"),
+        ((), "--vehicle"),
+        (("--vehicle", "husky", "--area", "8"), "8x8"),
+        (("--vehicle", "husky", "--minutes", "0.01"), "too short"),
+        (("--vehicle", "husky", "--speed", "-1"), "speed"),
+        (("--vehicle", "husky", "--hold", "0.33"), "hold"),
+    ],
+)
+def test_wrong_use_ends_with_code_2_and_says_why(
+    slipwise: Slipwise, folder: Path, arguments: tuple[str, ...], message: str
+) -> None:
+    result = slipwise("excite", *arguments)
+    assert result.code == 2
+    assert message in result.err
+    assert not list(folder.glob("excite.*"))

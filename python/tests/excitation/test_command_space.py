@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Command spaces hold commands within their limits and refuse limits that are none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.excitation import CommandSpace
+
+
+def test_grid_reaches_the_limits_and_leaves_out_what_is_too_quick_in_a_turn() -> None:
+    grid = CommandSpace(3.0, 2.0, 4.0).grid(4)
+    assert np.abs(grid).max(axis=0).tolist() == [3.0, 2.0]
+    assert np.abs(grid.prod(axis=1)).max() <= 4.0 + 1e-9
+    assert [2.0, 2.0] in grid.tolist()
+    assert [3.0, 2.0] not in grid.tolist()
+
+
+def test_quadrant_goes_forwards_and_left_and_never_stands() -> None:
+    quadrant = CommandSpace(1.0, 1.0).quadrant(3)
+    assert (quadrant >= 0.0).all()
+    assert len(quadrant) == 8
+
+
+def test_slower_space_has_a_fraction_of_the_limits() -> None:
+    assert CommandSpace(2.0, 1.0, 3.0).slower(0.25, 0.5) == CommandSpace(0.5, 0.5, 3.0)
+
+
+@pytest.mark.parametrize(
+    "limits", [(0.0, 1.0), (1.0, -1.0), (math.nan, 1.0), (math.inf, 1.0), (1.0, 1.0, 0.0)]
+)
+def test_limit_that_is_none_is_refused(limits: tuple[float, ...]) -> None:
+    with pytest.raises(SettingsError, match="the limit"):
+        CommandSpace(*limits)
