@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What designed drives teach beside uniform random and typical driving, and whether they stay inside.
+
+Three tables: the worst prediction by the mathematics alone, on a finer grid than the design uses; a thousand
+robots drawn from the prior per vehicle and area; and models learned in MuJoCo, whose physics is not ours.
+Uniform random commands are the protocol of Baril et al. (DRIVE).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from slipwise.calibration import calibrate
+from slipwise.evaluation import EvaluationOptions, evaluate
+from slipwise.excitation import (
+    VEHICLES,
+    CommandSpace,
+    ExcitationOptions,
+    Knowledge,
+    Move,
+    command_inputs,
+    design_drive,
+    drawn_robots,
+    prior_knowledge,
+)
+from slipwise.excitation.information import (
+    PoseStd,
+    WorstPrediction,
+    information,
+    move_jacobians,
+    prediction_jacobians,
+    prior_information,
+)
+from slipwise.excitation.moves import command_periods
+from slipwise.excitation.robots import PERIOD
+from slipwise.logs import Inputs, Log
+from slipwise.models import Model
+from slipwise.simulation import Scenario, simulate
+
+SPACE = CommandSpace(3.0, 2.0, 4.0)
+COUNTS = (5, 10, 20)
+JUDGED = 13  # levels of speed and yaw rate from zero to their limits
+DRAWS = 200  # of random drives
+SIGMA = 0.3  # of every term
+STEP = 6.0  # s of a command in the uniform protocol
+TEST_SECONDS = 120.0
+NOISE = {"std_xy": 0.02, "std_yaw": 0.01}
+Pairs = dict[str, dict[int, tuple[float, float]]]
+
+
+def design_table() -> Pairs:
+    """Return the worst yaw [rad] and position [m] after some moves of 2 s, by protocol."""
+    by_fraction = prior_knowledge(SPACE, dynamics=False)
+    flat = SIGMA**2 * np.eye(len(by_fraction.mean))
+    priors = {"each term": replace(by_fraction, covariance=flat, spread=flat), "fraction": by_fraction}
+    return {name: row for prior, knowledge in priors.items() for name, row in _rows(prior, knowledge).items()}
+
+
+def _rows(prior: str, knowledge: Knowledge) -> Pairs:
+    judge = WorstPrediction(prediction_jacobians(knowledge, SPACE.grid(JUDGED), 2.0))
+    options = ExcitationOptions(area=None, pause=0.0, minutes=0.7, levels=9)
+    grid = SPACE.grid(JUDGED)
+    told = np.array([_told(knowledge, v, omega) for v, omega in grid.tolist()])
+    start = prior_information(knowledge)
+    designed = [_told(knowledge, m.v, m.omega) for m in design_drive(knowledge, SPACE, options).moves]
+    v, omega = grid.T
+    typical = np.flatnonzero((v >= 0.4) & (v <= 1.6) & (np.abs(omega) < 0.5))
+    rows = {f"designed, {prior}": {n: judge.sigmas(start + np.sum(designed[:n], axis=0)) for n in COUNTS}}
+    random = np.random.default_rng(0)
+    for name, places in (("uniform", np.arange(len(grid))), ("typical", typical)):
+        rows[f"{name}, {prior}"] = {}
+        for n in COUNTS:
+            drawn = [judge.sigmas(start + told[random.choice(places, n)].sum(axis=0)) for _ in range(DRAWS)]
+            yaw, position = np.median(drawn, axis=0).tolist()
+            rows[f"{name}, {prior}"][n] = yaw, position
+    return rows
+
+
+def _told(knowledge: Knowledge, v: float, omega: float) -> np.ndarray:
+    return information(move_jacobians(knowledge, [Move(v, omega, 2.0, 0.0)])[0], PoseStd())
+
+
+def area_table(side: float) -> dict[str, dict[str, float]]:
+    """Return per vehicle how sure a minute makes it, and how far a thousand robots stay from the fence."""
+    rows = {}
+    for name, vehicle in VEHICLES.items():
+        knowledge = prior_knowledge(vehicle.space)
+        options = ExcitationOptions(area=(side, side), radius=vehicle.radius)
+        drive = design_drive(knowledge, vehicle.space, options)
+        judge = WorstPrediction(prediction_jacobians(knowledge, vehicle.space.grid(7), 2.0))
+        told = [information(each, options.std) for each in move_jacobians(knowledge, drive.moves, 1.0)]
+        before = judge.sigmas(prior_information(knowledge))
+        after = judge.sigmas(prior_information(knowledge) + np.sum(told, axis=0))
+        x, y = drive.start
+        rooms = []
+        for robot in drawn_robots(knowledge, 1000, seed=2026).paths(command_periods(drive.moves, PERIOD)):
+            left, right = x + robot[0].min(), side - x - robot[0].max()
+            below, above = y + robot[1].min(), side - y - robot[1].max()
+            rooms.append(min(left, right, below, above) - vehicle.radius)
+        rows[name] = {
+            "moves": len(drive.moves),
+            "seconds": drive.seconds,
+            "fastest": max(abs(move.v) for move in drive.moves),
+            "yaw before": before[0],
+            "yaw after": after[0],
+            "position before": before[1],
+            "position after": after[1],
+            "robots outside": int(np.sum(np.array(rooms) < 0.0)),
+            "least room": float(min(rooms)),
+        }
+    return rows
+
+
+def physics_table(seeds: int) -> dict[str, dict[str, tuple[float, float]]]:
+    """Return mean held-out errors after 2 s [m, rad] of models learned in MuJoCo, by test and drive."""
+    space = VEHICLES["land-tamer"].space
+    drives = {}
+    for area in (None, (20.0, 20.0)):
+        options = ExcitationOptions(area=area, minutes=1.0 / 3.0, hold=2.3, pause=0.0, radius=0.5)
+        name = "designed, 20 s" + ("" if area is None else f", {area[0]:g} m square")
+        drives[name] = command_inputs(design_drive(prior_knowledge(space), space, options))
+    tests = {
+        "circles and random driving": simulate(Scenario(duration=TEST_SECONDS), seed=50).log,
+        "random steps": _recorded(_steps(space, 1005, TEST_SECONDS, (1.0, 4.0)), TEST_SECONDS, 51),
+    }
+    models: dict[str, Model] = {}
+    for seed in range(seeds):
+        for name, commands in drives.items():
+            models[f"{name} #{seed}"] = _learned(commands, 20.0, seed)
+        for seconds in (20.0, 60.0):
+            commands = _steps(space, seed, seconds, (STEP, STEP))
+            models[f"uniform, {seconds:g} s #{seed}"] = _learned(commands, seconds, seed)
+    return {test: _errors(log, models) for test, log in tests.items()}
+
+
+def _errors(log: Log, models: dict[str, Model]) -> dict[str, tuple[float, float]]:
+    options = EvaluationOptions(horizons=(2.0,), methods=("none", *models), model=models)
+    found: dict[str, list[tuple[float, float]]] = {}
+    for score in evaluate(log, input="command", options=options).scores:
+        name = score.method.split(" #")[0]
+        found.setdefault(name, []).append((score.position.mean, score.heading.mean))
+    return {name: tuple(np.mean(errors, axis=0).tolist()) for name, errors in found.items()}
+
+
+def _steps(space: CommandSpace, seed: int, seconds: float, stay: tuple[float, float]) -> Inputs:
+    """Return uniform random commands, each held for a uniform random time [s]."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, 0.05)
+    ends = np.cumsum(random.uniform(*stay, int(seconds / stay[0]) + 1))
+    place = np.searchsorted(ends, t, side="right")
+    v = random.uniform(-space.speed, space.speed, len(ends) + 1)[place]
+    omega = random.uniform(-space.yaw_rate, space.yaw_rate, len(ends) + 1)[place]
+    return Inputs(t=t, v=v, vy=np.zeros_like(t), omega=omega)
+
+
+def _recorded(commands: Inputs, seconds: float, seed: int) -> Log:
+    return simulate(Scenario(duration=seconds, commands=commands, **NOISE), seed=seed).log
+
+
+def _learned(commands: Inputs, seconds: float, seed: int) -> Model:
+    return calibrate(_recorded(commands, seconds, seed), input="command").model
+
+
+def main() -> None:
+    """Print the tables; write them as JSON where asked for."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--area", type=float, default=8.0, help="side of the square [m]")
+    parser.add_argument("--seeds", type=int, default=4, help="of MuJoCo's drives")
+    parser.add_argument("-o", "--output", type=Path, help="JSON file")
+    given = parser.parse_args()
+    tables = {"design": design_table(), "area": area_table(given.area), "physics": physics_table(given.seeds)}
+    for row, counts in tables["design"].items():
+        cells = "  ".join(f"{n}: {yaw:.4f} rad {position:.3f} m" for n, (yaw, position) in counts.items())
+        print(f"{row:<22} {cells}")
+    for row, numbers in tables["area"].items():
+        print(f"{row:<12}", "  ".join(f"{name} {value:.3g}" for name, value in numbers.items()))
+    for test, methods in tables["physics"].items():
+        for row, (position, heading) in methods.items():
+            print(f"{test:<28} {row:<32} {position:.4f} m {heading:.4f} rad")
+    if given.output is not None:
+        given.output.write_text(json.dumps(tables, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
