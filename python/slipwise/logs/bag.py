@@ -20,6 +20,7 @@ from slipwise.logs.bag_streams import (
     pose_stream,
     wheel_stream,
 )
+from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
@@ -76,7 +77,7 @@ def read_bag(path: Path, options: LogOptions) -> Log:
     """
     tally = Tally()
     files = bag_files(path)
-    with BagFile(path, files, tally) as bag:
+    with open_bag(path, files, tally) as bag:
         try:
             transforms = collect_transforms(bag, options)
             source = transform_source(bag, transforms, options)

@@ -60,11 +60,12 @@ def survey_log(path: str | Path, options: LogOptions) -> Survey:
 
 def _survey_bag(path: Path, file: Path, options: LogOptions) -> Survey:
     from slipwise.logs.bag import collect_transforms, transform_source
-    from slipwise.logs.bag_file import BagFile, bag_files
+    from slipwise.logs.bag_file import bag_files
+    from slipwise.logs.foxglove_file import open_bag
     from slipwise.logs.topics import weigh_topics
 
     tally = Tally()
-    with BagFile(file, bag_files(file), tally) as bag:
+    with open_bag(file, bag_files(file), tally) as bag:
         topics = sorted(bag.topics, key=lambda topic: topic.name)
         if not any(topic.count for topic in topics) and any(e.kind == DAMAGED for e in tally.result()):
             raise LogError("the bag is cut off: no message is left", where=str(path), advice="copy it again")
@@ -104,7 +105,7 @@ def _survey_flight(path: Path, file: Path, kind: str, options: LogOptions) -> Su
         t = columns["t"]
         span = float(t[-1] - t[0])
         rate = (len(t) - 1) / span if span > 0.0 else float("nan")
-        why = "; ".join(note for note in chosen.notes if name in note)
+        why = "; ".join(note for note in chosen.notes if name in note) or "not needed beside the others"
         parts.append(Part(name, "message", len(t), rate, ", ".join(used), why))
     return Survey(str(path), kind, tuple(parts))
 
