@@ -78,6 +78,12 @@ def labels_part(windows: Windows, answer: Answer, labels: NDArray[np.object_]) -
         given = known & (labels != UNKNOWN)
         right = float((labels[given] == windows.label[given]).mean()) if given.any() else None
         content["score"] = plain_score(score)
+        by_sensors = {kind: known & np.array([own == kind for own in answer.kind]) for kind in _SENSORS}
+        content["score_by_sensors"] = {
+            kind: plain_score(score_of(answer.probability[rows], windows.label[rows], answer.surfaces))
+            for kind, rows in by_sensors.items()
+            if rows.any()
+        }
         content["named"] = {"share": float(given.sum() / known.sum()), "accuracy": right}
     if strange.any():
         content["not_trained"] = {
@@ -101,11 +107,13 @@ def show_labels(out: Output, content: dict[str, Any], classifier: TerrainClassif
                 f"so are {cost.known:.0%} of the others ({_SENSORS[kind]}, as estimated in training)."
             )
     if "score" in content:
-        score, named = content["score"], content["named"]
-        out.line(
-            f"Against the log's own names: the most probable surface is right in {score['accuracy']:.3f} of "
-            f"{score['windows']} windows, expected calibration error {score['calibration_error']:.3f}."
-        )
+        named = content["named"]
+        for kind, score in content["score_by_sensors"].items():
+            out.line(
+                f"Against the log's own names: the most probable surface is right in {score['accuracy']:.3f} "
+                f"of {score['windows']} windows with {_SENSORS[kind]}, "
+                f"expected calibration error {score['calibration_error']:.3f}."
+            )
         if named["accuracy"] is not None:
             out.line(f"Labels name {named['share']:.0%} of them, {named['accuracy']:.3f} of these rightly.")
     if "not_trained" in content:
