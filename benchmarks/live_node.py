@@ -6,7 +6,7 @@ at 50 Hz and poses at 20 Hz from another process in real time, publishing all it
 simulated day (`driven_day`), as fast as it goes. Kill: a node that saves several times a second is killed at
 random instants; then its cache is read, and a node goes on from it.
 
-    python benchmarks/live.py --seconds 60 --hours 24 --kills 200 --json live.json
+    python benchmarks/live_node.py --seconds 60 --hours 24 --kills 200 --json live.json
 """
 
 from __future__ import annotations
