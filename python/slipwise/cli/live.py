@@ -112,7 +112,8 @@ def live(
         "cache": cache and str(cache), "input": input_name and input_name.value, "apply": apply,
     }  # fmt: skip
     chosen = live_settings(chosen_settings(settings, basis), given)
-    refuse_unwritable(output, record, inputs=(replay, settings, model))
+    to_file = None if results is None or str(results) == "-" else results
+    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, log_options.poses))
     shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove, host, record)
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, seed, rate, results)

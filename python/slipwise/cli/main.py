@@ -104,10 +104,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def run(arguments: Sequence[str]) -> int:
     """Run one command; return its exit code: 0 success, 1 not good enough, 2 bad input or use."""
     plain = [argument for argument in arguments if argument != DEBUG] or ["--help"]
-    return exit_code_of(lambda: _invoke(_with_new_names(_with_ports(plain))), debug=DEBUG in arguments)
+    return exit_code_of(lambda: _invoke(_with_new_names(with_ports(plain))), debug=DEBUG in arguments)
 
 
-def _with_ports(arguments: list[str]) -> list[str]:
+def with_ports(arguments: list[str]) -> list[str]:
     """The same with a port after each option of a server that has none."""
     result = []
     for argument, after in zip(arguments, [*arguments[1:], ""], strict=True):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drives a slalom with one controller and models from several sources: does a learned model drive better?"""
+"""Drives a slalom with one controller and models from several sources, to see which drives better."""
 
 from __future__ import annotations
 

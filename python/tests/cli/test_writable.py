@@ -20,8 +20,8 @@ from slipwise.planning.pgm import write_pgm
 Slipwise = Callable[..., Result]
 
 #: Paths that commands take: what they read, and what they write. `runs` is a folder that gets new folders.
-READ = {"classifier", "logs", "poses", "settings", "model", "first", "second", "map_file", "data"}
-WRITTEN = {"output", "report", "json", "predictions", "runs"}
+READ = {"classifier", "logs", "replay", "poses", "settings", "model", "first", "second", "map_file", "data"}
+WRITTEN = {"output", "report", "json", "predictions", "runs", "record", "results", "cache"}
 
 
 def by_symlink(path: Path) -> Path:
@@ -92,6 +92,11 @@ DESTROYING = (
     "evaluate drive.csv --json drive.csv",
     "evaluate drive.csv --model m.yaml --report m.yaml",
     "evaluate drive.csv --settings s.toml --json s.toml",
+    "live --replay drive.csv -o drive.csv",
+    "live --replay drive.csv --record drive.csv",
+    "live --replay drive.csv --results drive.csv",
+    "live --replay drive.csv --model m.yaml -o m.yaml",
+    "live --replay drive.csv --settings s.toml -o s.toml",
     "inspect drive.csv --json drive.csv",
     "inspect drive.csv --settings s.toml --json s.toml",
     "convert drive.csv -o drive.csv",
@@ -113,6 +118,7 @@ TWICE = (
     "calibrate drive.csv -o x --report x",
     "calibrate drive.csv -o x --json x",
     "evaluate drive.csv --predictions x --report x",
+    "live --replay drive.csv -o x --record x",
     "convert drive.csv -o x.csv --json x.csv",
     "simulate -o x.csv --json x.csv",
     "export m.yaml --to amcl -o x --json x",

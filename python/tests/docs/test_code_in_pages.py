@@ -65,10 +65,10 @@ def test_a_command_line_is_understood(page: str, line: str) -> None:
     import typer
     from typer.core import TyperGroup
 
-    from slipwise.cli.main import app
+    from slipwise.cli.main import app, with_ports
 
     command: Any = typer.main.get_command(app)
-    words = shlex.split(line, comments=True)[1:]
+    words = with_ports(shlex.split(line, comments=True)[1:])
     while isinstance(command, TyperGroup):  # `slipwise terrain train` is a command of a command
         assert words[0] in command.commands, f"{page}: no command {words[0]}"
         command, words = command.commands[words[0]], words[1:]
