@@ -18,6 +18,7 @@ from slipwise.cli.errors import exit_code_of
 from slipwise.cli.evaluate import evaluate
 from slipwise.cli.excite import excite
 from slipwise.cli.export import export
+from slipwise.cli.fleet import fleet
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
@@ -50,6 +51,7 @@ _COMMANDS = (
     (calibrate, "Learn a motion model from logs."),
     (live, "Learn while the robot drives."),
     (evaluate, "Compare methods on logs, honestly."),
+    (fleet, "Learn many logs of many robots, and say what stands out."),
     (show, "Say what a model has learned."),
     (compare, "Say what differs between two models."),
     (export, "Write a model into files for other tools."),

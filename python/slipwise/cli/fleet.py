@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise fleet`: many logs of many robots, learned once each and looked at together."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from slipwise.cli.options import Json, SettingsFile, optional
+
+if TYPE_CHECKING:
+    from slipwise.fleet import ParameterFindings, Scheduler
+    from slipwise.fleet.learn_fleet import Count
+
+
+def fleet(
+    logs: Annotated[
+        list[str],
+        typer.Argument(metavar="PLACE...", show_default=False, help="Logs, folders of logs, or patterns."),
+    ],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Where rows, page and prior are kept.")
+    ] = Path("fleet"),
+    vehicle: Annotated[
+        str, typer.Option(metavar="NAME", help="Of all logs; by default the folder a log lies in.")
+    ] = "",
+    settings: SettingsFile = None,
+    workers: Annotated[int | None, optional("N", "Processes; by default one per processor.")] = None,
+    scheduler: Annotated[
+        str | None, optional("ADDRESS", "A Dask scheduler in place of processes, such as tcp://host:8786.")
+    ] = None,
+    json: Json = None,
+) -> int:
+    """Learn every log, keep a row per log and parameter, and say what the fleet knows and what stands out.
+
+    DIR/rows is a Parquet data set by vehicle and month; DIR/fleet.html shows vehicles side by side, drift and
+    odd ones; DIR/fleet.yaml says what is known of the next robot. A second run learns only what is new: other
+    bytes or other settings. Ctrl-C loses the logs at work, no more. Exit code 1: no log was usable.
+
+    \b
+    Examples:
+      slipwise fleet logs/ -o fleet
+      slipwise fleet "bags/*/*.mcap" --settings fleet.toml --workers 8
+      slipwise fleet /data/logs --scheduler tcp://10.0.0.1:8786
+    """  # noqa: D301
+    from slipwise.cli.output import Output
+    from slipwise.cli.progress import progress_bar
+    from slipwise.cli.tables import show_files
+    from slipwise.cli.writable import refuse_unwritable
+    from slipwise.fleet import Store, find_logs, findings_of, write_prior
+    from slipwise.fleet.fleet_page import fleet_page, summary
+    from slipwise.fleet.learn_fleet import learn_fleet
+
+    out = Output(json)
+    files = {"page": output / "fleet.html", "prior": output / "fleet.yaml"}
+    refuse_unwritable(*files.values(), out.written_file, inputs=[settings])
+    found = find_logs(logs, vehicle=vehicle)
+    store = Store(output)
+    _check_settings(settings)
+    with progress_bar("learning") as update:
+        count = learn_fleet(
+            found,
+            store,
+            _scheduler(scheduler, workers),
+            settings=settings,
+            progress=lambda now: update(_left_text(now.seconds_left), now.done / now.of),
+        )
+    table, unusable = store.table(), store.unusable()
+    findings = findings_of(table)
+    _write(files["page"], fleet_page(table, findings, unusable))
+    write_prior(files["prior"], findings)
+    code = 0 if table else 1
+    out.document(_document(count, findings, unusable, files) | {"exit_code": code})
+    for sentence in summary(table, findings, unusable):
+        out.line(sentence)
+    for log, why in count.failed:
+        out.line(f"{log}: {why}")
+    show_files(out, files | {"rows": output / "rows"})
+    return code
+
+
+def _scheduler(address: str | None, workers: int | None) -> Scheduler:
+    from slipwise.fleet import ProcessScheduler
+
+    if address is None:
+        return ProcessScheduler(workers)
+    from slipwise.fleet.dask_scheduler import DaskScheduler
+
+    return DaskScheduler(address)
+
+
+def _check_settings(settings: Path | None) -> None:
+    """Refuse wrong settings once, before every worker does."""
+    from slipwise.calibration import load_settings
+
+    if settings is not None:
+        load_settings(settings).bases()
+
+
+def _left_text(seconds: float) -> str:
+    minutes = seconds / 60.0
+    return f"{minutes:.0f} min left" if minutes >= 2.0 else f"{seconds:.0f} s left"
+
+
+def _write(path: Path, text: str) -> None:
+    from slipwise.files import write_text_whole
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_text_whole(path, text)
+
+
+def _document(
+    count: Count,
+    findings: tuple[ParameterFindings, ...],
+    unusable: list[dict[str, Any]],
+    files: dict[str, Path],
+) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    from slipwise.cli.document import head
+
+    return head("fleet") | {
+        "files": files,
+        "count": asdict(count),
+        "unusable": unusable,
+        "findings": [asdict(finding) for each in findings for finding in each.findings],
+        "vehicles": {
+            each.parameter: dict(zip(each.vehicles, each.estimate.tolist(), strict=True)) for each in findings
+        },
+    }

@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What stands out in a fleet: odd robots and parameters that drift, at a stated rate of false alarms."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
+
+Floats = NDArray[np.float64]
+
+FALSE_DISCOVERIES = 0.05  # of all alarms, over vehicles and parameters
+STUDENT_DOF = 4.0  # of robots of a type, against one odd one
+FEWEST_LOGS = 4  # of a vehicle, for its drift
+DAY = 86400.0  # s
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One test of one vehicle and parameter."""
+
+    vehicle: str
+    parameter: str
+    kind: str  # "odd" or "drift"
+    size: float  # off the fleet's mean, or per 30 days; in the parameter's unit
+    std: float
+    chance: float  # p-value
+    alarm: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class ParameterFindings:
+    """One parameter over the fleet."""
+
+    parameter: str
+    unit: str
+    vehicles: tuple[str, ...]
+    estimate: Floats  # [V] of each vehicle, from its logs
+    std: Floats  # [V] the scatter of its logs included
+    prior: FleetPrior | None  # None for a single vehicle
+    findings: tuple[Finding, ...]
+
+
+def findings_of(table: Mapping[str, NDArray[Any]]) -> tuple[ParameterFindings, ...]:
+    """Return what the rows of a fleet say, parameter by parameter; alarms are over all of them together.
+
+    Args:
+        table: columns of rows, as `Store.table` returns them.
+    """
+    if not table:
+        return ()
+    found = [_parameter(table, name) for name in sorted(set(table["parameter"].tolist()))]
+    alarms = iter(discoveries([finding.chance for each in found for finding in each.findings]))
+    return tuple(
+        replace(each, findings=tuple(replace(finding, alarm=next(alarms)) for finding in each.findings))
+        for each in found
+    )
+
+
+def discoveries(chances: Sequence[float], rate: float = FALSE_DISCOVERIES) -> list[bool]:
+    """Return which tests are alarms at a false-discovery rate (Benjamini and Hochberg 1995)."""
+    if not chances:
+        return []
+    ordered = np.sort(chances)
+    limits = rate * np.arange(1, len(ordered) + 1) / len(ordered)
+    below = np.flatnonzero(ordered <= limits)
+    largest = ordered[below[-1]] if len(below) else -1.0
+    return [chance <= largest for chance in chances]
+
+
+def _parameter(table: Mapping[str, NDArray[Any]], name: str) -> ParameterFindings:
+    rows = np.flatnonzero(table["parameter"] == name)
+    vehicles = sorted(set(table["vehicle"][rows].tolist()))
+    estimate, std, drifts = np.empty(len(vehicles)), np.empty(len(vehicles)), []
+    for place, vehicle in enumerate(vehicles):
+        mine = rows[table["vehicle"][rows] == vehicle]
+        value, sigma = table["value"][mine].astype(float), table["std"][mine].astype(float)
+        estimate[place], std[place] = pooled(value, sigma)
+        if len(mine) >= FEWEST_LOGS:
+            drift = _drift(table["start"][mine].astype(float) / DAY, value, sigma)
+            if drift is not None:
+                drifts.append(Finding(vehicle, name, "drift", *drift))
+    prior = (
+        fleet_prior(estimate[:, None], std[:, None, None] ** 2, dof=STUDENT_DOF)
+        if len(vehicles) > 1
+        else None
+    )
+    odd = [] if prior is None else _odd(name, vehicles, estimate, std)
+    unit = str(table["unit"][rows[0]])
+    return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, (*odd, *drifts))
+
+
+def pooled(values: Floats, stds: Floats) -> tuple[float, float]:
+    """Return one vehicle's value and its standard deviation, from logs that may differ more than they say."""
+    if len(values) == 1:
+        return float(values[0]), float(stds[0])
+    prior = fleet_prior(values[:, None], stds[:, None, None] ** 2)
+    return float(prior.mean[0]), float(math.sqrt(prior.mean_covariance[0, 0]))
+
+
+def _odd(name: str, vehicles: Sequence[str], estimate: Floats, std: Floats) -> list[Finding]:
+    """Compare each vehicle with what the others say of a new one; two vehicles cannot tell which is odd."""
+    found = []
+    for place, vehicle in enumerate(vehicles):
+        others = np.arange(len(vehicles)) != place
+        if others.sum() < 2:
+            return []
+        rest = fleet_prior(estimate[others, None], std[others, None, None] ** 2, dof=STUDENT_DOF)
+        off = float(estimate[place] - rest.mean[0])
+        spread = math.sqrt(float(rest.new_robot[0, 0]) + float(std[place]) ** 2)
+        chance = _two_sided(off / spread, float(others.sum() - 1))
+        found.append(Finding(vehicle, name, "odd", off, spread, chance))
+    return found
+
+
+def _drift(days: Floats, values: Floats, stds: Floats) -> tuple[float, float, float] | None:
+    """Return the trend per 30 days, its standard deviation and its p-value; None without time between logs.
+
+    The scatter of the logs about the line counts where it is larger than the logs say themselves.
+    """
+    weight = stds**-2.0
+    centre = np.average(days, weights=weight)
+    moment = float(np.sum(weight * (days - centre) ** 2))
+    if np.ptp(days) <= 0.0 or not math.isfinite(moment) or moment <= 0.0:
+        return None
+    level = np.average(values, weights=weight)
+    slope = float(np.sum(weight * (days - centre) * (values - level))) / moment
+    left = values - level - slope * (days - centre)
+    freedom = len(days) - 2
+    excess = max(1.0, float(np.sum(weight * left**2)) / freedom)
+    std = math.sqrt(excess / moment)
+    return 30.0 * slope, 30.0 * std, _two_sided(slope / std, float(freedom))
+
+
+def _two_sided(z: float, dof: float) -> float:
+    """Return the chance that a Student t is at least so far from zero, by numerical integration."""
+    angle = math.atan(abs(z) / math.sqrt(dof))  # t = sqrt(dof) tan(angle): the density is cos^(dof - 1)
+    edges = np.linspace(angle, math.pi / 2.0, 2001)
+    whole = np.linspace(0.0, math.pi / 2.0, 2001)
+    tail, half = (_simpson(np.cos(x) ** (dof - 1.0), x) for x in (edges, whole))
+    return min(1.0, tail / half)
+
+
+def _simpson(values: Floats, x: Floats) -> float:
+    step = (x[-1] - x[0]) / (len(x) - 1)
+    return float(
+        step / 3.0 * (values[0] + values[-1] + 4.0 * values[1:-1:2].sum() + 2.0 * values[2:-1:2].sum())
+    )

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a worker does with one log: opens it, learns it, and returns one row per parameter."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from slipwise.calibration import Settings, calibrate, load_settings
+from slipwise.errors import SlipwiseError
+from slipwise.files import sha256_of
+from slipwise.fleet.find_logs import LogTask
+from slipwise.logs import Log, open_log
+from slipwise.models.model import Model
+
+FIRST_UNIX_TIME = 946684800.0  # s, the year 2000; a log with earlier stamps counts from its own start
+
+
+@dataclass(frozen=True)
+class Row:
+    """One parameter of one log, in the unit of the model file."""
+
+    parameter: str
+    unit: str
+    value: float
+    std: float
+    prior_std: float
+    identifiable: bool
+
+
+@dataclass(frozen=True)
+class LogRows:
+    """What was learned of one log, or why nothing was."""
+
+    key: str  # of the log's bytes and the settings
+    log: str
+    vehicle: str
+    month: str  # such as 2026-11
+    log_sha256: str
+    settings_sha256: str
+    version: str
+    start: float  # s since 1970
+    seconds: float  # of driving learned from
+    distance: float  # m between measured poses
+    input: str = ""
+    good: bool = False
+    verdict: str = ""
+    rows: tuple[Row, ...] = ()
+    failure: str = ""  # why there are no rows
+
+
+def learn_task(task: LogTask) -> LogRows:
+    """Learn one log; a log that cannot be used is no error, its reason is in what is returned."""
+    path = Path(task.path)
+    settings = load_settings(Path(task.settings)) if task.settings else Settings()
+    head = _head(task, settings_hash(settings))
+    try:
+        log = open_log(path, options=settings.log_options())
+        calibration = calibrate(log, settings=settings)
+    except SlipwiseError as problem:
+        return replace(head, failure=str(problem))
+    content = calibration.model.content
+    start = _start(log, path)
+    return replace(
+        head,
+        month=f"{datetime.fromtimestamp(start, UTC):%Y-%m}",
+        start=start,
+        seconds=content.provenance.learned_seconds,
+        distance=_distance(log),
+        input=content.input,
+        good=calibration.verdict.good,
+        verdict=calibration.verdict.sentence,
+        rows=_rows(calibration.model),
+    )
+
+
+def log_hash(path: Path) -> str:
+    """Return the SHA-256 of a log's bytes, of all files of a folder with their names.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    if not path.is_dir():
+        return sha256_of(path)
+    digest = hashlib.sha256()
+    for inside in sorted(path.rglob("*")):
+        if inside.is_file():
+            digest.update(f"{inside.relative_to(path)} {sha256_of(inside)}\n".encode())
+    return digest.hexdigest()
+
+
+def settings_hash(settings: Settings) -> str:
+    """Return the SHA-256 of settings, however they were written."""
+    text = json.dumps(settings.model_dump(mode="json"), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def key_of(log_sha256: str, settings_sha256: str) -> str:
+    """Return what a log learned with some settings is kept under."""
+    return f"{log_sha256[:16]}-{settings_sha256[:16]}"
+
+
+def _head(task: LogTask, settings_sha256: str) -> LogRows:
+    start = Path(task.path).stat().st_mtime
+    return LogRows(
+        key=key_of(task.log_sha256, settings_sha256),
+        log=task.path,
+        vehicle=task.vehicle,
+        month=f"{datetime.fromtimestamp(start, UTC):%Y-%m}",
+        log_sha256=task.log_sha256,
+        settings_sha256=settings_sha256,
+        version=version("slipwise"),
+        start=start,
+        seconds=0.0,
+        distance=0.0,
+    )
+
+
+def _start(log: Log, path: Path) -> float:
+    """Return when the log begins [s since 1970]: by its stamps, or by the file where these are not such."""
+    first = min(run.span[0] for run in log.runs)
+    return first if first >= FIRST_UNIX_TIME else path.stat().st_mtime
+
+
+def _distance(log: Log) -> float:
+    """Return the way between measured poses [m], not across a change of frame."""
+    total = 0.0
+    for run in log.runs:
+        poses = run.poses
+        same = np.diff(poses.frame) == 0
+        total += float(np.hypot(np.diff(poses.x), np.diff(poses.y))[same].sum())
+    return total
+
+
+def _rows(model: Model) -> tuple[Row, ...]:
+    return tuple(
+        Row(p.name, p.unit, p.value, p.std, p.prior_std, p.identifiable) for p in model.content.parameters
+    )

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Learns logs in processes of this machine; one that dies costs its own log only."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+
+from slipwise.fleet.find_logs import LogTask
+from slipwise.fleet.learned_rows import LogRows, learn_task
+from slipwise.fleet.scheduler import ATTEMPTS, DIED, Outcome
+
+Work = Callable[[LogTask], LogRows]
+
+
+class ProcessScheduler:
+    """One pool of a single process per worker, so that a death is known to be of one log.
+
+    Args:
+        workers: how many; by default one per processor.
+        work: what is done with a task; a function of a module.
+    """
+
+    def __init__(self, workers: int | None = None, *, work: Work = learn_task) -> None:
+        self._workers = max(1, workers if workers is not None else os.cpu_count() or 1)
+        self._work = work
+
+    def run(self, tasks: Iterable[LogTask]) -> Generator[Outcome, None, None]:
+        """Yield the outcome of each task as it is done."""
+        waiting = iter(tasks)
+        free = [_pool() for _ in range(self._workers)]
+        running: dict[Future[LogRows], tuple[ProcessPoolExecutor, LogTask, int]] = {}
+        try:
+            while True:
+                while free and (task := next(waiting, None)) is not None:
+                    pool = free.pop()
+                    running[pool.submit(self._work, task)] = pool, task, 1
+                if not running:
+                    return
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    pool, task, attempt = running.pop(future)
+                    problem = future.exception()
+                    if isinstance(problem, BrokenProcessPool):
+                        pool.shutdown(wait=False)
+                        pool = _pool()
+                        if attempt < ATTEMPTS:
+                            running[pool.submit(self._work, task)] = pool, task, attempt + 1
+                            continue
+                    free.append(pool)
+                    yield _outcome(task, future, problem)
+        finally:
+            _end([*free, *(pool for pool, _, _ in running.values())])
+
+
+def _pool() -> ProcessPoolExecutor:
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(1, mp_context=context, initializer=_leave_interrupts)
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is the parent's to handle, which ends its workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _outcome(task: LogTask, future: Future[LogRows], problem: BaseException | None) -> Outcome:
+    if problem is None:
+        rows = future.result()
+        return Outcome(task, rows, rows.failure)
+    if isinstance(problem, BrokenProcessPool):
+        return Outcome(task, None, DIED)
+    return Outcome(task, None, f"{type(problem).__name__}: {problem}")
+
+
+def _end(pools: Iterable[ProcessPoolExecutor]) -> None:
+    for pool in pools:
+        processes = list((pool._processes or {}).values())  # noqa: SLF001 - no public way to end one at work
+        pool.shutdown(wait=False, cancel_futures=True)
+        for process in processes:
+            process.terminate()

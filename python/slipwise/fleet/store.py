@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rows of a fleet on disk: Parquet by vehicle and month, a file per log, each written whole."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.files import write_text_whole, write_whole
+from slipwise.fleet.learned_rows import LogRows, Row
+
+ROWS, UNUSABLE = "rows", "unusable"
+PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
+_KEY = re.compile(r"[0-9a-f]{16}-[0-9a-f]{16}")
+_OF_LOG = ("key", "log", "log_sha256", "settings_sha256", "version", "start", "seconds", "distance")
+_OF_VERDICT = ("input", "good", "verdict")
+
+__all__ = ["Row", "Store"]
+
+
+class Store:
+    """A folder of results: `rows/vehicle=X/month=Y/KEY.parquet`, and `unusable/KEY.json` of other logs."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def keys(self) -> frozenset[str]:
+        """Return the keys of all logs that need not be learned again, the unusable ones too."""
+        found = [*(self.folder / ROWS).glob(PARTS), *(self.folder / UNUSABLE).glob("*.json")]
+        return frozenset(path.stem for path in found if _KEY.fullmatch(path.stem))
+
+    def add(self, learned: LogRows) -> Path:
+        """Write what was learned of one log, or why nothing was; return the file.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        if not learned.rows:
+            path = self.folder / UNUSABLE / f"{learned.key}.json"
+            path.parent.mkdir(parents=True, exist_ok=True)
+            content = {name: getattr(learned, name) for name in (*_OF_LOG, "vehicle", "month", "failure")}
+            write_text_whole(path, json.dumps(content, indent=1) + "\n")
+            return path
+        vehicle, month = (quote(text, safe="") for text in (learned.vehicle, learned.month))
+        path = self.folder / ROWS / f"vehicle={vehicle}" / f"month={month}" / f"{learned.key}.parquet"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, lambda temporary: _write(temporary, learned))
+        return path
+
+    def table(self) -> dict[str, NDArray[Any]]:
+        """Return all rows as columns by name, vehicle and month included; empty where there are none."""
+        import pyarrow.dataset as dataset
+
+        folder = self.folder / ROWS
+        if not any(folder.glob(PARTS)):
+            return {}
+        text = _text_partitions()
+        partitioned = dataset.partitioning(flavor="hive", schema=text)
+        table = dataset.dataset(folder, format="parquet", partitioning=partitioned).to_table()
+        ordered = table.sort_by(
+            [("vehicle", "ascending"), ("start", "ascending"), ("parameter", "ascending")]
+        )
+        return {name: np.asarray(ordered[name].to_pylist()) for name in ordered.column_names}
+
+    def unusable(self) -> list[dict[str, Any]]:
+        """Return log, vehicle and failure of every log that could not be used, in order of the log."""
+        found = [
+            json.loads(path.read_text(encoding="utf-8")) for path in (self.folder / UNUSABLE).glob("*.json")
+        ]
+        return sorted(found, key=lambda entry: str(entry["log"]))
+
+
+def _text_partitions() -> Any:
+    import pyarrow as pa
+
+    return pa.schema([("vehicle", pa.string()), ("month", pa.string())])
+
+
+def _write(path: Path, learned: LogRows) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as parquet
+
+    of_log = {name: getattr(learned, name) for name in (*_OF_LOG, *_OF_VERDICT)}
+    parquet.write_table(pa.Table.from_pylist([of_log | asdict(row) for row in learned.rows]), path)

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The prior is that of the robots drawn, its intervals hold what they say, and an odd robot hurts little."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.fleet import fleet_prior
+
+MEAN, BETWEEN = np.array([-0.3, 0.1]), np.array([[0.01, 0.004], [0.004, 0.0025]])
+
+
+def _drawn(random: np.random.Generator, robots: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Truth [N, 2], estimates [N, 2] and their covariances [N, 2, 2]."""
+    truth = random.multivariate_normal(MEAN, BETWEEN, robots)
+    stds = random.uniform(0.03, 0.15, (robots, 2))
+    covariances = np.einsum("ni,ij->nij", stds**2, np.eye(2))
+    return truth, truth + stds * random.standard_normal((robots, 2)), covariances
+
+
+def test_many_robots_give_the_truth_back() -> None:
+    _, estimates, covariances = _drawn(np.random.default_rng(1), 2000)
+    prior = fleet_prior(estimates, covariances)
+    np.testing.assert_allclose(prior.mean, MEAN, atol=0.01)
+    np.testing.assert_allclose(prior.between, BETWEEN, atol=0.001)
+
+
+@pytest.mark.slow
+def test_ninety_per_cent_intervals_hold_ninety_per_cent() -> None:
+    random = np.random.default_rng(2)
+    held = []
+    for _ in range(150):
+        truth, estimates, covariances = _drawn(random, 20)
+        prior = fleet_prior(estimates, covariances)
+        std = np.sqrt(np.einsum("nii->ni", prior.shrunk_covariance))
+        held.append(np.abs(prior.shrunk - truth) <= 1.645 * std)
+    assert 0.87 <= np.mean(held) <= 0.93
+
+
+def test_shrunk_estimates_are_nearer_to_the_truth() -> None:
+    truth, estimates, covariances = _drawn(np.random.default_rng(3), 500)
+    prior = fleet_prior(estimates, covariances)
+    assert np.mean((prior.shrunk - truth) ** 2) < 0.8 * np.mean((estimates - truth) ** 2)
+
+
+def test_equal_robots_differ_by_nothing_and_average_exactly() -> None:
+    estimates = np.array([[0.5], [0.5], [0.5]])
+    stds = np.array([0.1, 0.2, 0.4])
+    prior = fleet_prior(estimates, stds[:, None, None] ** 2)
+    assert prior.mean[0] == pytest.approx(0.5)
+    assert prior.between[0, 0] < 1e-4
+    assert prior.mean_covariance[0, 0] == pytest.approx(1.0 / np.sum(stds**-2.0), rel=2e-2)
+
+
+def test_exact_estimates_give_mean_and_variance_of_the_sample() -> None:
+    values = np.random.default_rng(4).normal(2.0, 0.3, 30)
+    prior = fleet_prior(values[:, None], np.full((30, 1, 1), 1e-10))
+    assert prior.mean[0] == pytest.approx(values.mean(), abs=1e-6)
+    assert prior.between[0, 0] == pytest.approx(values.var(ddof=1), rel=1e-3)
+
+
+def test_one_odd_robot_hurts_the_student_variant_little() -> None:
+    random = np.random.default_rng(5)
+    values = random.normal(0.0, 0.1, 12)
+    values[0] = 5.0
+    covariances = np.full((12, 1, 1), 0.02**2)
+    normal, student = (
+        fleet_prior(values[:, None], covariances),
+        fleet_prior(values[:, None], covariances, dof=4.0),
+    )
+    assert abs(student.mean[0]) < 0.1
+    assert abs(normal.mean[0]) > 0.3
+    assert student.between[0, 0] < 0.25 * normal.between[0, 0]
+    assert student.weight.argmin() == 0
+
+
+def test_units_do_not_matter() -> None:
+    _, estimates, covariances = _drawn(np.random.default_rng(6), 20)
+    unit = np.array([1e3, 1e-3])
+    plain, scaled = (
+        fleet_prior(estimates, covariances),
+        fleet_prior(estimates * unit, covariances * np.outer(unit, unit)),
+    )
+    np.testing.assert_allclose(scaled.shrunk, plain.shrunk * unit, rtol=1e-6)
+
+
+def test_single_robot_is_refused() -> None:
+    with pytest.raises(SettingsError, match="two robots"):
+        fleet_prior(np.zeros((1, 1)), np.ones((1, 1, 1)))

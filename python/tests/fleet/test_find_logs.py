@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs are found in folders and by patterns, with the folder's name as the vehicle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from slipwise.errors import LogError
+from slipwise.fleet import find_logs
+
+
+@pytest.fixture
+def logs(tmp_path: Path) -> Path:
+    for name in ("red/a.csv", "red/b.mcap", "blue/c.csv.gz", "blue/notes.txt", "blue/.hidden.csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    bag = tmp_path / "blue" / "drive"
+    bag.mkdir()
+    (bag / "metadata.yaml").touch()
+    (bag / "drive.db3").touch()
+    return tmp_path
+
+
+def test_folder_gives_all_logs_below_it_and_their_vehicles(logs: Path) -> None:
+    found = [(path.name, vehicle) for path, vehicle in find_logs([logs])]
+    assert found == [("c.csv.gz", "blue"), ("drive", "blue"), ("a.csv", "red"), ("b.mcap", "red")]
+
+
+def test_pattern_gives_what_it_matches(logs: Path) -> None:
+    found = find_logs([f"{logs}/*/*.csv"], vehicle="husky-1")
+    assert [(path.name, vehicle) for path, vehicle in found] == [("a.csv", "husky-1")]
+
+
+def test_log_that_two_places_name_is_there_once(logs: Path) -> None:
+    assert len(find_logs([logs / "red", logs / "red" / "a.csv"])) == 2
+
+
+@pytest.mark.parametrize("place", ["nowhere", "nowhere/*.csv"])
+def test_place_that_is_not_there_is_refused(logs: Path, place: str) -> None:
+    with pytest.raises(LogError, match="no such file or folder"):
+        find_logs([logs / place])
+
+
+def test_folder_without_logs_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="no log"):
+        find_logs([tmp_path])

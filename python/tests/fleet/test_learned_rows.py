@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A log becomes a row per parameter; one that cannot be used says why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slipwise.calibration import Settings
+from slipwise.fleet import LogTask, learn_task
+from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
+from slipwise.logs import Log, save_log
+from slipwise.simulation import thesis_drive
+from slipwise.simulation.known_robot import KnownRobot, known_run
+
+
+def write_log(path: Path, seed: int, seconds: float = 60.0) -> Path:
+    """Write a log of a robot without slip; its stamps count from zero."""
+    commands = thesis_drive(seed, seconds)
+    run = known_run(KnownRobot(), commands, (0.0, seconds), random=np.random.default_rng(seed))
+    save_log(Log((run,)), path)
+    return path
+
+
+@pytest.mark.slow
+def test_log_becomes_a_row_per_parameter(tmp_path: Path) -> None:
+    path = write_log(tmp_path / "log.csv", 1)
+    learned = learn_task(LogTask(str(path), "one", "", log_hash(path)))
+    assert learned.failure == ""
+    assert learned.key == key_of(log_hash(path), settings_hash(Settings()))
+    assert {"ang.w", "lon.V"} <= {row.parameter for row in learned.rows}
+    assert learned.seconds > 30.0
+    assert learned.distance > 10.0
+    assert learned.start == pytest.approx(path.stat().st_mtime)  # the log counts from its own start
+
+
+def test_log_that_cannot_be_read_says_why(tmp_path: Path) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("t,speed\n0,1\n", encoding="utf-8")
+    learned = learn_task(LogTask(str(path), "one", "", log_hash(path)))
+    assert learned.rows == ()
+    assert str(path) in learned.failure
+
+
+def test_other_settings_are_another_key(tmp_path: Path) -> None:
+    other = Settings(basis="edd-2")
+    assert settings_hash(other) != settings_hash(Settings())
+    assert settings_hash(Settings()) == settings_hash(Settings())
+
+
+def test_hash_of_a_folder_is_that_of_its_files_and_names(tmp_path: Path) -> None:
+    bag = tmp_path / "bag"
+    bag.mkdir()
+    (bag / "a").write_text("1", encoding="utf-8")
+    first = log_hash(bag)
+    (bag / "a").rename(bag / "b")
+    assert log_hash(bag) != first
+    (bag / "b").rename(bag / "a")
+    assert log_hash(bag) == first
