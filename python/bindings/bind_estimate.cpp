@@ -80,7 +80,8 @@ void bind_settings(nb::module_& m) {
       .def(nb::init<>())
       .def_rw("weighting", &ModelAverageSettings::weighting)
       .def_rw("largest_basis", &ModelAverageSettings::largest_basis)
-      .def_rw("change", &ModelAverageSettings::change);
+      .def_rw("change", &ModelAverageSettings::change)
+      .def_rw("surfaces", &ModelAverageSettings::surfaces);
   nb::class_<BatchSettings>(m, "BatchSettings")
       .def(nb::init<>())
       .def_rw("iterations", &BatchSettings::iterations)

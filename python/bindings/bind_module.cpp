@@ -22,5 +22,6 @@ NB_MODULE(_core, m) {
   bind_estimators(m);
   bind_limits(m);
   bind_archive(m);
+  bind_surfaces(m);
   bind_online(m);
 }

@@ -304,6 +304,16 @@ void bind_online(nb::module_& m) {
            "Looks for limits of the actuator; None where there are too few wheel speeds beside commands.")
       .def("forget", &MotionLearner::forget, "fraction"_a)
       .def(
+          "start_drive",
+          [](MotionLearner& learner, const std::string& label, const std::string& date) {
+            learner.start_drive({.label = label, .date = date});
+          },
+          "label"_a = "", "date"_a = "", "Another drive begins, on a surface that is remembered or a new one.")
+      .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
+           "The surface changes now: to the one of this name, or to another where it is empty.")
+      .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")
+      .def("surface_events", &MotionLearner::surface_events, "What happened to them since the last call.")
+      .def(
           "save", [](const MotionLearner& learner) { return bytes_of(learner.save()); }, "All of it as bytes.")
       .def_static(
           "load", [](const nb::bytes& saved) { return MotionLearner::load(view_of(saved)); }, "saved"_a,

@@ -71,14 +71,46 @@ void CausalFilter::forget(double fraction) {
   covariance.topRows(slip) *= keep;
   covariance.leftCols(slip) *= keep;
   covariance.diagonal().head(slip) += fraction * slip_std_.cwiseAbs2();
+  state_.noise_scale.reset_gain();
+  start_from_here();
+}
+
+/// What is known now is what the next segments are learned on, and fitted again on.
+void CausalFilter::start_from_here() {
   state_.scores.restart();
   stated_.setOnes();
-  state_.noise_scale.reset_gain();
   before_ = state_.estimate;
   refit_.reset();
   kept_.clear();
   next_refit_ = kFirst;
   full_ = false;
+}
+
+SurfaceSlip CausalFilter::surface() const {
+  SurfaceSlip surface = surface_of(state_.estimate, stated_, slip_std_, speeds_);
+  surface.noise_scale = state_.noise_scale;
+  return surface;
+}
+
+void CausalFilter::go_on_with(const SurfaceSlip& surface, double drift) {
+  const Eigen::Index robot = model_.size() - model_.slip_size();
+  Estimate joint = joined_with(surface, state_.estimate.mean.tail(robot),
+                               state_.estimate.covariance.bottomRightCorner(robot, robot));
+  joint.covariance.diagonal().head(model_.slip_size()) += drift * surface.prior_std.cwiseAbs2();
+  state_.estimate = std::move(joint);
+  state_.noise_scale = surface.noise_scale;
+  slip_std_ = surface.prior_std;
+  speeds_ = surface.speeds;
+  started_ = true;
+  start_from_here();
+}
+
+SurfaceSlip CausalFilter::new_surface(std::span<const SurfaceSlip> known) const {
+  const Eigen::Index robot = model_.size() - model_.slip_size();
+  SurfaceSlip fresh = shrunk_prior(known, state_.estimate.mean.tail(robot), slip_std_, speeds_);
+  fresh.noise_scale = state_.noise_scale;
+  fresh.noise_scale.reset_gain();
+  return fresh;
 }
 
 Estimate CausalFilter::reported() const {

@@ -115,8 +115,7 @@ ModelAverage::ModelAverage(std::string name, const std::vector<Basis>& bases, Ac
 
 void ModelAverage::check_sizes() const {
   const auto bases = static_cast<std::size_t>(prior_.size());
-  const std::size_t sides = undecided_ > 0 ? 2 : 1;
-  bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides * bases &&
+  bool fit = bases > 0 && places_.size() == bases && filters_.size() == sides() * bases &&
              static_cast<std::size_t>(weights_.size()) == filters_.size();
   for (std::size_t i = 0; fit && i < filters_.size(); ++i) {
     fit = std::ssize(places_[i % bases]) == filters_[i].model().size() &&
@@ -164,10 +163,16 @@ bool ModelAverage::refit_slice() {
 void ModelAverage::look_for_change() {
   Learning& now = present(learning_);
   speeds_.see(now.inputs, now.segment);
-  change_ = undecided_ > 0 ? ChangeTest{} : test_for_change(now.inputs, now.segment);
+  moved_ = false;
+  note_recent();
+  change_ = undecided_ > 0 || trial_ ? ChangeTest{} : test_for_change(now.inputs, now.segment);
   if (change_.suspicion) {
-    branch();
+    const auto first = std::ssize(recent_) - std::min<std::ptrdiff_t>(change_.segments, std::ssize(recent_));
+    suspected_since_ = recent_.empty() ? now.segment.start : recent_[static_cast<std::size_t>(first)].segment.start;
     announced_ = change_.alarm;
+    if (!handed_over_) {
+      branch();
+    }
   }
   now.tested = true;
 }
@@ -179,6 +184,10 @@ void ModelAverage::update_next_filter() {
 }
 
 void ModelAverage::reweigh() {
+  if (trial_) {
+    reweigh_trial();
+    return;
+  }
   const std::vector<IekfUpdate>& updates = present(learning_).updates;
   std::vector<Eigen::Vector3d> innovations;
   std::vector<Eigen::Matrix3d> covariances;
@@ -250,6 +259,7 @@ void ModelAverage::resolve() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
   change_.alarm = changed && !announced_;
+  moved_ = changed;
   observed_ = changed ? 0 : observed_;  // of a new terrain, few data have spoken
   weights_ = basis_weights();
   filters_.erase(changed ? filters_.begin() + bases : filters_.begin(),
@@ -262,25 +272,33 @@ Eigen::VectorXd ModelAverage::basis_weights() const {
 }
 
 AverageState ModelAverage::state() const {
+  AverageState state = state_of(filters_, weights_);
+  state.variance_ratio = variance_ratio();
+  state.weights = basis_weights();
+  return state;
+}
+
+/// The mixture of filters, the bases of one side after the other, by their weights.
+AverageState ModelAverage::state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const {
   const Eigen::Index size = model_.size();
   AverageState state{{Eigen::VectorXd::Zero(size), Eigen::MatrixXd::Zero(size, size)},
                      Eigen::VectorXd::Zero(size),
-                     variance_ratio(),
+                     Eigen::VectorXd(0),
                      Eigen::Vector3d::Zero(),
-                     basis_weights()};
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const double weight = weights_[static_cast<Eigen::Index>(i)];
+                     Eigen::VectorXd(0)};
+  for (std::size_t i = 0; i < filters.size(); ++i) {
+    const double weight = weights[static_cast<Eigen::Index>(i)];
     const std::vector<Eigen::Index>& places = places_[i % places_.size()];
-    state.noise_scale += weight * filters_[i].noise_scale();
+    state.noise_scale += weight * filters[i].noise_scale();
     if (places.empty()) {
       continue;  // the kinematic baseline: it has no parameters, and adds nothing to any mean
     }
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
-    mean(places) = filters_[i].estimate().mean;
+    mean(places) = filters[i].estimate().mean;
     state.estimate.mean += weight * mean;
-    state.estimate.covariance(places, places) += weight * filters_[i].reported().covariance;
+    state.estimate.covariance(places, places) += weight * filters[i].reported().covariance;
     state.estimate.covariance += weight * mean * mean.transpose();
-    state.prior_std(places) = filters_[i].prior_std();
+    state.prior_std(places) = filters[i].prior_std();
   }
   state.estimate.covariance -= state.estimate.mean * state.estimate.mean.transpose();
   return state;

@@ -67,7 +67,8 @@ MotionHypotheses::MotionHypotheses(const HypothesisSettings& settings)
               .clock_offset = settings.clock_offset && !settings.dynamics,
               .sensor_extrinsics = settings.sensor_extrinsics},
              settings.filter, settings.average),
-      baseline_(settings.filter.noise) {
+      baseline_(settings.filter.noise),
+      bank_(settings.average.surfaces) {
   const auto attempt = [&](Structure structure) {
     tried_[index(structure)] = true;
     weights_[index(structure)] = kPrior[index(structure)];
@@ -166,6 +167,7 @@ bool MotionHypotheses::advance() {
     return false;
   }
   if (predicted_.size() == to_predict_.size()) {
+    bank_.see(present(segment_).inputs, present(segment_).segment);
     update_weights();
     drop_refuted();
     ++count_;

@@ -80,6 +80,7 @@ void MotionLearner::start_run() {
   recent_slip_.restart();
   pose_filter_.restart();
   monitor_.restart();
+  hypotheses_.start_run();
   runs_ += run_begins_ ? 0 : 1;
   run_begins_ = true;
 }
@@ -178,6 +179,9 @@ bool MotionLearner::work() {
       hypotheses_.start_slip(slip->driven);
     }
     more = !started_ || hypotheses_.advance_slip();
+    if (!more) {
+      consider_surfaces();
+    }
   } else if (const auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
     judge(*target);
   } else {
@@ -185,6 +189,7 @@ bool MotionLearner::work() {
     if (started_) {
       more = hypotheses_.advance();
       if (!more) {
+        consider_surfaces();
         publish(segment);
       }
     } else {
@@ -376,6 +381,26 @@ void MotionLearner::forget(double fraction) {
   work_through();  // what waits was driven on the terrain that is forgotten
   hypotheses_.forget(fraction);
   known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::start_drive(const DriveStart& start) {
+  start_run();
+  hypotheses_.start_drive(disturbance_.law(), start);
+  known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::cue_surface(const std::string& label) {
+  work_through();  // what waits was driven on the surface before
+  hypotheses_.cue_surface(disturbance_.law(), label);
+  known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::consider_surfaces() { hypotheses_.consider_surfaces(disturbance_.law()); }
+
+SurfaceBank MotionLearner::surfaces() const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  return complete.hypotheses_.surfaces_now(complete.disturbance_.law());
 }
 
 }  // namespace slipwise

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "slipwise/filter/causal_filter_settings.hpp"
@@ -16,6 +17,7 @@
 #include "slipwise/filter/prior.hpp"
 #include "slipwise/filter/score_covariance.hpp"
 #include "slipwise/filter/speed_range.hpp"
+#include "slipwise/filter/surface_slip.hpp"
 
 namespace slipwise {
 
@@ -36,6 +38,15 @@ class CausalFilter {
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their mean. Lag, delay and clock are
   /// the robot's, not the terrain's: they stay as learned.
   void forget(double fraction);
+
+  /// What is known of the surface that is driven on, apart from the robot.
+  SurfaceSlip surface() const;
+  /// Goes on with the slip of a surface; what is the robot's stays as learned. `drift` of its prior variance is added:
+  /// no surface is quite as it was.
+  void go_on_with(const SurfaceSlip& surface, double drift);
+  /// The prior of a surface that was never driven, from those that were (derivations/surface-memory.md).
+  SurfaceSlip new_surface(std::span<const SurfaceSlip> known) const;
+  const ReferenceSpeeds& speeds() const { return speeds_; }
 
   const MotionModel& model() const { return model_; }
   /// What learning goes on from: the noise is taken to be of the shape given.
@@ -60,6 +71,7 @@ class CausalFilter {
   void follow(const ReferenceSpeeds& speeds);
   void keep(const InputHistory& inputs, const Segment& segment);
   void end_refit();
+  void start_from_here();
 
   /// A refit that is under way.
   struct Refit {

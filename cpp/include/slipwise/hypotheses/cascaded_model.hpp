@@ -50,6 +50,9 @@ class CascadedModel {
   bool refitted() const { return refitted_; }
   /// Gives the slip parameters `fraction` of their prior variance back.
   void forget(double fraction) { slip_.forget(fraction); }
+  /// What learns the slip.
+  ModelAverage& slip() { return slip_; }
+  const ModelAverage& slip() const { return slip_; }
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/hypotheses/change_detector.hpp"
+#include "slipwise/hypotheses/surface_memory.hpp"
 
 namespace slipwise {
 
@@ -21,6 +23,7 @@ struct ModelAverageSettings {
   WeightingSettings weighting = {};
   double largest_basis = 0.4;  ///< prior weight of the basis with the most terms: of all, it is best most often [-]
   ChangeSettings change = {};
+  SurfaceSettings surfaces = {};
 };
 
 /// Parameters, covariance and noise of the average, over the union of all terms.
@@ -62,6 +65,34 @@ class ModelAverage {
   /// Gives the slip parameters `fraction` of their prior variance back and keeps their means.
   void forget(double fraction);
 
+  /// What is known of the surface that is driven on: of the likeliest, where that is open.
+  SurfaceMemory remember() const;
+  /// Surfaces compete to be the one that is driven on, `candidates` with their probabilities, [0] the one before or one
+  /// of `known`; those but the present one learn the segments from `since` [s] on, which speak first. Predictions are
+  /// the mixture until one is taken. What was known of the present surface before `since` is kept as `parting`.
+  void open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
+                  const DisturbanceModel& law, double since);
+  /// What competes now; nothing where one surface is driven on.
+  const std::optional<SurfaceTrial>& trial() const { return trial_; }
+  /// Takes one of the candidates: learning goes on from its posterior.
+  void settle(std::size_t candidate);
+  /// What was known of the surface before the last trial, its doubtful last segments left out.
+  const std::optional<SurfaceMemory>& parting() const { return parting_; }
+  /// Of a suspicion, what was known before the segments that raised it.
+  void mark_parting(double since);
+  /// Whether a suspicion is only said, for somebody who knows other surfaces to open a trial.
+  void hand_over(bool suspicions) { handed_over_ = suspicions; }
+  /// Start of the segments that the last suspicion is about [s].
+  double suspected_since() const { return suspected_since_; }
+  /// Whether the last segment ended a trial of its own in favour of the models that forgot.
+  bool moved() const { return moved_; }
+  /// Forgets which segments were the last: another run begins.
+  void start_run() { recent_.clear(); }
+  /// Log odds that the segments driven of late would give one of two surfaces against the other, were it the one.
+  double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
+  /// What is known where a surface is driven on.
+  AverageState state_on(const SurfaceMemory& surface) const;
+
   const MotionModel& model() const { return model_; }
   AverageState state() const;
   /// The test of the last segment for a change of terrain.
@@ -74,6 +105,7 @@ class ModelAverage {
     a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.observed_,
       self.speeds_, self.changing_, self.before_);
     a(self.detector_, self.change_, self.learning_, self.update_, self.undecided_, self.announced_);
+    a(self.recent_, self.probes_, self.trial_, self.parting_, self.handed_over_, self.suspected_since_, self.moved_);
     self.check_sizes();
   }
 
@@ -86,7 +118,15 @@ class ModelAverage {
     std::vector<IekfUpdate> updates = {};
   };
 
-  /// \throws std::invalid_argument unless there are as many filters, weights and places as bases, or twice as many.
+  /// One of the last segments, and what was known before it.
+  struct Recent {
+    InputHistory inputs;
+    Segment segment;
+    SurfaceMemory memory;
+    AverageState state;
+  };
+
+  /// \throws std::invalid_argument unless there are as many filters, weights and places as bases and candidates.
   void check_sizes() const;
   void look_for_change();
   void update_next_filter();
@@ -96,6 +136,15 @@ class ModelAverage {
   void resolve();
   Eigen::VectorXd basis_weights() const;
   Eigen::VectorXd variance_ratio() const;
+  AverageState state_of(std::span<const CausalFilter> filters, const Eigen::VectorXd& weights) const;
+  std::size_t sides() const { return trial_ ? trial_->candidates.size() : (undecided_ > 0 ? 2 : 1); }
+  void note_recent();
+  std::size_t recent_since(double since) const;
+  std::vector<CausalFilter> filters_on(const SurfaceMemory& surface) const;
+  SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
+  void reweigh_trial();
+  void mix_trial();
+  SurfaceBelief belief_of(const AverageState& state) const;
 
   MotionModel model_;
   std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none
@@ -111,8 +160,15 @@ class ModelAverage {
   ChangeTest change_;
   std::optional<Learning> learning_;
   IekfUpdate update_ = {};
-  int undecided_ = 0;       ///< segments until the models that forgot have to have proved better
-  bool announced_ = false;  ///< whether the test itself raised an alarm for them
+  int undecided_ = 0;          ///< segments until the models that forgot have to have proved better
+  bool announced_ = false;     ///< whether the test itself raised an alarm for them
+  std::deque<Recent> recent_;  ///< the last segments of the run, where surfaces are remembered
+  std::deque<Recent> probes_;  ///< some of those before, by which surfaces are compared
+  std::optional<SurfaceTrial> trial_;
+  std::optional<SurfaceMemory> parting_;
+  bool handed_over_ = false;
+  double suspected_since_ = 0.0;
+  bool moved_ = false;
 };
 
 }  // namespace slipwise

@@ -13,6 +13,7 @@
 #include "slipwise/filter/predictive_score.hpp"
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/surface_bank.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -65,6 +66,20 @@ class MotionHypotheses {
   bool refit_slice();
   /// Gives all slip parameters `fraction` of their prior variance back: another sensor says that the terrain changed.
   void forget(double fraction);
+  /// Another drive begins: on a surface that is remembered, or a new one. `law` is the slip disturbance as it is known.
+  void start_drive(const DisturbanceModel& law, const DriveStart& start);
+  /// Somebody says that the surface changes now, to the one of this name if any.
+  void cue_surface(const DisturbanceModel& law, const std::string& label);
+  /// Segments of one run are not joined with those of another.
+  void start_run();
+  /// After a segment: surfaces are suspected, and taken. Whether what is known changed.
+  bool consider_surfaces(const DisturbanceModel& law);
+  /// The surfaces as they are known now, the present one included, and which one that is.
+  SurfaceBank surfaces_now(const DisturbanceModel& law) const;
+  const SurfaceBank& bank() const { return bank_; }
+  std::vector<SurfaceEvent> take_surface_events() { return bank_.take_events(); }
+  /// What the average that knows surfaces best says where one of them is driven on; nothing where it has no memory.
+  std::optional<AverageState> on_surface(const Surface& surface) const;
 
   /// What the heaviest structure knows.
   std::shared_ptr<const MotionPosterior> posterior() const;
@@ -85,6 +100,7 @@ class MotionHypotheses {
     a(self.settings_, self.joint_, self.direct_, self.direct_bases_, self.cascaded_, self.baseline_, self.tried_,
       self.weights_);
     a(self.evidence_, self.updates_, self.count_, self.segment_, self.to_predict_, self.predicted_, self.averaging_);
+    a(self.bank_);
   }
 
  private:
@@ -92,6 +108,8 @@ class MotionHypotheses {
   bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }
   double weight(Structure structure) const { return weights_[static_cast<std::size_t>(structure)]; }
   void join_cascade();
+  Averages averages();
+  std::size_t leader() const;
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);
@@ -115,6 +133,7 @@ class MotionHypotheses {
   std::vector<Structure> to_predict_;     ///< it, in this order
   std::vector<ScoredSegment> predicted_;  ///< so far
   bool averaging_ = false;                ///< an average is learning it
+  SurfaceBank bank_;
 };
 
 }  // namespace slipwise

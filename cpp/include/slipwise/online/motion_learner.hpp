@@ -126,6 +126,17 @@ class MotionLearner {
   /// Gives what is the terrain's `fraction` of its prior variance back: a cue from any other sensor.
   /// \throws std::invalid_argument when the fraction is not between 0 and 1.
   void forget(double fraction);
+  /// Another drive begins, after a while or elsewhere: the run so far is complete, and where surfaces are remembered,
+  /// each of them may be the one under the robot. What was learned of the robot stays.
+  void start_drive(const DriveStart& start = {});
+  /// The surface changes now, somebody says: to the one of this name, or to another where it is empty.
+  void cue_surface(const std::string& label);
+  /// The surfaces that are remembered, the present one as it is known now.
+  SurfaceBank surfaces() const;
+  /// What happened to them since the last call.
+  std::vector<SurfaceEvent> surface_events() { return hypotheses_.take_surface_events(); }
+  /// Parameters of the slip, and their covariance, on a surface of `surfaces()`; nothing where it has no memory.
+  std::optional<AverageState> on_surface(const Surface& surface) const { return hypotheses_.on_surface(surface); }
 
   const LearnerSettings& settings() const { return settings_; }
   /// All of it as bytes, from which `load` makes a learner that goes on to the same results.
@@ -166,6 +177,7 @@ class MotionLearner {
   Eigen::Matrix3d unknown_motion(double start, double end) const;
   void say(LearnerEvent event);
   void see_stamp(double t);
+  void consider_surfaces();
   void check_loaded() const;
 
   LearnerSettings settings_;

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surfaces that a robot has driven on: which one it is on, when it comes to another, and what is remembered.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slipwise/filter/driven_speeds.hpp"
+#include "slipwise/hypotheses/model_average.hpp"
+
+namespace slipwise {
+
+/// The averages of one learner, each of which remembers every surface in its own terms; nothing where one is not tried.
+inline constexpr std::size_t kAverages = 3;
+using Averages = std::array<ModelAverage*, kAverages>;
+
+struct Surface {
+  std::string name;
+  double seconds = 0.0;        ///< driven on it
+  std::size_t segments = 0;    ///< learned on it
+  std::size_t visits = 0;      ///< times that the robot came to it
+  std::string last_seen = {};  ///< date, as the drive's start was given it
+  ReferenceSpeeds speeds{};    ///< covered
+  std::size_t used = 0;        ///< drive or change, counted, at which it was taken last
+  std::array<std::optional<SurfaceMemory>, kAverages> memories = {};  ///< per average
+};
+
+/// What is said of a drive's start.
+struct DriveStart {
+  std::string label = {};  ///< name of the surface, where somebody thinks to know it
+  std::string date = {};
+};
+
+/// Something that happened to the bank.
+struct SurfaceEvent {
+  enum class Kind : std::uint8_t { Opened, Recalled, Kept, Merged, Dropped };
+  friend constexpr std::size_t enumerators(Kind /*type*/) { return 5; }
+  Kind kind;
+  std::string name;
+  std::string other = {};    ///< that was merged into it
+  double probability = 1.0;  ///< of the surface, when it was taken
+  int segments = 0;          ///< that spoke before it was taken
+};
+
+/// Recalls a surface where it comes back, and opens another where none of those known fits
+/// (derivations/surface-memory.md).
+class SurfaceBank {
+ public:
+  SurfaceBank() = default;
+  explicit SurfaceBank(const SurfaceSettings& settings) : settings_(settings) {}
+
+  /// A drive begins somewhere: any known surface, or a new one.
+  void start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start);
+  /// Somebody says that the surface is `label`, or another from now on where that is empty.
+  void cue(const Averages& averages, const DisturbanceModel& law, const std::string& label);
+  /// After each segment that the average `leader` learned: its suspicions open trials, and its evidence ends them.
+  /// Whether any average goes on from another posterior.
+  bool consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law);
+  /// Counts a segment that was driven on the present surface.
+  void see(const InputHistory& inputs, const Segment& segment);
+
+  /// The surface that is driven on is remembered as it is now.
+  void keep_present(const Averages& averages, const DisturbanceModel& law);
+  const std::vector<Surface>& surfaces() const { return surfaces_; }
+  /// The one that is driven on; nothing where that is open, or it has no entry yet.
+  std::optional<std::size_t> present() const { return present_; }
+  /// What happened since the last call.
+  std::vector<SurfaceEvent> take_events();
+  /// How often labels were right: (right + 9) / (all + 10).
+  double label_reliability() const { return (right_labels_ + 9.0) / (labels_ + 10.0); }
+  const SurfaceSettings& settings() const { return settings_; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.settings_, self.surfaces_, self.present_, self.seconds_, self.segments_, self.speeds_, self.clock_,
+      self.date_);
+    a(self.events_, self.label_, self.labels_, self.right_labels_, self.named_, self.leader_);
+  }
+
+ private:
+  void open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
+            double since);
+  std::vector<SurfaceCandidate> candidates_of_start() const;
+  std::vector<SurfaceCandidate> candidates_of_change() const;
+  void trust_label(std::vector<SurfaceCandidate>& candidates) const;
+  bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
+  void leave_present(const Averages& averages, const DisturbanceModel& law);
+  void enter_new(const Averages& averages);
+  void flush(Surface& surface);
+  void merge_look_alikes(const Averages& averages, const DisturbanceModel& law, std::size_t place);
+  void drop(std::size_t place);
+  std::string new_name();
+
+  SurfaceSettings settings_;
+  std::vector<Surface> surfaces_;
+  std::optional<std::size_t> present_;
+  double seconds_ = 0.0;      ///< on the present surface since it was taken
+  std::size_t segments_ = 0;  ///< the same
+  DrivenSpeeds speeds_;       ///< the same
+  std::size_t clock_ = 0;     ///< surfaces taken so far
+  std::string date_;
+  std::vector<SurfaceEvent> events_;
+  std::string label_;  ///< that speaks in the trial
+  double labels_ = 0.0;
+  double right_labels_ = 0.0;
+  std::size_t named_ = 0;   ///< surfaces that got a number for a name
+  std::size_t leader_ = 0;  ///< average that decides
+};
+
+}  // namespace slipwise

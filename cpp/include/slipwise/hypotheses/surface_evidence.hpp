@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// How likely segments are, together, on a surface that is known: their joint density under what was learned and the
+// slip disturbance.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "slipwise/filter/estimate.hpp"
+#include "slipwise/motion/disturbance_model.hpp"
+#include "slipwise/motion/motion_model.hpp"
+#include "slipwise/motion/motion_noise.hpp"
+#include "slipwise/segment/segment.hpp"
+
+namespace slipwise {
+
+/// What is known of a surface before the segments that are judged.
+struct SurfaceBelief {
+  Estimate estimate;
+  Eigen::VectorXd prior_std;    ///< [parameters]
+  MotionNoise noise;            ///< model of the noise,
+  Eigen::Vector3d noise_scale;  ///< and the learned factor of its variances
+};
+
+/// The density of each segment given those before it: a Kalman filter over the parameters and the disturbance of slip,
+/// so that segments which miss alike count as what they have in common, not one by one
+/// (derivations/surface-memory.md).
+class SurfaceEvidence {
+ public:
+  SurfaceEvidence() = default;
+  /// `law` is the slip disturbance as it is known: one process of its mean variance and time constant stands for it.
+  SurfaceEvidence(const MotionModel& model, SurfaceBelief belief, const DisturbanceModel& law);
+
+  /// Log density of a segment given those that were added before, a Student-t's, without constants. The segment follows
+  /// them in time, or begins another run.
+  double add(const MotionModel& model, const InputHistory& inputs, const Segment& segment);
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.belief_, self.places_, self.nominal_, self.time_constant_, self.deviation_, self.covariance_, self.time_);
+  }
+
+ private:
+  void decay_to(double t);
+
+  SurfaceBelief belief_;
+  std::vector<Eigen::Index> places_;  ///< of the disturbed terms
+  Eigen::VectorXd nominal_;           ///< [places] variances before anything recent is known
+  double time_constant_ = 1.0;        ///< [s]
+  Eigen::VectorXd deviation_;         ///< [places]
+  Eigen::MatrixXd covariance_;        ///< [parameters + places] of both
+  double time_ = 0.0;                 ///< of the last segment's middle [s]
+};
+
+}  // namespace slipwise

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a model average remembers of a surface, and which surfaces it takes into account at a change or a start.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "slipwise/filter/surface_slip.hpp"
+#include "slipwise/hypotheses/surface_evidence.hpp"
+
+namespace slipwise {
+
+struct SurfaceSettings {
+  bool remember = false;      ///< surfaces are kept, and recalled where they come back
+  double false_alarm = 0.01;  ///< odds at which a surface is taken: how often a wrong one may be [-]
+  double drift = 0.01;        ///< of a surface since it was left, in prior variances of its slip [-]
+  int trial = 20;             ///< segments after which the likeliest surface is taken, however close it is
+  int fewest = 20;            ///< segments of a surface that is kept, or compared with others
+  double changed = 0.2;       ///< prior probability that a suspicion is another surface, not a passing disturbance [-]
+  double unknown = 0.2;       ///< prior probability that the surface of a drive's start was never driven [-]
+  std::size_t most = 12;      ///< surfaces that are kept; the least used one goes
+};
+
+/// One model average's memory of a surface.
+struct SurfaceMemory {
+  std::vector<SurfaceSlip> slips;  ///< per basis
+  Eigen::VectorXd weights;         ///< of the bases
+  std::size_t observed = 0;        ///< segments weighted by
+};
+
+/// What the surface under the robot may be.
+struct SurfaceCandidate {
+  enum class Kind : std::uint8_t {
+    Present,  ///< the one before
+    Changed,  ///< the one before, and some of it forgotten
+    Known,    ///< one that is remembered
+    New       ///< one that was never driven
+  };
+  friend constexpr std::size_t enumerators(Kind /*type*/) { return 4; }
+  Kind kind;
+  std::size_t place = 0;  ///< of the one that is remembered
+  double prior = 1.0;     ///< probability, of all candidates
+};
+
+/// Candidates that compete, and what speaks for each.
+struct SurfaceTrial {
+  std::vector<SurfaceCandidate> candidates;
+  std::vector<SurfaceEvidence> evidence;
+  std::vector<Eigen::VectorXd> weights;  ///< of the bases, given each
+  std::vector<std::size_t> observed;     ///< segments that these were weighted by
+  Eigen::VectorXd log_odds;              ///< log probabilities but for a constant
+  int segments = 0;                      ///< that the evidence comes from
+
+  Eigen::VectorXd probabilities() const {
+    const Eigen::ArrayXd odds = (log_odds.array() - log_odds.maxCoeff()).exp();
+    return odds / odds.sum();
+  }
+};
+
+}  // namespace slipwise

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which surfaces compete, which one is taken, and how the bank is kept tidy.
+#include "slipwise/hypotheses/surface_bank.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "slipwise/linear/present.hpp"
+
+namespace slipwise {
+namespace {
+
+using Kind = SurfaceCandidate::Kind;
+
+constexpr double kNow = std::numeric_limits<double>::infinity();  // no segment speaks yet
+constexpr std::size_t kMostEvents = 1000;
+
+template <class Use>
+void for_each(const Averages& averages, const Use& use) {
+  for (std::size_t i = 0; i < averages.size(); ++i) {
+    if (averages[i] != nullptr) {
+      use(i, *averages[i]);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<SurfaceEvent> SurfaceBank::take_events() { return std::exchange(events_, {}); }
+
+std::string SurfaceBank::new_name() {
+  const auto taken = [&](const std::string& name) {
+    return std::ranges::any_of(surfaces_, [&](const Surface& each) { return each.name == name; });
+  };
+  if (!label_.empty() && !taken(label_)) {
+    return label_;
+  }
+  std::string name;
+  do {
+    name = "surface " + std::to_string(++named_);
+  } while (taken(name));
+  return name;
+}
+
+void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
+  if (!settings_.remember) {
+    return;
+  }
+  seconds_ += segment.end - segment.start;
+  ++segments_;
+  speeds_.see(inputs, segment);
+}
+
+/// What was driven since it was taken is counted.
+void SurfaceBank::flush(Surface& surface) {
+  if (segments_ > 0) {
+    const ReferenceSpeeds reached = speeds_.reference();
+    surface.speeds = {.v = std::max(surface.speeds.v, reached.v),
+                      .omega = std::max(surface.speeds.omega, reached.omega)};
+  }
+  surface.seconds += seconds_;
+  surface.segments += segments_;
+  surface.last_seen = date_.empty() ? surface.last_seen : date_;
+  seconds_ = 0.0;
+  segments_ = 0;
+  speeds_ = {};
+}
+
+/// As it is now; a surface that was hardly driven is not kept.
+void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel& law) {
+  if (!settings_.remember) {
+    return;
+  }
+  for_each(averages, [](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(kNow); });
+  leave_present(averages, law);
+}
+
+/// What was known of the present surface at parting is remembered.
+void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
+  if (!present_ && static_cast<int>(segments_) < settings_.fewest) {
+    return;
+  }
+  if (!present_) {
+    surfaces_.push_back({.name = new_name(), .visits = 1, .used = ++clock_});
+    present_ = surfaces_.size() - 1;
+    events_.push_back({.kind = SurfaceEvent::Kind::Opened, .name = surfaces_.back().name});
+  }
+  Surface& surface = surfaces_[*present_];
+  flush(surface);
+  for_each(averages, [&](std::size_t i, ModelAverage& average) {
+    surface.memories[i] = average.parting() ? *average.parting() : average.remember();
+  });
+  merge_look_alikes(averages, law, *present_);
+}
+
+void SurfaceBank::merge_look_alikes(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
+  const ModelAverage& leader = *averages[leader_];
+  const double told_apart = -std::log(settings_.false_alarm);
+  const auto known = [&](const Surface& each) {
+    return static_cast<int>(each.segments) >= settings_.fewest && each.memories[leader_];
+  };
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    Surface& own = surfaces_[place];
+    Surface& other = surfaces_[i];
+    if (i == place || !known(own) || !known(other) ||
+        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) > told_apart) {
+      continue;
+    }
+    Surface& older = i < place ? other : own;
+    const Surface& newer = i < place ? own : other;
+    for (std::size_t k = 0; k < kAverages; ++k) {
+      if (!older.memories[k] || !newer.memories[k]) {
+        continue;
+      }
+      const bool more = older.segments >= newer.segments;
+      SurfaceMemory both = more ? *older.memories[k] : *newer.memories[k];
+      const SurfaceMemory& less = more ? *newer.memories[k] : *older.memories[k];
+      for (std::size_t basis = 0; basis < both.slips.size(); ++basis) {
+        both.slips[basis] = merged(both.slips[basis], less.slips[basis]);
+      }
+      older.memories[k] = std::move(both);
+    }
+    events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});
+    older.seconds += newer.seconds;
+    older.segments += newer.segments;
+    older.visits += newer.visits;
+    older.used = std::max(older.used, newer.used);
+    older.last_seen = std::max(older.last_seen, newer.last_seen);
+    older.speeds = {.v = std::max(older.speeds.v, newer.speeds.v),
+                    .omega = std::max(older.speeds.omega, newer.speeds.omega)};
+    const bool was_present = present_ && (*present_ == i || *present_ == place);
+    surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(std::max(i, place)));
+    if (was_present) {
+      present_ = std::min(i, place);
+    } else if (present_ && *present_ > std::max(i, place)) {
+      --*present_;
+    }
+    return;
+  }
+}
+
+/// Never the present one.
+void SurfaceBank::drop(std::size_t place) {
+  events_.push_back({.kind = SurfaceEvent::Kind::Dropped, .name = surfaces_[place].name});
+  surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(place));
+  if (present_ && *present_ > place) {
+    --*present_;
+  }
+}
+
+void SurfaceBank::trust_label(std::vector<SurfaceCandidate>& candidates) const {
+  if (label_.empty()) {
+    return;
+  }
+  const auto named = std::ranges::find_if(candidates, [&](const SurfaceCandidate& each) {
+    return each.kind == Kind::Known && surfaces_[each.place].name == label_;
+  });
+  const auto likely =
+      named != candidates.end() ? named : std::ranges::find(candidates, Kind::New, &SurfaceCandidate::kind);
+  if (likely == candidates.end()) {
+    return;
+  }
+  const double others = 1.0 - likely->prior;
+  for (SurfaceCandidate& each : candidates) {
+    each.prior *= others > 0.0 ? (1.0 - label_reliability()) / others : 1.0;
+  }
+  likely->prior = others > 0.0 ? label_reliability() : 1.0;
+}
+
+std::vector<SurfaceCandidate> SurfaceBank::candidates_of_start() const {
+  std::vector<SurfaceCandidate> candidates;
+  const double each = (1.0 - settings_.unknown) / static_cast<double>(surfaces_.size());
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    candidates.push_back({.kind = Kind::Known, .place = i, .prior = each});
+  }
+  candidates.push_back({.kind = Kind::New, .prior = settings_.unknown});
+  return candidates;
+}
+
+std::vector<SurfaceCandidate> SurfaceBank::candidates_of_change() const {
+  std::vector<SurfaceCandidate> candidates{{.kind = Kind::Present, .prior = 1.0 - settings_.changed}};
+  std::vector<SurfaceCandidate> others{{.kind = Kind::Changed}, {.kind = Kind::New}};
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (!present_ || *present_ != i) {
+      others.push_back({.kind = Kind::Known, .place = i});
+    }
+  }
+  for (SurfaceCandidate& each : others) {
+    each.prior = settings_.changed / static_cast<double>(others.size());
+    candidates.push_back(each);
+  }
+  return candidates;
+}
+
+void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
+                       double since) {
+  trust_label(candidates);
+  for_each(averages, [&](std::size_t i, ModelAverage& average) {
+    std::vector<SurfaceMemory> known;
+    for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
+      known.push_back(surface.memories[i] ? *surface.memories[i] : average.remember());
+    }
+    average.open_trial(candidates, known, law, since);
+  });
+}
+
+void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start) {
+  if (!settings_.remember) {
+    return;
+  }
+  if (averages[leader_]->trial()) {
+    settle(averages, leader_, law, true);
+  }
+  keep_present(averages, law);
+  date_ = start.date;
+  label_ = start.label;
+  if (!surfaces_.empty()) {
+    open(averages, law, candidates_of_start(), kNow);
+    present_.reset();
+  }
+}
+
+void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
+  if (!settings_.remember || averages[leader_]->trial()) {
+    return;
+  }
+  keep_present(averages, law);
+  label_ = label;
+  if (!surfaces_.empty()) {
+    open(averages, law, candidates_of_change(), kNow);
+  }
+}
+
+bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law) {
+  if (!settings_.remember) {
+    return false;
+  }
+  leader_ = leader;
+  const bool others = surfaces_.size() > (present_ ? 1 : 0);
+  for_each(averages, [&](std::size_t i, ModelAverage& average) { average.hand_over(others && i == leader); });
+  const ModelAverage& first = *averages[leader];
+  if (first.trial()) {
+    return settle(averages, leader, law, false);
+  }
+  if (first.change().suspicion && others) {
+    label_.clear();
+    open(averages, law, candidates_of_change(), first.suspected_since());
+    return true;
+  }
+  if (first.change().suspicion) {
+    for_each(averages, [&](std::size_t i, ModelAverage& average) {
+      if (i != leader) {
+        average.mark_parting(first.suspected_since());
+      }
+    });
+  }
+  if (first.moved()) {
+    leave_present(averages, law);
+    enter_new(averages);
+  }
+  return false;
+}
+
+/// One that has no entry yet gets one when it is left.
+void SurfaceBank::enter_new(const Averages& /*averages*/) {
+  present_.reset();
+  ++clock_;
+  while (surfaces_.size() >= settings_.most) {
+    const auto least = std::ranges::min_element(surfaces_, [](const Surface& a, const Surface& b) {
+      return std::pair(a.visits, a.used) < std::pair(b.visits, b.used);
+    });
+    drop(static_cast<std::size_t>(least - surfaces_.begin()));
+  }
+}
+
+/// Takes a candidate where it is certain enough, or time is over, or at once. Whether one was taken.
+bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once) {
+  const SurfaceTrial& trial = slipwise::present(averages[leader]->trial());
+  Eigen::Index likeliest = 0;
+  const double probability = trial.probabilities().maxCoeff(&likeliest);
+  const auto taken = static_cast<std::size_t>(likeliest);
+  if (!at_once && probability < 1.0 - settings_.false_alarm && trial.segments < settings_.trial) {
+    return false;
+  }
+  const SurfaceCandidate candidate = trial.candidates[taken];
+  SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
+                     .name = present_ ? surfaces_[*present_].name : "",
+                     .probability = probability,
+                     .segments = trial.segments};
+  std::string recalled;
+  if (candidate.kind == Kind::Known) {
+    event.kind = SurfaceEvent::Kind::Recalled;
+    event.name = recalled = surfaces_[candidate.place].name;
+  } else if (candidate.kind != Kind::Present) {
+    event.kind = SurfaceEvent::Kind::Opened;
+  }
+  const bool at_start = trial.candidates.front().kind != Kind::Present;
+  for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) {
+    if (average.trial()) {
+      average.settle(taken);
+    }
+  });
+  if (candidate.kind != Kind::Present && !at_start) {
+    leave_present(averages, law);
+  }
+  if (!label_.empty()) {
+    labels_ += 1.0;
+    right_labels_ += recalled.empty() || recalled == label_ ? 1.0 : 0.0;
+  }
+  if (candidate.kind == Kind::Known) {
+    const auto place = std::ranges::find(surfaces_, recalled, &Surface::name) - surfaces_.begin();
+    if (place < std::ssize(surfaces_)) {
+      present_ = static_cast<std::size_t>(place);
+      ++surfaces_[*present_].visits;
+      surfaces_[*present_].used = ++clock_;
+    }
+  } else if (candidate.kind != Kind::Present) {
+    enter_new(averages);
+  }
+  events_.push_back(std::move(event));
+  if (events_.size() > kMostEvents) {
+    events_.erase(events_.begin());
+  }
+  return true;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The structures and the surfaces that they share.
+#include <array>
+
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kJoint = 0;
+constexpr std::size_t kDirect = 1;
+constexpr std::size_t kCascaded = 2;
+
+}  // namespace
+
+Averages MotionHypotheses::averages() {
+  return {&joint_, direct_ && tried(Structure::Direct) ? &*direct_ : nullptr,
+          cascaded_ && tried(Structure::Cascaded) ? &cascaded_->slip() : nullptr};
+}
+
+/// What learns slip behind measured wheel speeds tells surfaces apart soonest.
+std::size_t MotionHypotheses::leader() const { return cascaded_ && tried(Structure::Cascaded) ? kCascaded : kJoint; }
+
+void MotionHypotheses::start_run() {
+  if (settings_.average.surfaces.remember) {
+    for (ModelAverage* average : averages()) {
+      if (average != nullptr) {
+        average->start_run();
+      }
+    }
+  }
+}
+
+void MotionHypotheses::start_drive(const DisturbanceModel& law, const DriveStart& start) {
+  bank_.start_drive(averages(), law, start);
+  if (cascaded_) {
+    cascaded_->refresh();
+  }
+}
+
+void MotionHypotheses::cue_surface(const DisturbanceModel& law, const std::string& label) {
+  bank_.cue(averages(), law, label);
+}
+
+bool MotionHypotheses::consider_surfaces(const DisturbanceModel& law) {
+  return bank_.consider(averages(), leader(), law);
+}
+
+SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
+  MotionHypotheses now = *this;
+  now.bank_.keep_present(now.averages(), law);
+  return now.bank_;
+}
+
+std::optional<AverageState> MotionHypotheses::on_surface(const Surface& surface) const {
+  const std::array<const ModelAverage*, kAverages> all{&joint_, direct_ ? &*direct_ : nullptr,
+                                                       cascaded_ ? &cascaded_->slip() : nullptr};
+  for (const std::size_t place : {kCascaded, kJoint, kDirect}) {
+    if (all[place] != nullptr && surface.memories[place]) {
+      return all[place]->state_on(*surface.memories[place]);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace slipwise

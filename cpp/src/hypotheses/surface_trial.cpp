@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model average on surfaces that it knows: they compete, and one is taken (derivations/surface-memory.md).
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/present.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kProbes = 8;      // segments by which surfaces are compared
+constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
+constexpr double kSameStamp = 1e-6;     // [s]
+
+}  // namespace
+
+/// Keeps what was known before a segment, as long as one surface is driven on.
+void ModelAverage::note_recent() {
+  if (!settings_.surfaces.remember || trial_) {
+    return;
+  }
+  const Learning& now = present(learning_);
+  recent_.push_back({now.inputs, now.segment, remember(), state()});
+  if (std::ssize(recent_) > settings_.change.longest) {
+    recent_.pop_front();
+  }
+  if (observed_ % kProbeEvery == 0) {
+    probes_.push_back({now.inputs, now.segment, {}, {}});
+  }
+  if (probes_.size() > kProbes) {
+    probes_.pop_front();
+  }
+}
+
+SurfaceMemory ModelAverage::remember() const {
+  const std::size_t bases = places_.size();
+  std::size_t best = 0;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(prior_.size());
+  for (std::size_t side = 0; side < sides(); ++side) {
+    const Eigen::VectorXd part = weights_.segment(static_cast<Eigen::Index>(side * bases), prior_.size());
+    if (part.sum() > weights.sum()) {
+      best = side;
+      weights = part;
+    }
+  }
+  SurfaceMemory memory{.slips = {}, .weights = weights / weights.sum(), .observed = observed_};
+  if (trial_) {
+    memory.observed = present(trial_).observed[best];
+  }
+  for (std::size_t i = 0; i < bases; ++i) {
+    memory.slips.push_back(filters_[best * bases + i].surface());
+  }
+  return memory;
+}
+
+std::size_t ModelAverage::recent_since(double since) const {
+  std::size_t first = recent_.size();
+  while (first > 0 && recent_[first - 1].segment.start >= since - kSameStamp) {
+    --first;
+  }
+  return first;
+}
+
+void ModelAverage::mark_parting(double since) {
+  const std::size_t first = recent_since(since);
+  parting_ = first < recent_.size() ? recent_[first].memory : remember();
+}
+
+std::vector<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface) const {
+  const std::size_t bases = places_.size();
+  std::vector<CausalFilter> filters(filters_.begin(), filters_.begin() + static_cast<std::ptrdiff_t>(bases));
+  for (std::size_t i = 0; i < bases; ++i) {
+    filters[i].go_on_with(surface.slips[i], settings_.surfaces.drift);
+  }
+  return filters;
+}
+
+AverageState ModelAverage::state_on(const SurfaceMemory& surface) const {
+  AverageState state = state_of(filters_on(surface), surface.weights);
+  state.weights = surface.weights;
+  return state;
+}
+
+SurfaceBelief ModelAverage::belief_of(const AverageState& state) const {
+  return {.estimate = state.estimate,
+          .prior_std = state.prior_std,
+          .noise = filters_.front().noise().shape,
+          .noise_scale = state.noise_scale};
+}
+
+/// Bases are weighted as on the surfaces that are known.
+SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const {
+  SurfaceMemory fresh{.slips = {}, .weights = Eigen::VectorXd::Zero(prior_.size())};
+  std::vector<SurfaceMemory> all(known.begin(), known.end());
+  if (all.empty()) {
+    all.push_back(present);
+  }
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    std::vector<SurfaceSlip> slips;
+    std::ranges::transform(all, std::back_inserter(slips), [&](const SurfaceMemory& each) { return each.slips[i]; });
+    fresh.slips.push_back(filters_[i].new_surface(slips));
+  }
+  for (const SurfaceMemory& each : all) {
+    fresh.weights += each.weights / static_cast<double>(all.size());
+  }
+  return fresh;
+}
+
+void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
+                              const DisturbanceModel& law, double since) {
+  if (trial_) {
+    settle(0);
+  }
+  if (undecided_ > 0) {
+    resolve();
+    undecided_ = 0;
+  }
+  const std::size_t first = recent_since(since);
+  mark_parting(since);
+  SurfaceTrial trial{.candidates = candidates, .evidence = {}, .weights = {}, .observed = {}, .log_odds = {}};
+  trial.log_odds.resize(std::ssize(candidates));
+  std::vector<CausalFilter> filters;
+  for (std::size_t side = 0; side < candidates.size(); ++side) {
+    const SurfaceCandidate& candidate = candidates[side];
+    SurfaceMemory start = present(parting_);
+    if (candidate.kind == SurfaceCandidate::Kind::Known) {
+      start = known[candidate.place];
+    } else if (candidate.kind == SurfaceCandidate::Kind::New) {
+      start = new_surface(known, present(parting_));
+    }
+    std::vector<CausalFilter> own;
+    AverageState state;
+    if (candidate.kind == SurfaceCandidate::Kind::Present) {
+      own = filters_;
+      state = first < recent_.size() ? recent_[first].state : this->state();
+      start.weights = weights_;
+      start.observed = observed_;
+    } else {
+      own = filters_on(start);
+      if (candidate.kind == SurfaceCandidate::Kind::Changed) {
+        std::ranges::for_each(own, [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
+        start.observed = 0;
+      }
+      state = state_of(own, start.weights);
+    }
+    SurfaceEvidence evidence(model_, belief_of(state), law);
+    double score = std::log(candidate.prior);
+    for (std::size_t i = first; i < recent_.size(); ++i) {
+      const Recent& recent = recent_[i];
+      score += evidence.add(model_, recent.inputs, recent.segment);
+      if (candidate.kind != SurfaceCandidate::Kind::Present) {
+        std::vector<Eigen::Vector3d> innovations;
+        std::vector<Eigen::Matrix3d> covariances;
+        for (CausalFilter& filter : own) {
+          const IekfUpdate update = filter.learn(recent.inputs, recent.segment, speeds_.reference());
+          innovations.push_back(update.innovation);
+          covariances.push_back(update.innovation_covariance);
+        }
+        start.weights = updated_weights(start.weights, common_log_scores(start.weights, innovations, covariances),
+                                        prior_, settings_.weighting, start.observed);
+        ++start.observed;
+      }
+    }
+    trial.log_odds[static_cast<Eigen::Index>(side)] = score;
+    trial.evidence.push_back(std::move(evidence));
+    trial.weights.push_back(start.weights);
+    trial.observed.push_back(start.observed);
+    std::ranges::move(own, std::back_inserter(filters));
+  }
+  trial.segments = static_cast<int>(recent_.size() - first);
+  filters_ = std::move(filters);
+  trial_ = std::move(trial);
+  before_.clear();
+  detector_.restart();
+  recent_.clear();
+  mix_trial();
+}
+
+void ModelAverage::mix_trial() {
+  const SurfaceTrial& trial = present(trial_);
+  const Eigen::VectorXd likely = trial.probabilities();
+  weights_.resize(likely.size() * prior_.size());
+  for (Eigen::Index side = 0; side < likely.size(); ++side) {
+    weights_.segment(side * prior_.size(), prior_.size()) =
+        likely[side] * trial.weights[static_cast<std::size_t>(side)];
+  }
+}
+
+/// Bases are weighted by the usual rule on each surface, surfaces by the joint density of all segments so far.
+void ModelAverage::reweigh_trial() {
+  SurfaceTrial& trial = present(trial_);
+  const Learning& now = present(learning_);
+  const std::size_t bases = places_.size();
+  Eigen::Index heaviest = 0;
+  weights_.maxCoeff(&heaviest);
+  update_ = now.updates[static_cast<std::size_t>(heaviest)];
+  for (std::size_t side = 0; side < trial.candidates.size(); ++side) {
+    std::vector<Eigen::Vector3d> innovations;
+    std::vector<Eigen::Matrix3d> covariances;
+    for (std::size_t i = side * bases; i < (side + 1) * bases; ++i) {
+      innovations.push_back(now.updates[i].innovation);
+      covariances.push_back(now.updates[i].innovation_covariance);
+    }
+    trial.weights[side] =
+        updated_weights(trial.weights[side], common_log_scores(trial.weights[side], innovations, covariances), prior_,
+                        settings_.weighting, trial.observed[side]);
+    ++trial.observed[side];
+    trial.log_odds[static_cast<Eigen::Index>(side)] += trial.evidence[side].add(model_, now.inputs, now.segment);
+  }
+  ++trial.segments;
+  mix_trial();
+}
+
+void ModelAverage::settle(std::size_t candidate) {
+  SurfaceTrial trial = std::move(present(trial_));
+  trial_.reset();
+  const auto bases = static_cast<std::ptrdiff_t>(places_.size());
+  const auto first = filters_.begin() + static_cast<std::ptrdiff_t>(candidate) * bases;
+  std::vector<CausalFilter> kept(std::make_move_iterator(first), std::make_move_iterator(first + bases));
+  filters_ = std::move(kept);
+  weights_ = trial.weights[candidate];
+  observed_ = trial.observed[candidate];
+}
+
+/// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open.
+double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const {
+  const AverageState of_a = state_on(a);
+  const AverageState of_b = state_on(b);
+  const auto count = std::ssize(probes_);
+  const Eigen::Index slip = model_.slip_size();
+  const DisturbedTerms terms = disturbed_terms(model_, of_a.prior_std);
+  Eigen::MatrixXd by_slip(3 * count, slip);
+  Eigen::VectorXd difference(3 * count);
+  Eigen::MatrixXd open = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Recent& probe = probes_[static_cast<std::size_t>(i)];
+    const auto at = linearize_segment(model_, of_a.estimate.mean, probe.inputs, probe.segment);
+    const auto other = linearize_segment(model_, of_b.estimate.mean, probe.inputs, probe.segment);
+    by_slip.middleRows<3>(3 * i) = at.by_parameter.leftCols(slip);
+    difference.segment<3>(3 * i) = other.predicted.vector() - at.predicted.vector();
+    const Eigen::Vector3d scale = (of_a.noise_scale + of_b.noise_scale) / 2.0;
+    const Eigen::MatrixXd disturbed = at.by_parameter(Eigen::all, terms.places);
+    open.block<3, 3>(3 * i, 3 * i) =
+        segment_noise(at.path, probe.segment.measured, filters_.front().noise().shape, scale) +
+        disturbed * nominal_variances(law, terms, probe.segment.end - probe.segment.start).asDiagonal() *
+            disturbed.transpose();
+  }
+  open += by_slip *
+          (of_a.estimate.covariance.topLeftCorner(slip, slip) + of_b.estimate.covariance.topLeftCorner(slip, slip)) *
+          by_slip.transpose();
+  return count == 0 ? 0.0 : difference.dot(Cholesky(open).solve(difference)) / 2.0;
+}
+
+}  // namespace slipwise
