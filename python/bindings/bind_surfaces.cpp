@@ -18,10 +18,13 @@ void bind_surfaces(nb::module_& m) {
       .def_rw("remember", &SurfaceSettings::remember)
       .def_rw("false_alarm", &SurfaceSettings::false_alarm)
       .def_rw("drift", &SurfaceSettings::drift)
+      .def_rw("soonest", &SurfaceSettings::soonest)
+      .def_rw("learning_rate", &SurfaceSettings::learning_rate)
       .def_rw("trial", &SurfaceSettings::trial)
       .def_rw("fewest", &SurfaceSettings::fewest)
       .def_rw("changed", &SurfaceSettings::changed)
       .def_rw("unknown", &SurfaceSettings::unknown)
+      .def_rw("merge", &SurfaceSettings::merge)
       .def_rw("most", &SurfaceSettings::most);
   nb::class_<Surface>(m, "Surface", "A surface that is remembered.")
       .def_ro("name", &Surface::name)

@@ -10,7 +10,8 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kFirstDrive, 2.0);  // surfaces that the prior of a first drive counts as, in the spread of surfaces
+SLIPWISE_TUNING(kGuessed, 2.0);  // surfaces that the guess of their spread counts as
+SLIPWISE_TUNING(kSpread, 0.1);   // that guess: of the variance of a first drive's prior, since surfaces share a robot
 constexpr int kIterations = 10;     // of expectation and maximisation: the spread settles in a few
 
 Eigen::MatrixXd symmetric(const Eigen::MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2.0; }
@@ -97,7 +98,7 @@ SurfaceSlip shrunk_prior(std::span<const SurfaceSlip> known, const Eigen::Ref<co
     surfaces.push_back({per_std.cwiseProduct(each.mean + each.by_robot * (robot - each.robot)),
                         per_std.asDiagonal() * each.covariance * per_std.asDiagonal()});
   }
-  Eigen::VectorXd spread = Eigen::VectorXd::Ones(size);
+  Eigen::VectorXd spread = Eigen::VectorXd::Constant(size, kSpread);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(size);
   Eigen::MatrixXd of_mean = Eigen::MatrixXd::Identity(size, size);
   for (int i = 0; i < kIterations && size > 0; ++i) {
@@ -112,13 +113,13 @@ SurfaceSlip shrunk_prior(std::span<const SurfaceSlip> known, const Eigen::Ref<co
     const Cholesky factor(information);
     mean = factor.solve(evidence);
     of_mean = factor.inverse();
-    Eigen::VectorXd sum = Eigen::VectorXd::Constant(size, kFirstDrive);
+    Eigen::VectorXd sum = Eigen::VectorXd::Constant(size, kGuessed * kSpread);
     for (std::size_t k = 0; k < surfaces.size(); ++k) {
       const Eigen::VectorXd away = spread.cwiseProduct(precisions[k] * (surfaces[k].mean - mean));
       const Eigen::VectorXd left = spread - spread.cwiseAbs2().cwiseProduct(precisions[k].diagonal());
       sum += away.cwiseAbs2() + left;
     }
-    spread = sum / (kFirstDrive + static_cast<double>(surfaces.size()));
+    spread = sum / (kGuessed + static_cast<double>(surfaces.size()));
   }
   const Eigen::MatrixXd covariance = of_mean + Eigen::MatrixXd(spread.asDiagonal());
   return {.mean = first_std.cwiseProduct(mean),

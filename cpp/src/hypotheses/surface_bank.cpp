@@ -96,6 +96,9 @@ void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel
 }
 
 void SurfaceBank::merge_look_alikes(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
+  if (!settings_.merge) {
+    return;
+  }
   const ModelAverage& leader = *averages[leader_];
   const double told_apart = -std::log(settings_.false_alarm);
   const auto known = [&](const Surface& each) {
@@ -105,7 +108,8 @@ void SurfaceBank::merge_look_alikes(const Averages& averages, const DisturbanceM
     Surface& own = surfaces_[place];
     Surface& other = surfaces_[i];
     if (i == place || !known(own) || !known(other) ||
-        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) > told_apart) {
+        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) >
+            told_apart) {
       continue;
     }
     Surface& older = i < place ? other : own;
@@ -279,11 +283,16 @@ void SurfaceBank::enter_new(const Averages& /*averages*/) {
 bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once) {
   const SurfaceTrial& trial = slipwise::present(averages[leader]->trial());
   Eigen::Index likeliest = 0;
-  const double probability = trial.probabilities().maxCoeff(&likeliest);
-  const auto taken = static_cast<std::size_t>(likeliest);
-  if (!at_once && probability < 1.0 - settings_.false_alarm && trial.segments < settings_.trial) {
+  double probability = trial.probabilities().maxCoeff(&likeliest);
+  const bool sure = probability >= 1.0 - settings_.false_alarm && trial.segments >= settings_.soonest;
+  if (!at_once && !sure && trial.segments < settings_.trial) {
     return false;
   }
+  if (!sure && trial.candidates.front().kind == Kind::Present) {
+    likeliest = 0;  // a suspicion that was not confirmed
+    probability = trial.probabilities()[0];
+  }
+  const auto taken = static_cast<std::size_t>(likeliest);
   const SurfaceCandidate candidate = trial.candidates[taken];
   SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
                      .name = present_ ? surfaces_[*present_].name : "",

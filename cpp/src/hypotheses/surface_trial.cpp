@@ -12,7 +12,7 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kProbes = 8;      // segments by which surfaces are compared
+constexpr std::size_t kProbes = 20;     // segments by which surfaces are compared
 constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
 constexpr double kSameStamp = 1e-6;     // [s]
 
@@ -151,7 +151,7 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
     double score = std::log(candidate.prior);
     for (std::size_t i = first; i < recent_.size(); ++i) {
       const Recent& recent = recent_[i];
-      score += evidence.add(model_, recent.inputs, recent.segment);
+      score += settings_.surfaces.learning_rate * evidence.add(model_, recent.inputs, recent.segment);
       if (candidate.kind != SurfaceCandidate::Kind::Present) {
         std::vector<Eigen::Vector3d> innovations;
         std::vector<Eigen::Matrix3d> covariances;
@@ -209,7 +209,8 @@ void ModelAverage::reweigh_trial() {
         updated_weights(trial.weights[side], common_log_scores(trial.weights[side], innovations, covariances), prior_,
                         settings_.weighting, trial.observed[side]);
     ++trial.observed[side];
-    trial.log_odds[static_cast<Eigen::Index>(side)] += trial.evidence[side].add(model_, now.inputs, now.segment);
+    trial.log_odds[static_cast<Eigen::Index>(side)] +=
+        settings_.surfaces.learning_rate * trial.evidence[side].add(model_, now.inputs, now.segment);
   }
   ++trial.segments;
   mix_trial();
