@@ -4,69 +4,102 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "slipwise/filter/heavy_tails.hpp"
 #include "slipwise/filter/weighting.hpp"
 #include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/tuning.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kHardly, 0.02);  // weight below which a candidate of the disturbance is passed over
+
+}  // namespace
 
 SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfaceBelief belief, const DisturbanceModel& law)
     : belief_(std::move(belief)) {
   const DisturbedTerms terms = disturbed_terms(model, belief_.prior_std);
   places_ = terms.places;
-  nominal_ = Eigen::VectorXd::Zero(terms.size());
-  double weighted = 0.0;
-  for (std::size_t i = 0; i < law.candidates.size(); ++i) {
-    const Eigen::VectorXd part = law.weights[static_cast<Eigen::Index>(i)] * terms.variances(law.candidates[i]);
-    nominal_ += part;
-    weighted += part.sum() * law.candidates[i].time_constant;
-  }
-  time_constant_ = nominal_.sum() > 0.0 ? weighted / nominal_.sum() : 1.0;
-  deviation_ = Eigen::VectorXd::Zero(terms.size());
   const Eigen::Index size = model.size();
-  covariance_ = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size());
-  covariance_.topLeftCorner(size, size) = belief_.estimate.covariance;
-  covariance_.diagonal().tail(terms.size()) = nominal_;
+  const auto consider = [&](const SlipDisturbance& disturbance, double weight) {
+    Under under{.log_weight = std::log(weight),
+                .time_constant = disturbance.time_constant,
+                .nominal = terms.variances(disturbance),
+                .state = Eigen::VectorXd::Zero(size + terms.size()),
+                .covariance = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size())};
+    under.covariance.topLeftCorner(size, size) = belief_.estimate.covariance;
+    under.covariance.diagonal().tail(terms.size()) = under.nominal;
+    under_.push_back(std::move(under));
+  };
+  for (std::size_t i = 0; i < law.candidates.size(); ++i) {
+    const double weight = law.weights[static_cast<Eigen::Index>(i)];
+    if (weight >= std::min(kHardly, law.weights.maxCoeff())) {
+      consider(law.candidates[i], weight);
+    }
+  }
+  if (under_.empty()) {
+    consider({.linear = 0.0, .angular = 0.0, .time_constant = 1.0}, 1.0);
+  }
 }
 
-/// Of the deviation, with the time since the last segment; all of it where another run begins.
-void SurfaceEvidence::decay_to(double t) {
-  const double keep = t > time_ ? std::exp(-(t - time_) / time_constant_) : 0.0;
-  const Eigen::Index terms = deviation_.size();
-  deviation_ *= keep;
-  covariance_.rightCols(terms) *= keep;
-  covariance_.bottomRows(terms) *= keep;
-  covariance_.diagonal().tail(terms) += (1.0 - keep * keep) * nominal_;
-  time_ = t;
+/// Of the deviation, with the time since the last segment.
+void SurfaceEvidence::Under::decay(double seconds) {
+  const double keep = std::exp(-seconds / time_constant);
+  const Eigen::Index terms = nominal.size();
+  state.tail(terms) *= keep;
+  covariance.rightCols(terms) *= keep;
+  covariance.bottomRows(terms) *= keep;
+  covariance.diagonal().tail(terms) += (1.0 - keep * keep) * nominal;
+}
+
+void SurfaceEvidence::Under::learn(const Eigen::Vector3d& innovation,
+                                   const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
+                                   const Eigen::Matrix3d& noise) {
+  const Eigen::Vector3d left = innovation - by_state * state;
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> spread = by_state * covariance;
+  const Eigen::Matrix3d open = spread * by_state.transpose();
+  const double nis = normalised_square(left, Eigen::Matrix3d(open + noise));
+  log_weight += student_log_score(nis, open + noise);
+  const double heavier = std::max(1.0, (kTailDegrees + nis) / (kTailDegrees + 3.0));  // an outlier teaches less
+  const Eigen::MatrixX3d gain = kalman_gain(open + heavier * noise, spread);
+  state += gain * left;
+  covariance -= gain * spread;
+  covariance = ((covariance + covariance.transpose()) / 2.0).eval();
+}
+
+double SurfaceEvidence::log_total() const {
+  const double most = std::ranges::max_element(under_, {}, &Under::log_weight)->log_weight;
+  double sum = 0.0;
+  for (const Under& under : under_) {
+    sum += std::exp(under.log_weight - most);
+  }
+  return most + std::log(sum);
 }
 
 double SurfaceEvidence::add(const MotionModel& model, const InputHistory& inputs, const Segment& segment) {
-  decay_to((segment.start + segment.end) / 2.0);
-  const auto at = linearize_segment(model, belief_.estimate.mean, inputs, segment);
+  const double middle = (segment.start + segment.end) / 2.0;
+  const double passed = middle > time_ ? middle - time_ : std::numeric_limits<double>::infinity();
+  time_ = middle;
+  const double before = log_total();
   const Eigen::Index size = model.size();
-  const Eigen::Index terms = deviation_.size();
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state(3, size + terms);
+  const auto heaviest = std::ranges::max_element(under_, {}, &Under::log_weight);
+  const Eigen::VectorXd away = heaviest->state.head(size);
+  const auto at = linearize_segment(model, belief_.estimate.mean + away, inputs, segment);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_state(3, size + std::ssize(places_));
   by_state.leftCols(size) = at.by_parameter;
-  by_state.rightCols(terms) = at.by_parameter(Eigen::all, places_);
+  by_state.rightCols(std::ssize(places_)) = at.by_parameter(Eigen::all, places_);
   const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, belief_.noise, belief_.noise_scale);
-  const Eigen::Vector3d innovation =
-      segment.measured.vector() - at.predicted.vector() - by_state.rightCols(terms) * deviation_;
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> spread = by_state * covariance_;
-  const Eigen::Matrix3d expected = spread * by_state.transpose() + noise;
-  const double nis = normalised_square(innovation, expected);
-  const double heavier = std::max(1.0, (kTailDegrees + nis) / (kTailDegrees + 3.0));  // an outlier teaches less
-  const Eigen::Matrix3d observed = spread * by_state.transpose() + heavier * noise;
-  const Eigen::MatrixX3d gain = kalman_gain(observed, spread);
-  const Eigen::VectorXd step = gain * innovation;
-  belief_.estimate.mean += step.head(size);
-  deviation_ += step.tail(terms);
-  covariance_ -= gain * spread;
-  covariance_ = ((covariance_ + covariance_.transpose()) / 2.0).eval();
-  return student_log_score(nis, expected);
+  const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector() + at.by_parameter * away;
+  for (Under& under : under_) {
+    under.decay(passed);
+    under.learn(innovation, by_state, noise);
+  }
+  return log_total() - before;
 }
 
 }  // namespace slipwise

@@ -22,13 +22,13 @@ struct SurfaceBelief {
   Eigen::Vector3d noise_scale;  ///< and the learned factor of its variances
 };
 
-/// The density of each segment given those before it: a Kalman filter over the parameters and the disturbance of slip,
+/// The density of each segment given those before it: Kalman filters over the parameters and the disturbance of slip,
 /// so that segments which miss alike count as what they have in common, not one by one
 /// (derivations/surface-memory.md).
 class SurfaceEvidence {
  public:
   SurfaceEvidence() = default;
-  /// `law` is the slip disturbance as it is known: one process of its mean variance and time constant stands for it.
+  /// `law` is the slip disturbance as it is known; candidates of it that hardly weigh are passed over.
   SurfaceEvidence(const MotionModel& model, SurfaceBelief belief, const DisturbanceModel& law);
 
   /// Log density of a segment given those that were added before, a Student-t's, without constants. The segment follows
@@ -38,19 +38,28 @@ class SurfaceEvidence {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.belief_, self.places_, self.nominal_, self.time_constant_, self.deviation_, self.covariance_, self.time_);
+    a(self.belief_, self.places_, self.under_, self.time_);
   }
 
  private:
-  void decay_to(double t);
+  /// What is known under one candidate of the disturbance.
+  struct Under {
+    double log_weight;           ///< its weight so far, and how likely the segments were
+    double time_constant;        ///< [s]
+    Eigen::VectorXd nominal;     ///< [places] variances before anything recent is known
+    Eigen::VectorXd state;       ///< [parameters + places], of the parameters what they differ by from the belief
+    Eigen::MatrixXd covariance;  ///< of it
+
+    void decay(double seconds);
+    void learn(const Eigen::Vector3d& innovation, const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_state,
+               const Eigen::Matrix3d& noise);
+  };
+  double log_total() const;
 
   SurfaceBelief belief_;
   std::vector<Eigen::Index> places_;  ///< of the disturbed terms
-  Eigen::VectorXd nominal_;           ///< [places] variances before anything recent is known
-  double time_constant_ = 1.0;        ///< [s]
-  Eigen::VectorXd deviation_;         ///< [places]
-  Eigen::MatrixXd covariance_;        ///< [parameters + places] of both
-  double time_ = 0.0;                 ///< of the last segment's middle [s]
+  std::vector<Under> under_;
+  double time_ = 0.0;  ///< of the last segment's middle [s]
 };
 
 }  // namespace slipwise
