@@ -92,10 +92,10 @@ void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel
   for_each(averages, [&](std::size_t i, ModelAverage& average) {
     surface.memories[i] = average.parting() ? *average.parting() : average.remember();
   });
-  merge_look_alikes(averages, law, *present_);
+  merge_confounded(averages, law, *present_);
 }
 
-void SurfaceBank::merge_look_alikes(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
+void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
   if (!settings_.merge) {
     return;
   }

@@ -21,9 +21,9 @@ SLIPWISE_TUNING(kHardly, 0.02);  // weight below which a candidate of the distur
 
 }  // namespace
 
-SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfaceBelief belief, const DisturbanceModel& law)
-    : belief_(std::move(belief)) {
-  const DisturbedTerms terms = disturbed_terms(model, belief_.prior_std);
+SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfacePosterior posterior, const DisturbanceModel& law)
+    : posterior_(std::move(posterior)) {
+  const DisturbedTerms terms = disturbed_terms(model, posterior_.prior_std);
   places_ = terms.places;
   const Eigen::Index size = model.size();
   const auto consider = [&](const SlipDisturbance& disturbance, double weight) {
@@ -32,7 +32,7 @@ SurfaceEvidence::SurfaceEvidence(const MotionModel& model, SurfaceBelief belief,
                 .nominal = terms.variances(disturbance),
                 .state = Eigen::VectorXd::Zero(size + terms.size()),
                 .covariance = Eigen::MatrixXd::Zero(size + terms.size(), size + terms.size())};
-    under.covariance.topLeftCorner(size, size) = belief_.estimate.covariance;
+    under.covariance.topLeftCorner(size, size) = posterior_.estimate.covariance;
     under.covariance.diagonal().tail(terms.size()) = under.nominal;
     under_.push_back(std::move(under));
   };
@@ -89,11 +89,11 @@ double SurfaceEvidence::add(const MotionModel& model, const InputHistory& inputs
   const Eigen::Index size = model.size();
   const auto heaviest = std::ranges::max_element(under_, {}, &Under::log_weight);
   const Eigen::VectorXd away = heaviest->state.head(size);
-  const auto at = linearize_segment(model, belief_.estimate.mean + away, inputs, segment);
+  const auto at = linearize_segment(model, posterior_.estimate.mean + away, inputs, segment);
   Eigen::Matrix<double, 3, Eigen::Dynamic> by_state(3, size + std::ssize(places_));
   by_state.leftCols(size) = at.by_parameter;
   by_state.rightCols(std::ssize(places_)) = at.by_parameter(Eigen::all, places_);
-  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, belief_.noise, belief_.noise_scale);
+  const Eigen::Matrix3d noise = segment_noise(at.path, segment.measured, posterior_.noise, posterior_.noise_scale);
   const Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector() + at.by_parameter * away;
   for (Under& under : under_) {
     under.decay(passed);

@@ -70,22 +70,22 @@ void ModelAverage::mark_parting(double since) {
   parting_ = first < recent_.size() ? recent_[first].memory : remember();
 }
 
-std::vector<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface) const {
+std::vector<CausalFilter> ModelAverage::filters_on(const SurfaceMemory& surface, double drift) const {
   const std::size_t bases = places_.size();
   std::vector<CausalFilter> filters(filters_.begin(), filters_.begin() + static_cast<std::ptrdiff_t>(bases));
   for (std::size_t i = 0; i < bases; ++i) {
-    filters[i].go_on_with(surface.slips[i], settings_.surfaces.drift);
+    filters[i].go_on_with(surface.slips[i], drift);
   }
   return filters;
 }
 
 AverageState ModelAverage::state_on(const SurfaceMemory& surface) const {
-  AverageState state = state_of(filters_on(surface), surface.weights);
+  AverageState state = state_of(filters_on(surface, 0.0), surface.weights);
   state.weights = surface.weights;
   return state;
 }
 
-SurfaceBelief ModelAverage::belief_of(const AverageState& state) const {
+SurfacePosterior ModelAverage::posterior_of(const AverageState& state) const {
   return {.estimate = state.estimate,
           .prior_std = state.prior_std,
           .noise = filters_.front().noise().shape,
@@ -140,14 +140,14 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
       start.weights = weights_;
       start.observed = observed_;
     } else {
-      own = filters_on(start);
+      own = filters_on(start, candidate.kind == SurfaceCandidate::Kind::Known ? settings_.surfaces.drift : 0.0);
       if (candidate.kind == SurfaceCandidate::Kind::Changed) {
         std::ranges::for_each(own, [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
         start.observed = 0;
       }
       state = state_of(own, start.weights);
     }
-    SurfaceEvidence evidence(model_, belief_of(state), law);
+    SurfaceEvidence evidence(model_, posterior_of(state), law);
     double score = std::log(candidate.prior);
     for (std::size_t i = first; i < recent_.size(); ++i) {
       const Recent& recent = recent_[i];

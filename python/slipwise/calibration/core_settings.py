@@ -9,13 +9,16 @@ from slipwise import _core
 from slipwise.calibration.settings import Settings
 
 
-def core_settings(settings: Settings, input_name: str, horizons: Sequence[float]) -> _core.LearnerSettings:
+def core_settings(
+    settings: Settings, input_name: str, horizons: Sequence[float], *, remember: bool = False
+) -> _core.LearnerSettings:
     """Return the core's settings.
 
     Args:
         settings: what to learn and how.
         input_name: "command" or "wheel".
         horizons: of the predictions that are held against what was measured [s].
+        remember: keep surfaces that were driven on, and recall them.
 
     Raises:
         SettingsError: a basis or a term is unknown.
@@ -34,7 +37,12 @@ def core_settings(settings: Settings, input_name: str, horizons: Sequence[float]
     tried = settings.auto.structures if settings.basis == "auto" else []
     hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
     hypotheses.baseline = "baseline" in tried
-    hypotheses.filter, hypotheses.average = settings.filter_settings(), settings.average_settings()
+    hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
+    if remember:
+        surfaces = _core.SurfaceSettings()
+        surfaces.remember = True
+        average.surfaces = surfaces
+    hypotheses.average = average
     core.stream, core.hypotheses = stream, hypotheses
     core.learn_disturbance = settings.slip_disturbance.learn
     return core

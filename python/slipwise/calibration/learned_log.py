@@ -68,7 +68,7 @@ def learn_log(
     """
     core = core_settings(settings, drive[0].input_name, horizons)
     learner, events = _core.MotionLearner(core), []
-    for done in _pushed(learner, drive):
+    for done in pushed(learner, drive):
         events += [event for event in learner.events() if keep is not None and event.kind == _LEARNED]
         if progress is not None:
             progress(done)
@@ -101,7 +101,7 @@ def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None
 _LEARNED = _core.EventKind.SegmentLearned
 
 
-def _pushed(learner: _core.MotionLearner, drive: tuple[PreparedRun, ...]) -> Iterator[float]:
+def pushed(learner: _core.MotionLearner, drive: tuple[PreparedRun, ...]) -> Iterator[float]:
     """Push all runs, piece by piece; yields the fraction done."""
     for place, run in enumerate(drive):
         learner.start_run()
@@ -124,7 +124,22 @@ def held_out_predictions(
         horizons: of its predictions [s].
         drive: the runs that were pushed, where they come from a log.
     """
-    records = [[_Record(each, drive) for each in rows] for rows in model.held_out]
+    return predictions_of(model.held_out, horizons, drive)
+
+
+def predictions_of(
+    held_out: Sequence[Sequence[_core.HeldOutPrediction]],
+    horizons: Sequence[float],
+    drive: tuple[PreparedRun, ...] = (),
+) -> tuple[tuple[Predictions, ...], tuple[Predictions, ...]]:
+    """Return predictions that were held against what was measured, and the kinematic baseline's beside them.
+
+    Args:
+        held_out: predictions of each horizon, in order.
+        horizons: theirs [s].
+        drive: the runs that were pushed, where they come from a log.
+    """
+    records = [[_Record(each, drive) for each in rows] for rows in held_out]
     each = list(zip(horizons, records, strict=True))
     learned = tuple(_predictions("learned", horizon, rows) for horizon, rows in each)
     return learned, tuple(_baseline(horizon, rows) for horizon, rows in each)

@@ -59,6 +59,14 @@ def evaluate(
     predictions: Annotated[
         Path | None, optional("FILE.csv", "Write every prediction with its covariance.")
     ] = None,
+    memory: Annotated[
+        bool,
+        typer.Option(
+            "--memory",
+            help="The logs are drives of one robot in the order of time: surfaces are remembered from one to "
+            "the next, and recalled.",
+        ),
+    ] = False,
     basis: Basis = None,
     settings: SettingsFile = None,
     report: Report = None,
@@ -81,6 +89,7 @@ def evaluate(
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
       slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
       slipwise evaluate drive.csv --vendor-wheel-separation-multiplier 1.875 --predictions predictions.csv
+      slipwise evaluate --memory sand.csv asphalt.csv sand2.csv --predictions predictions.csv
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
     from slipwise.cli.evaluation_verdict import verdict_on
@@ -101,6 +110,13 @@ def evaluate(
     )
     read = (*logs, log_options.poses, *models, settings)
     refuse_unwritable(predictions, report, out.written_file, inputs=read)
+    if memory:
+        from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory
+
+        asked = MemoryQuestion(
+            logs, log_options, input_name and input_name.value, options, predictions, report
+        )
+        return evaluate_memory(out, asked, chosen, runs)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:

@@ -2,16 +2,20 @@
 """Judging motion models on windows that they had not learned from."""
 
 from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
-from slipwise.evaluation.prediction_file import write_predictions
+from slipwise.evaluation.prediction_file import write_predictions, write_sequence
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.evaluation.sequence import SequenceEvaluation, evaluate_sequence
 from slipwise.evaluation.simpler import proposing, simpler_method
 
 __all__ = [
     "Evaluation",
     "EvaluationOptions",
     "Score",
+    "SequenceEvaluation",
     "evaluate",
+    "evaluate_sequence",
     "proposing",
     "simpler_method",
     "write_predictions",
+    "write_sequence",
 ]

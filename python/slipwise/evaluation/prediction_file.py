@@ -19,6 +19,9 @@ COLUMNS = (
 )
 
 
+LOG = "log"  # of a sequence: the file's place in it, from 0
+
+
 def write_predictions(path: Path, evaluation: Evaluation) -> None:
     """Write the predictions of all causal methods as CSV: T_start_end predicted from the inputs in between.
 
@@ -28,25 +31,45 @@ def write_predictions(path: Path, evaluation: Evaluation) -> None:
     Raises:
         OutputError: the file cannot be written, or no method is causal.
     """
+    _write(path, (evaluation,), COLUMNS)
+
+
+def write_sequence(path: Path, evaluations: Sequence[Evaluation]) -> None:
+    """Write the predictions of a sequence of logs, with a last column that counts the logs from 0.
+
+    What was learned of a log is known when the next begins: `learned_until` is of the log itself.
+
+    Raises:
+        OutputError: the file cannot be written, or no method is causal.
+    """
+    _write(path, evaluations, (*COLUMNS, LOG))
+
+
+def _write(path: Path, evaluations: Sequence[Evaluation], names: Sequence[str]) -> None:
     import pyarrow as pa
     import pyarrow.csv
 
-    causal = [p for p in evaluation.predictions if p.causal]
-    if not causal:
+    causal = [[p for p in evaluation.predictions if p.causal] for evaluation in evaluations]
+    if not any(causal):
         raise OutputError(
             "no method asked for predicts from the past alone", where=str(path), advice="add one to --methods"
         )
-    table = pa.table({name: _column(evaluation, causal, name) for name in COLUMNS})
+    parts = [
+        {name: _column(evaluation, rows, name, place) for name in names}
+        for place, (evaluation, rows) in enumerate(zip(evaluations, causal, strict=True))
+        if rows
+    ]
+    table = pa.table({name: np.concatenate([part[name] for part in parts]) for name in names})
 
     def write(temporary: Path) -> None:
         with temporary.open("wb") as file:
-            file.write((",".join(COLUMNS) + "\n").encode())  # pyarrow would put the names in quotes
+            file.write((",".join(names) + "\n").encode())  # pyarrow would put the names in quotes
             pyarrow.csv.write_csv(table, file, pyarrow.csv.WriteOptions(include_header=False))
 
     write_whole(path, write)
 
 
-def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: str) -> np.ndarray:
+def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: str, place: int) -> np.ndarray:
     parts = []
     for p in predictions:
         size = len(p.t_start)
@@ -58,6 +81,7 @@ def _column(evaluation: Evaluation, predictions: Sequence[Predictions], name: st
             "horizon": np.full(size, p.horizon),
             "learned_until": p.learned_until,
             "dof": p.dof,
+            LOG: np.full(size, place),
             **dict(zip(("dx", "dy", "dyaw"), p.pose.T, strict=True)),
         }
         upper = (("xx", 0, 0), ("xy", 0, 1), ("xt", 0, 2), ("yy", 1, 1), ("yt", 1, 2), ("tt", 2, 2))

@@ -140,11 +140,11 @@ class ModelAverage {
   std::size_t sides() const { return trial_ ? trial_->candidates.size() : (undecided_ > 0 ? 2 : 1); }
   void note_recent();
   std::size_t recent_since(double since) const;
-  std::vector<CausalFilter> filters_on(const SurfaceMemory& surface) const;
+  std::vector<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
   SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
   void reweigh_trial();
   void mix_trial();
-  SurfaceBelief belief_of(const AverageState& state) const;
+  SurfacePosterior posterior_of(const AverageState& state) const;
 
   MotionModel model_;
   std::vector<CausalFilter> filters_;              ///< one per basis; after an alarm also those that had none

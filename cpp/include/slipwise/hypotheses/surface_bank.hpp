@@ -92,7 +92,7 @@ class SurfaceBank {
   void leave_present(const Averages& averages, const DisturbanceModel& law);
   void enter_new(const Averages& averages);
   void flush(Surface& surface);
-  void merge_look_alikes(const Averages& averages, const DisturbanceModel& law, std::size_t place);
+  void merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place);
   void drop(std::size_t place);
   std::string new_name();
 

@@ -15,7 +15,7 @@
 namespace slipwise {
 
 /// What is known of a surface before the segments that are judged.
-struct SurfaceBelief {
+struct SurfacePosterior {
   Estimate estimate;
   Eigen::VectorXd prior_std;    ///< [parameters]
   MotionNoise noise;            ///< model of the noise,
@@ -29,7 +29,7 @@ class SurfaceEvidence {
  public:
   SurfaceEvidence() = default;
   /// `law` is the slip disturbance as it is known; candidates of it that hardly weigh are passed over.
-  SurfaceEvidence(const MotionModel& model, SurfaceBelief belief, const DisturbanceModel& law);
+  SurfaceEvidence(const MotionModel& model, SurfacePosterior posterior, const DisturbanceModel& law);
 
   /// Log density of a segment given those that were added before, a Student-t's, without constants. The segment follows
   /// them in time, or begins another run.
@@ -38,7 +38,7 @@ class SurfaceEvidence {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.belief_, self.places_, self.under_, self.time_);
+    a(self.posterior_, self.places_, self.under_, self.time_);
   }
 
  private:
@@ -47,7 +47,7 @@ class SurfaceEvidence {
     double log_weight;           ///< its weight so far, and how likely the segments were
     double time_constant;        ///< [s]
     Eigen::VectorXd nominal;     ///< [places] variances before anything recent is known
-    Eigen::VectorXd state;       ///< [parameters + places], of the parameters what they differ by from the belief
+    Eigen::VectorXd state;       ///< [parameters + places], of the parameters what they differ by from the posterior
     Eigen::MatrixXd covariance;  ///< of it
 
     void decay(double seconds);
@@ -56,7 +56,7 @@ class SurfaceEvidence {
   };
   double log_total() const;
 
-  SurfaceBelief belief_;
+  SurfacePosterior posterior_;
   std::vector<Eigen::Index> places_;  ///< of the disturbed terms
   std::vector<Under> under_;
   double time_ = 0.0;  ///< of the last segment's middle [s]

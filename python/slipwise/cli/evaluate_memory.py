@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`slipwise evaluate --memory`: drives of one robot in their order, and the surfaces that it remembers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from slipwise.cli.output import Column, Output
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Settings
+    from slipwise.calibration.learned_sequence import SurfaceSummary
+    from slipwise.evaluation import EvaluationOptions, SequenceEvaluation
+    from slipwise.logs import LogOptions
+
+
+@dataclass(frozen=True)
+class MemoryQuestion:
+    """What is asked of a sequence of logs."""
+
+    logs: Sequence[Path]
+    log_options: LogOptions
+    input: str | None
+    options: EvaluationOptions
+    predictions: Path | None  # file to write
+    report: Path | None = None
+
+
+def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs: Path) -> int:
+    """Evaluate logs one after the other with what is remembered of surfaces; 0 where that beats the baseline.
+
+    Raises:
+        SettingsError: a report is asked for, which is of one log.
+    """
+    from slipwise.cli.progress import progress_bar
+    from slipwise.cli.run_folder import run_folder, write_settings
+    from slipwise.errors import SettingsError
+    from slipwise.evaluation import evaluate_sequence, write_sequence
+    from slipwise.files import write_text_whole
+    from slipwise.logs import open_log
+
+    if asked.report is not None:
+        raise SettingsError(
+            "a report is of one log", where="--report", advice="leave --report or --memory away"
+        )
+    with progress_bar("reading") as update, run_folder(runs, "evaluate") as folder:
+        logs = [(path.name, open_log(path, options=asked.log_options)) for path in asked.logs]
+        sequence = evaluate_sequence(
+            logs,
+            input=asked.input,
+            settings=settings,
+            options=asked.options,
+            progress=update,
+        )
+        files = {"settings": write_settings(folder, settings)}
+        if asked.predictions is not None:
+            write_sequence(asked.predictions, sequence.evaluations)
+            files["predictions"] = asked.predictions
+        from slipwise.cli.output import to_json
+
+        document = _document(sequence, files)
+        write_text_whole(folder / "result.json", to_json(document))
+        out.document(document)
+    _show(out, sequence)
+    from slipwise.cli.tables import show_files
+
+    show_files(out, files | {"run folder": folder})
+    return 0 if sequence.good else 1
+
+
+def show_surfaces(out: Output, surfaces: Sequence[SurfaceSummary]) -> None:
+    """Show the surfaces that are remembered."""
+    columns = ("driven [s]", "segments", "visits", "speed [m/s]", "yaw rate [rad/s]")
+    rows = [
+        (
+            surface.name,
+            f"{surface.seconds:.0f}",
+            f"{surface.segments}",
+            f"{surface.visits}",
+            f"{surface.speed:.2f}",
+            f"{surface.yaw_rate:.2f}",
+        )
+        for surface in surfaces
+    ]
+    out.table("Surfaces", (Column("name"), *(Column(name, True) for name in columns)), rows)
+
+
+def _show(out: Output, sequence: SequenceEvaluation) -> None:
+    columns = ("windows", "position [m]", "heading [rad]", "first ten [m]", "[rad]", "baseline [m]", "[rad] ")
+    rows = [
+        (
+            visit.log,
+            visit.surface,
+            f"{visit.windows}",
+            f"{visit.position:.3f}",
+            f"{visit.heading:.3f}",
+            f"{visit.first_position:.3f}",
+            f"{visit.first_heading:.3f}",
+            f"{visit.baseline_position:.3f}",
+            f"{visit.baseline_heading:.3f}",
+        )
+        for visit in sequence.visits()
+    ]
+    out.table(
+        "Mean errors of auto",
+        (Column("log"), Column("surface"), *(Column(name, True) for name in columns)),
+        rows,
+    )
+    show_surfaces(out, sequence.learned.surfaces)
+
+
+def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str, Any]:
+    from slipwise.cli.document import evaluation_part, head
+
+    visited = zip(sequence.names, sequence.evaluations, sequence.learned.logs, sequence.visits(), strict=True)
+    return head("evaluate") | {
+        "exit_code": 0 if sequence.good else 1,
+        "files": files,
+        "logs": [
+            {"log": name, "surface": log.surface, "changes": [asdict(change) for change in log.changes]}
+            | {"visit": asdict(visit)}
+            | evaluation_part(evaluation)
+            for name, evaluation, log, visit in visited
+        ],
+        "surfaces": [asdict(surface) for surface in sequence.learned.surfaces],
+    }

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A sequence of logs of one robot, replayed in its order with the surfaces that it remembers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from slipwise.calibration.learned_sequence import LearnedSequence, learn_sequence
+from slipwise.calibration.prepared_run import choose_input, prepare_run
+from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.errors import LogError, SettingsError
+from slipwise.evaluation.evaluate import EvaluationOptions, Report, evaluate
+from slipwise.evaluation.methods import method_info
+from slipwise.evaluation.result import Evaluation
+from slipwise.logs.log import Log
+
+REMEMBERING = "auto"  # the method that is given a memory
+FIRST = 10  # windows that tell how soon a surface is known
+
+
+@dataclass(frozen=True)
+class VisitScore:
+    """One log of a sequence at the longest horizon: mean errors, and those of the kinematic baseline."""
+
+    log: str
+    surface: str  # on which it ended
+    windows: int
+    position: float  # m, of all windows
+    heading: float  # rad
+    first_position: float  # m, of the first ten windows
+    first_heading: float  # rad
+    baseline_position: float  # m, of all windows
+    baseline_heading: float  # rad
+
+
+@dataclass(frozen=True, eq=False)
+class SequenceEvaluation:
+    """The logs of a sequence, each evaluated, and what was remembered in the end."""
+
+    evaluations: tuple[Evaluation, ...]
+    learned: LearnedSequence
+    names: tuple[str, ...]  # of the logs
+
+    def visits(self) -> tuple[VisitScore, ...]:
+        """Score each log at its longest horizon."""
+        visited = zip(self.names, self.evaluations, self.learned.logs, strict=True)
+        return tuple(_visit(name, evaluation, log.surface) for name, evaluation, log in visited)
+
+    @property
+    def good(self) -> bool:
+        """Whether all logs together are predicted better than by the baseline."""
+        visits = self.visits()
+
+        def total(name: str) -> float:
+            return float(sum(visit.windows * getattr(visit, name) for visit in visits))
+
+        return total("position") < total("baseline_position") and total("heading") < total("baseline_heading")
+
+
+def evaluate_sequence(
+    logs: Sequence[tuple[str, Log]],
+    *,
+    input: str | None = None,
+    settings: Settings | None = None,
+    options: EvaluationOptions | None = None,
+    progress: Report | None = None,
+) -> SequenceEvaluation:
+    """Evaluate logs one after the other; the method `auto` remembers the surfaces of those before.
+
+    Other methods start from nothing in each log. Without methods, `none` and `auto` are compared.
+
+    Args:
+        logs: names and logs, in the order of time.
+        input: "command" or "wheel"; without it, what the first log has.
+        settings: what to learn and how.
+        options: methods and horizons.
+        progress: called with what is done, and the fraction.
+
+    Raises:
+        LogError: a log has no such input, no poses, or no window of any horizon.
+        SettingsError: a method, a basis or a horizon is wrong, or `auto` is not among the methods.
+    """
+    settings, options = settings or Settings(), options or EvaluationOptions()
+    methods = options.methods or ("none", REMEMBERING)
+    if REMEMBERING not in methods:
+        raise SettingsError(
+            f"only the method {REMEMBERING} has a memory",
+            where="--memory",
+            advice=f"add {REMEMBERING} to --methods",
+        )
+    for name in methods:
+        method_info(name, options.models)
+    if not logs:
+        raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
+    input_name = input or choose_input(logs[0][1])
+    drives = [prepare_run(log, input_name) for _, log in logs]
+    horizons = sorted(set(options.horizons))
+    learned = learn_sequence(
+        drives,
+        settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE}),
+        horizons,
+        progress=None if progress is None else lambda done: progress("memory", done),
+    )
+    evaluations = []
+    for (_, log), visited in zip(logs, learned.logs, strict=True):
+        made = {REMEMBERING: visited.predictions}
+        evaluations.append(
+            evaluate(
+                log,
+                input=input_name,
+                settings=settings,
+                options=replace(options, methods=methods, made=made),
+                progress=progress,
+            )
+        )
+    return SequenceEvaluation(tuple(evaluations), learned, tuple(name for name, _ in logs))
+
+
+def _visit(name: str, evaluation: Evaluation, surface: str) -> VisitScore:
+    longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
+    own, baseline = longest[REMEMBERING], longest["none"]
+    return VisitScore(
+        log=name,
+        surface=surface,
+        windows=len(own),
+        position=_mean(own.position_error),
+        heading=_mean(own.heading_error),
+        first_position=_mean(own.position_error[:FIRST]),
+        first_heading=_mean(own.heading_error[:FIRST]),
+        baseline_position=_mean(baseline.position_error),
+        baseline_heading=_mean(baseline.heading_error),
+    )
+
+
+def _mean(errors: np.ndarray) -> float:
+    return float(errors.mean()) if len(errors) else float("nan")
