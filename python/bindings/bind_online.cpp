@@ -312,6 +312,8 @@ void bind_online(nb::module_& m) {
       .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")
+      .def("on_surface", &MotionLearner::on_surface, "surface"_a,
+           "What is known where one of them is driven on; None where it has no memory.")
       .def("surface_events", &MotionLearner::surface_events, "What happened to them since the last call.")
       .def(
           "save", [](const MotionLearner& learner) { return bytes_of(learner.save()); }, "All of it as bytes.")

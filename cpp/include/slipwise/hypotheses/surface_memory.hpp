@@ -14,11 +14,11 @@ namespace slipwise {
 
 struct SurfaceSettings {
   bool remember = false;       ///< surfaces are kept, and recalled where they come back
-  double false_alarm = 0.01;   ///< odds at which a surface is taken: how often a wrong one may be [-]
+  double false_alarm = 0.002;  ///< odds at which a surface is taken: how often a wrong one may be [-]
   double drift = 0.003;        ///< of a surface since it was left, in prior variances of its slip [-]
   double learning_rate = 1.0;  ///< power of the joint density: below 1, since no model is true [-]
   int soonest = 2;             ///< segments that speak before a surface is taken, at least: one may be an outlier
-  int trial = 20;              ///< segments after which the likeliest surface is taken, however close it is
+  int trial = 60;              ///< segments after which the likeliest surface is taken, however close it is
   int fewest = 20;             ///< segments of a surface that is kept, or compared with others
   double changed = 0.2;        ///< prior probability that a suspicion is another surface, not a passing disturbance [-]
   double unknown = 0.2;        ///< prior probability that the surface of a drive's start was never driven [-]
