@@ -26,6 +26,19 @@ void for_each(const Averages& averages, const Use& use) {
   }
 }
 
+ReferenceSpeeds fastest(const ReferenceSpeeds& a, const ReferenceSpeeds& b) {
+  return {.v = std::max(a.v, b.v), .omega = std::max(a.omega, b.omega)};
+}
+
+/// What `more` and `less` know together; weights and noise are those of what was driven more.
+SurfaceMemory joined(const SurfaceMemory& more, const SurfaceMemory& less) {
+  SurfaceMemory both = more;
+  for (std::size_t basis = 0; basis < both.slips.size(); ++basis) {
+    both.slips[basis] = merged(both.slips[basis], less.slips[basis]);
+  }
+  return both;
+}
+
 }  // namespace
 
 std::vector<SurfaceEvent> SurfaceBank::take_events() { return std::exchange(events_, {}); }
@@ -56,9 +69,7 @@ void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
 /// What was driven since it was taken is counted.
 void SurfaceBank::flush(Surface& surface) {
   if (segments_ > 0) {
-    const ReferenceSpeeds reached = speeds_.reference();
-    surface.speeds = {.v = std::max(surface.speeds.v, reached.v),
-                      .omega = std::max(surface.speeds.omega, reached.omega)};
+    surface.speeds = fastest(surface.speeds, speeds_.reference());
   }
   surface.seconds += seconds_;
   surface.segments += segments_;
@@ -105,43 +116,39 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
     return static_cast<int>(each.segments) >= settings_.fewest && each.memories[leader_];
   };
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    Surface& own = surfaces_[place];
-    Surface& other = surfaces_[i];
-    if (i == place || !known(own) || !known(other) ||
-        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) >
+    const Surface& own = surfaces_[place];
+    const Surface& other = surfaces_[i];
+    if (i != place && known(own) && known(other) &&
+        leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
             told_apart) {
-      continue;
+      merge(std::min(i, place), std::max(i, place));
+      return;
     }
-    Surface& older = i < place ? other : own;
-    const Surface& newer = i < place ? own : other;
-    for (std::size_t k = 0; k < kAverages; ++k) {
-      if (!older.memories[k] || !newer.memories[k]) {
-        continue;
-      }
-      const bool more = older.segments >= newer.segments;
-      SurfaceMemory both = more ? *older.memories[k] : *newer.memories[k];
-      const SurfaceMemory& less = more ? *newer.memories[k] : *older.memories[k];
-      for (std::size_t basis = 0; basis < both.slips.size(); ++basis) {
-        both.slips[basis] = merged(both.slips[basis], less.slips[basis]);
-      }
-      older.memories[k] = std::move(both);
+  }
+}
+
+/// The older one keeps its name.
+void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
+  Surface& older = surfaces_[older_place];
+  const Surface& newer = surfaces_[newer_place];
+  for (std::size_t k = 0; k < kAverages; ++k) {
+    if (older.memories[k] && newer.memories[k]) {
+      older.memories[k] = older.segments >= newer.segments ? joined(*older.memories[k], *newer.memories[k])
+                                                           : joined(*newer.memories[k], *older.memories[k]);
     }
-    events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});
-    older.seconds += newer.seconds;
-    older.segments += newer.segments;
-    older.visits += newer.visits;
-    older.used = std::max(older.used, newer.used);
-    older.last_seen = std::max(older.last_seen, newer.last_seen);
-    older.speeds = {.v = std::max(older.speeds.v, newer.speeds.v),
-                    .omega = std::max(older.speeds.omega, newer.speeds.omega)};
-    const bool was_present = present_ && (*present_ == i || *present_ == place);
-    surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(std::max(i, place)));
-    if (was_present) {
-      present_ = std::min(i, place);
-    } else if (present_ && *present_ > std::max(i, place)) {
-      --*present_;
-    }
-    return;
+  }
+  events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});
+  older.seconds += newer.seconds;
+  older.segments += newer.segments;
+  older.visits += newer.visits;
+  older.used = std::max(older.used, newer.used);
+  older.last_seen = std::max(older.last_seen, newer.last_seen);
+  older.speeds = fastest(older.speeds, newer.speeds);
+  surfaces_.erase(surfaces_.begin() + static_cast<std::ptrdiff_t>(newer_place));
+  if (present_ && *present_ == newer_place) {
+    present_ = older_place;
+  } else if (present_ && *present_ > newer_place) {
+    --*present_;
   }
 }
 
@@ -262,13 +269,13 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
   }
   if (first.moved()) {
     leave_present(averages, law);
-    enter_new(averages);
+    enter_new();
   }
   return false;
 }
 
 /// One that has no entry yet gets one when it is left.
-void SurfaceBank::enter_new(const Averages& /*averages*/) {
+void SurfaceBank::enter_new() {
   present_.reset();
   ++clock_;
   while (surfaces_.size() >= settings_.most) {
@@ -288,24 +295,15 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
   if (!at_once && !sure && trial.segments < settings_.trial) {
     return false;
   }
-  if (!sure && trial.candidates.front().kind == Kind::Present) {
+  const bool at_start = trial.candidates.front().kind != Kind::Present;
+  if (!sure && !at_start) {
     likeliest = 0;  // a suspicion that was not confirmed
     probability = trial.probabilities()[0];
   }
   const auto taken = static_cast<std::size_t>(likeliest);
   const SurfaceCandidate candidate = trial.candidates[taken];
-  SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
-                     .name = present_ ? surfaces_[*present_].name : "",
-                     .probability = probability,
-                     .segments = trial.segments};
-  std::string recalled;
-  if (candidate.kind == Kind::Known) {
-    event.kind = SurfaceEvent::Kind::Recalled;
-    event.name = recalled = surfaces_[candidate.place].name;
-  } else if (candidate.kind != Kind::Present) {
-    event.kind = SurfaceEvent::Kind::Opened;
-  }
-  const bool at_start = trial.candidates.front().kind != Kind::Present;
+  const int segments = trial.segments;
+  const std::string recalled = candidate.kind == Kind::Known ? surfaces_[candidate.place].name : "";
   for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) {
     if (average.trial()) {
       average.settle(taken);
@@ -318,21 +316,35 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
     labels_ += 1.0;
     right_labels_ += recalled.empty() || recalled == label_ ? 1.0 : 0.0;
   }
+  take(candidate, recalled, probability, segments);
+  return true;
+}
+
+/// Counts and says what was taken.
+void SurfaceBank::take(const SurfaceCandidate& candidate, const std::string& recalled, double probability,
+                       int segments) {
+  SurfaceEvent event{.kind = SurfaceEvent::Kind::Kept,
+                     .name = present_ ? surfaces_[*present_].name : "",
+                     .probability = probability,
+                     .segments = segments};
   if (candidate.kind == Kind::Known) {
+    event.kind = SurfaceEvent::Kind::Recalled;
+    event.name = recalled;
     const auto place = std::ranges::find(surfaces_, recalled, &Surface::name) - surfaces_.begin();
-    if (place < std::ssize(surfaces_)) {
+    if (place < std::ssize(surfaces_)) {  // else it was merged into the one that was left, and that one is driven on
       present_ = static_cast<std::size_t>(place);
       ++surfaces_[*present_].visits;
       surfaces_[*present_].used = ++clock_;
     }
   } else if (candidate.kind != Kind::Present) {
-    enter_new(averages);
+    event.kind = SurfaceEvent::Kind::Opened;
+    event.name = "";
+    enter_new();
   }
   events_.push_back(std::move(event));
   if (events_.size() > kMostEvents) {
     events_.erase(events_.begin());
   }
-  return true;
 }
 
 }  // namespace slipwise

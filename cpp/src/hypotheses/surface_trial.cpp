@@ -110,6 +110,46 @@ SurfaceMemory ModelAverage::new_surface(std::span<const SurfaceMemory> known, co
   return fresh;
 }
 
+/// Filters of one candidate as it begins, with their weights, and what is known by them.
+ModelAverage::Side ModelAverage::side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known,
+                                         std::size_t first) const {
+  if (candidate.kind == SurfaceCandidate::Kind::Present) {
+    return {.filters = filters_,
+            .weights = weights_,
+            .observed = observed_,
+            .state = first < recent_.size() ? recent_[first].state : state()};
+  }
+  SurfaceMemory start = present(parting_);
+  double drift = 0.0;
+  if (candidate.kind == SurfaceCandidate::Kind::Known) {
+    start = known[candidate.place];
+    drift = settings_.surfaces.drift;
+  } else if (candidate.kind == SurfaceCandidate::Kind::New) {
+    start = new_surface(known, present(parting_));
+  }
+  Side side{.filters = filters_on(start, drift), .weights = start.weights, .observed = start.observed, .state = {}};
+  if (candidate.kind == SurfaceCandidate::Kind::Changed) {
+    std::ranges::for_each(side.filters, [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
+    side.observed = 0;
+  }
+  side.state = state_of(side.filters, side.weights);
+  return side;
+}
+
+/// Bases are weighted by the usual rule.
+void ModelAverage::learn_on(Side& side, const Recent& recent) const {
+  std::vector<Eigen::Vector3d> innovations;
+  std::vector<Eigen::Matrix3d> covariances;
+  for (CausalFilter& filter : side.filters) {
+    const IekfUpdate update = filter.learn(recent.inputs, recent.segment, speeds_.reference());
+    innovations.push_back(update.innovation);
+    covariances.push_back(update.innovation_covariance);
+  }
+  side.weights = updated_weights(side.weights, common_log_scores(side.weights, innovations, covariances), prior_,
+                                 settings_.weighting, side.observed);
+  ++side.observed;
+}
+
 void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
                               const DisturbanceModel& law, double since) {
   if (trial_) {
@@ -123,55 +163,24 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
   mark_parting(since);
   SurfaceTrial trial{.candidates = candidates, .evidence = {}, .weights = {}, .observed = {}, .log_odds = {}};
   trial.log_odds.resize(std::ssize(candidates));
-  std::vector<CausalFilter> filters;
-  for (std::size_t side = 0; side < candidates.size(); ++side) {
-    const SurfaceCandidate& candidate = candidates[side];
-    SurfaceMemory start = present(parting_);
-    if (candidate.kind == SurfaceCandidate::Kind::Known) {
-      start = known[candidate.place];
-    } else if (candidate.kind == SurfaceCandidate::Kind::New) {
-      start = new_surface(known, present(parting_));
-    }
-    std::vector<CausalFilter> own;
-    AverageState state;
-    if (candidate.kind == SurfaceCandidate::Kind::Present) {
-      own = filters_;
-      state = first < recent_.size() ? recent_[first].state : this->state();
-      start.weights = weights_;
-      start.observed = observed_;
-    } else {
-      own = filters_on(start, candidate.kind == SurfaceCandidate::Kind::Known ? settings_.surfaces.drift : 0.0);
-      if (candidate.kind == SurfaceCandidate::Kind::Changed) {
-        std::ranges::for_each(own, [&](CausalFilter& filter) { filter.forget(settings_.change.forget); });
-        start.observed = 0;
-      }
-      state = state_of(own, start.weights);
-    }
-    SurfaceEvidence evidence(model_, posterior_of(state), law);
-    double score = std::log(candidate.prior);
-    for (std::size_t i = first; i < recent_.size(); ++i) {
-      const Recent& recent = recent_[i];
-      score += settings_.surfaces.learning_rate * evidence.add(model_, recent.inputs, recent.segment);
-      if (candidate.kind != SurfaceCandidate::Kind::Present) {
-        std::vector<Eigen::Vector3d> innovations;
-        std::vector<Eigen::Matrix3d> covariances;
-        for (CausalFilter& filter : own) {
-          const IekfUpdate update = filter.learn(recent.inputs, recent.segment, speeds_.reference());
-          innovations.push_back(update.innovation);
-          covariances.push_back(update.innovation_covariance);
-        }
-        start.weights = updated_weights(start.weights, common_log_scores(start.weights, innovations, covariances),
-                                        prior_, settings_.weighting, start.observed);
-        ++start.observed;
-      }
-    }
-    trial.log_odds[static_cast<Eigen::Index>(side)] = score;
-    trial.evidence.push_back(std::move(evidence));
-    trial.weights.push_back(start.weights);
-    trial.observed.push_back(start.observed);
-    std::ranges::move(own, std::back_inserter(filters));
-  }
   trial.segments = static_cast<int>(recent_.size() - first);
+  std::vector<CausalFilter> filters;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    Side side = side_of(candidates[i], known, first);
+    SurfaceEvidence evidence(model_, posterior_of(side.state), law);
+    double score = std::log(candidates[i].prior);
+    for (std::size_t k = first; k < recent_.size(); ++k) {
+      score += settings_.surfaces.learning_rate * evidence.add(model_, recent_[k].inputs, recent_[k].segment);
+      if (candidates[i].kind != SurfaceCandidate::Kind::Present) {
+        learn_on(side, recent_[k]);
+      }
+    }
+    trial.log_odds[static_cast<Eigen::Index>(i)] = score;
+    trial.evidence.push_back(std::move(evidence));
+    trial.weights.push_back(std::move(side.weights));
+    trial.observed.push_back(side.observed);
+    std::ranges::move(side.filters, std::back_inserter(filters));
+  }
   filters_ = std::move(filters);
   trial_ = std::move(trial);
   before_.clear();

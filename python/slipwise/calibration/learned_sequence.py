@@ -104,10 +104,11 @@ def learn_sequence(
                 tuple(_change(event) for event in learner.surface_events()),
             )
         )
-    return LearnedSequence(tuple(visited), tuple(_summary(each) for each in learner.surfaces().surfaces))
+    return LearnedSequence(tuple(visited), tuple(summary_of(each) for each in learner.surfaces().surfaces))
 
 
-def _summary(surface: _core.Surface) -> SurfaceSummary:
+def summary_of(surface: _core.Surface) -> SurfaceSummary:
+    """Return what there is to say of a surface."""
     speed, yaw_rate = surface.speeds
     return SurfaceSummary(
         surface.name, surface.seconds, surface.segments, surface.visits, surface.last_seen, speed, yaw_rate

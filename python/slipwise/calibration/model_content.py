@@ -51,6 +51,7 @@ class ModelFacts:
     range: schema.Range
     seconds: float  # of all segments learned
     segments: int
+    surfaces: tuple[schema.SurfaceSection, ...] = ()  # that are remembered
 
 
 def judgement_of(learned: Learned) -> Judgement:
@@ -103,6 +104,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             contradictions=list(verdict.contradictions),
             held_out=judged.judgement.held_out,
         ),
+        surfaces=list(facts.surfaces),
     )
 
 

@@ -15,12 +15,14 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import held_out_predictions, kept_posterior
+from slipwise.calibration.learned_sequence import SurfaceSummary, summary_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
+from slipwise.calibration.surface_sections import surface_sections
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
@@ -72,12 +74,15 @@ class MotionLearner:
     and said by `events`; no push raises for what was measured.
     """
 
-    def __init__(self, input: str = "command", settings: Settings | None = None) -> None:
+    def __init__(
+        self, input: str = "command", settings: Settings | None = None, *, remember: bool = False
+    ) -> None:
         """Start with nothing learned.
 
         Args:
             input: "command" or "wheel": what motion is predicted from.
             settings: what to learn and how.
+            remember: keep the surfaces that are driven on, and recall them where they come back.
 
         Raises:
             SettingsError: there is no such input, or a basis or a term is unknown.
@@ -85,7 +90,9 @@ class MotionLearner:
         if input not in ("command", "wheel"):
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
         self._input, self._settings = input, settings or Settings()
-        self._core = _core.MotionLearner(core_settings(self._settings, input, JUDGING_HORIZONS))
+        self._core = _core.MotionLearner(
+            core_settings(self._settings, input, JUDGING_HORIZONS, remember=remember)
+        )
         self._runs: list[str] = []
         self._wheels = False
 
@@ -216,6 +223,27 @@ class MotionLearner:
         except ValueError as problem:
             raise SettingsError(str(problem)) from problem
 
+    def start_drive(self, name: str, *, label: str = "", date: str = "") -> None:
+        """Begin a run after a while or elsewhere: any surface that is remembered may be under the robot.
+
+        Args:
+            name: of the run.
+            label: name of the surface, where somebody thinks to know it; a wrong one is overruled.
+            date: of the drive, for the table of surfaces.
+        """
+        if self._runs and not np.isfinite(self._core.newest):
+            self._runs.pop()  # the run before had no measurement
+        self._core.start_drive(label, date)
+        self._runs.append(name)
+
+    def cue_surface(self, label: str = "") -> None:
+        """Say that the surface changes now: to the one of this name, or to another where it is empty."""
+        self._core.cue_surface(label)
+
+    def surfaces(self) -> tuple[SurfaceSummary, ...]:
+        """Return the surfaces that are remembered, the present one as it is known now."""
+        return tuple(summary_of(surface) for surface in self._core.surfaces().surfaces)
+
     def model(self, *, limits: bool = True) -> Model:
         """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
 
@@ -271,6 +299,7 @@ class MotionLearner:
             range=Range(speed=[slowest, fastest], yaw_rate=[right, left], slope=model.steepest),
             seconds=model.seconds,
             segments=model.segments,
+            surfaces=surface_sections(self._core, learned.kept),
         )
         content = model_content(learned, Judged(judgement, verdict), facts)
         return model_of(content, Log(()), ()), judgement

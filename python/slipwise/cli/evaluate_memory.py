@@ -12,7 +12,6 @@ from slipwise.cli.output import Column, Output
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
-    from slipwise.calibration.learned_sequence import SurfaceSummary
     from slipwise.evaluation import EvaluationOptions, SequenceEvaluation
     from slipwise.logs import LogOptions
 
@@ -71,23 +70,6 @@ def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs
     return 0 if sequence.good else 1
 
 
-def show_surfaces(out: Output, surfaces: Sequence[SurfaceSummary]) -> None:
-    """Show the surfaces that are remembered."""
-    columns = ("driven [s]", "segments", "visits", "speed [m/s]", "yaw rate [rad/s]")
-    rows = [
-        (
-            surface.name,
-            f"{surface.seconds:.0f}",
-            f"{surface.segments}",
-            f"{surface.visits}",
-            f"{surface.speed:.2f}",
-            f"{surface.yaw_rate:.2f}",
-        )
-        for surface in surfaces
-    ]
-    out.table("Surfaces", (Column("name"), *(Column(name, True) for name in columns)), rows)
-
-
 def _show(out: Output, sequence: SequenceEvaluation) -> None:
     columns = ("windows", "position [m]", "heading [rad]", "first ten [m]", "[rad]", "baseline [m]", "[rad] ")
     rows = [
@@ -109,6 +91,8 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
         (Column("log"), Column("surface"), *(Column(name, True) for name in columns)),
         rows,
     )
+    from slipwise.cli.tables import show_surfaces
+
     show_surfaces(out, sequence.learned.surfaces)
 
 

@@ -58,6 +58,7 @@ def export(
         float | None, optional("METRES", "Of an Ackermann vehicle, by its geometry.")
     ] = None,
     nav2: Annotated[Nav2, typer.Option("--nav2", help="Whose parameter names MPPI gets.")] = Nav2.rolling,
+    surface: Annotated[str | None, optional("NAME", "One of the surfaces that the model remembers.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Export a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
@@ -78,7 +79,7 @@ def export(
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.export import ExportOptions
     from slipwise.files import write_text_whole
-    from slipwise.models import load_model
+    from slipwise.models import load_model, on_surface
 
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=[model])
@@ -90,7 +91,7 @@ def export(
         min_turning_radius=min_turning_radius,
         nav2="kilted" if nav2 is Nav2.kilted else "rolling",
     )
-    learned = load_model(model)
+    learned = load_model(model) if surface is None else on_surface(load_model(model), surface)
     if not learned.content.verdict.good and not force:
         say_refused(out, learned, "export")
         return 1

@@ -23,7 +23,7 @@ def show(model: ModelFile, json: Json = None) -> int:
       slipwise show model.yaml --json - | jq '.parameters[] | select(.identified)'
     """  # noqa: D301
     from slipwise.cli.output import Output
-    from slipwise.cli.tables import show_parameters, show_summary, show_verdict
+    from slipwise.cli.tables import show_parameters, show_summary, show_surfaces, show_verdict
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.models import load_model
     from slipwise.models.summary import summarise
@@ -40,6 +40,8 @@ def show(model: ModelFile, json: Json = None) -> int:
     for line in _origin(learned):
         out.line(line)
     show_parameters(out, summary.parameters)
+    if content.surfaces:
+        show_surfaces(out, content.surfaces)
     return 0
 
 
@@ -72,4 +74,5 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
         "verdict": content.verdict.model_dump(),
         "range": content.range.model_dump(),
         "provenance": content.provenance.model_dump(),
+        "surfaces": [surface.model_dump(exclude={"slip", "covariance"}) for surface in content.surfaces],
     }

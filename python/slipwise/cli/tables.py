@@ -16,11 +16,12 @@ from slipwise.number_text import estimate_texts, number_text
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
     from slipwise.calibration.identifiability import Confounded
+    from slipwise.calibration.learned_sequence import SurfaceSummary
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
     from slipwise.models.parameter_table import PhysicalParameter
-    from slipwise.models.schema import VerdictSection
+    from slipwise.models.schema import SurfaceSection, VerdictSection
     from slipwise.models.summary import Summary
 
 _MOST_ALARMS = 6
@@ -120,6 +121,23 @@ def show_killed_runs(output: Output, runs: Path) -> None:
     if killed:
         names = ", ".join(map(str, killed))
         output.line(f"Incomplete, since the process was killed, and yours to remove: {names}.")
+
+
+def show_surfaces(output: Output, surfaces: Sequence[SurfaceSummary | SurfaceSection]) -> None:
+    """Show the surfaces that are remembered."""
+    columns = ("driven [s]", "segments", "visits", "speed [m/s]", "yaw rate [rad/s]")
+    rows = [
+        (
+            surface.name,
+            f"{surface.seconds:.0f}",
+            f"{surface.segments}",
+            f"{surface.visits}",
+            f"{surface.speed:.2f}",
+            f"{surface.yaw_rate:.2f}",
+        )
+        for surface in surfaces
+    ]
+    output.table("Surfaces", (Column("name"), *(Column(name, True) for name in columns)), rows)
 
 
 def show_scores(output: Output, evaluation: Evaluation) -> None:

@@ -66,6 +66,14 @@ class Model:
                 f"parameters: a lag or delay is longer than {LONGEST_CHAIN:g} s",
                 advice="calibrate again, or restore the file",
             )
+        for surface in self.content.surfaces:
+            if not _is_covariance(
+                np.array(surface.covariance, dtype=np.float64).reshape(len(surface.slip), -1)
+            ):
+                raise ModelError(
+                    f"the covariance of the surface {surface.name!r} is not symmetric and positive",
+                    advice="calibrate again, or restore the file",
+                )
         if not _is_covariance(self.covariance):
             raise ModelError(
                 "covariance: not symmetric and positive", advice="calibrate again, or restore the file"
@@ -247,13 +255,10 @@ class Model:
         head = (
             f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
         )
-        body = yaml.dump(
-            self.content.model_dump(mode="json"),
-            Dumper=_DUMPER,
-            sort_keys=False,
-            width=120,
-            default_flow_style=None,
-        )
+        content = self.content.model_dump(mode="json")
+        if not self.content.surfaces:
+            del content["surfaces"]
+        body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
         return head + body
 
 

@@ -183,6 +183,27 @@ class LimitsSection(_Section):
     gain_omega: Positive  # [-]
 
 
+class SurfaceSection(_Section):
+    """The slip of a surface that was driven on; lags, delays and noise are those of the model."""
+
+    name: Annotated[str, Field(min_length=1, max_length=80)]
+    seconds: NotNegative  # driven on it
+    segments: Annotated[int, Field(ge=0)]  # learned on it
+    visits: Annotated[int, Field(ge=0)]
+    last_seen: str = ""  # date, where it was given
+    speed: NotNegative  # below which 90 % of the driving stayed [m/s]
+    yaw_rate: NotNegative  # the same [rad/s]
+    slip: list[Finite]  # one value per slip parameter, in their order
+    covariance: list[list[Finite]]  # of these
+
+    @model_validator(mode="after")
+    def _covariance_fits(self) -> SurfaceSection:
+        size = len(self.slip)
+        if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
+            raise ValueError(f"covariance of a surface must have {size} rows of {size} numbers")
+        return self
+
+
 class ModelFile(_Section):
     """Everything that crosses from learning to using."""
 
@@ -205,6 +226,20 @@ class ModelFile(_Section):
     weights: dict[str, NotNegative] = {}
     provenance: Provenance
     verdict: VerdictSection
+    surfaces: list[
+        SurfaceSection
+    ] = []  # that are remembered; the parameters are those of the last one driven
+
+    @model_validator(mode="after")
+    def _surfaces_have_this_slip(self) -> ModelFile:
+        size = len(self.slip.lon) + len(self.slip.lat) + len(self.slip.ang)
+        for surface in self.surfaces:
+            if len(surface.slip) != size:
+                raise ValueError(f"the surface {surface.name!r} needs {size} values, one per slip parameter")
+        names = [surface.name for surface in self.surfaces]
+        if len(set(names)) < len(names):
+            raise ValueError("two surfaces have one name")
+        return self
 
     @model_validator(mode="after")
     def _covariance_fits(self) -> ModelFile:

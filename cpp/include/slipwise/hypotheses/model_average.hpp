@@ -126,6 +126,14 @@ class ModelAverage {
     AverageState state;
   };
 
+  /// One candidate of a trial as it begins.
+  struct Side {
+    std::vector<CausalFilter> filters;
+    Eigen::VectorXd weights;  ///< of the bases
+    std::size_t observed;     ///< segments weighted by
+    AverageState state;
+  };
+
   /// \throws std::invalid_argument unless there are as many filters, weights and places as bases and candidates.
   void check_sizes() const;
   void look_for_change();
@@ -142,6 +150,8 @@ class ModelAverage {
   std::size_t recent_since(double since) const;
   std::vector<CausalFilter> filters_on(const SurfaceMemory& surface, double drift) const;
   SurfaceMemory new_surface(std::span<const SurfaceMemory> known, const SurfaceMemory& present) const;
+  Side side_of(const SurfaceCandidate& candidate, std::span<const SurfaceMemory> known, std::size_t first) const;
+  void learn_on(Side& side, const Recent& recent) const;
   void reweigh_trial();
   void mix_trial();
   SurfacePosterior posterior_of(const AverageState& state) const;

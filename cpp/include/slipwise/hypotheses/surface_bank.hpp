@@ -90,9 +90,11 @@ class SurfaceBank {
   void trust_label(std::vector<SurfaceCandidate>& candidates) const;
   bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
   void leave_present(const Averages& averages, const DisturbanceModel& law);
-  void enter_new(const Averages& averages);
+  void take(const SurfaceCandidate& candidate, const std::string& recalled, double probability, int segments);
+  void enter_new();
   void flush(Surface& surface);
   void merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place);
+  void merge(std::size_t older_place, std::size_t newer_place);
   void drop(std::size_t place);
   std::string new_name();
 
