@@ -27,6 +27,7 @@ void bind_surfaces(nb::module_& m) {
       .def_rw("merge", &SurfaceSettings::merge)
       .def_rw("most", &SurfaceSettings::most);
   nb::class_<Surface>(m, "Surface", "A surface that is remembered.")
+      .def(nb::init<>())
       .def_ro("name", &Surface::name)
       .def_ro("seconds", &Surface::seconds)
       .def_ro("segments", &Surface::segments)

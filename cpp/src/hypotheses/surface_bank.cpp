@@ -260,12 +260,9 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
     open(averages, law, candidates_of_change(), first.suspected_since());
     return true;
   }
-  if (first.change().suspicion) {
-    for_each(averages, [&](std::size_t i, ModelAverage& average) {
-      if (i != leader) {
-        average.mark_parting(first.suspected_since());
-      }
-    });
+  if (first.change().suspicion) {  // a trial of the average's own, which ends with `moved` where it is confirmed
+    for_each(averages,
+             [&](std::size_t /*i*/, ModelAverage& average) { average.mark_parting(first.suspected_since()); });
   }
   if (first.moved()) {
     leave_present(averages, law);

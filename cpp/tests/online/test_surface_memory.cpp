@@ -134,16 +134,37 @@ TEST_CASE("a label names a new surface, and a wrong one is overruled") {
   CHECK(bank.label_reliability() < 0.95);
 }
 
-TEST_CASE("a learner that remembers nothing yet learns as one without a memory") {
+TEST_CASE("on its first surface a learner learns as one without a memory") {
   MotionLearner remembers(settings(true));
   MotionLearner plain(settings(false));
   for (MotionLearner* learner : {&remembers, &plain}) {
     push(*learner, drive(0.1, 5, kVisit, 0.0));
-    push(*learner, drive(0.5, 6, kVisit, 500.0));
+    push(*learner, drive(0.1, 6, kVisit, 500.0));
     learner->end_run();
   }
   CHECK(remembers.model().known.motion->estimate.mean == plain.model().known.motion->estimate.mean);
   CHECK(remembers.model().known.motion->estimate.covariance == plain.model().known.motion->estimate.covariance);
+}
+
+TEST_CASE("the first change within a drive opens a second surface, and the first one is remembered as it was") {
+  MotionLearner learner(settings(true));
+  push(learner, drive(0.1, 5, kVisit, 0.0));
+  push(learner, drive(0.5, 6, kVisit, 500.0));
+  learner.end_run();
+  const SurfaceBank bank = learner.surfaces();
+  REQUIRE(bank.surfaces().size() == 2);
+  const auto yaw_slip = [&](const Surface& surface) {
+    const auto state = learner.on_surface(surface);
+    const auto known = learner.model().known.motion;
+    double value = 0.0;
+    for (Eigen::Index i = 0; i < known->model.slip_size(); ++i) {
+      const bool is_it = known->model.basis().parameter_name(static_cast<std::size_t>(i)) == "ang.w";
+      value = is_it && state ? state->estimate.mean[i] : value;
+    }
+    return value;
+  };
+  CHECK(yaw_slip(bank.surfaces()[0]) == doctest::Approx(-0.1).epsilon(0.1));
+  CHECK(yaw_slip(bank.surfaces()[1]) == doctest::Approx(-0.5).epsilon(0.1));
 }
 
 TEST_CASE("a learner without a memory starts a drive as it starts a run") {
