@@ -53,3 +53,26 @@ def test_control_characters_of_a_model_file_do_not_reach_the_terminal(
 ) -> None:
     made = replace(named("edd-2"), log="\x1b[31mred\nline", sentence="A\x1b]0;title\x07B")
     assert "\x1b" not in slipwise("show", make_model(made).save(folder / "m.yaml")).out
+
+
+def test_surfaces_that_are_remembered_have_a_table(slipwise: Slipwise, folder: Path) -> None:
+    from slipwise.models import Model
+    from slipwise.models.schema import SurfaceSection
+
+    made = make_model(replace(named("edd-2", ang__w=-0.4), commands=True))
+    sand = SurfaceSection(
+        name="sand",
+        seconds=60.0,
+        segments=24,
+        visits=2,
+        speed=1.0,
+        yaw_rate=0.5,
+        slip=[-0.1, -0.5],
+        covariance=[[1e-4, 0.0], [0.0, 1e-4]],
+    )
+    path = Model(made.content.model_copy(update={"surfaces": [sand]})).save(folder / "sand.yaml")
+    assert "sand" in slipwise("show", path).out
+    assert slipwise("show", path, "--json", "-").json["surfaces"][0]["visits"] == 2
+    target = folder / "model.h"
+    assert slipwise("export", path, "--to", "c-header", "-o", target, "--surface", "sand").code == 0
+    assert slipwise("export", path, "--to", "c-header", "-o", target, "--surface", "ice").code != 0
