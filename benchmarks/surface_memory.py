@@ -92,7 +92,7 @@ def coverage(inside: Floats) -> tuple[float, float, float]:
 
 
 class Warthog:
-    """Window sets with one input: drives by name, and what a learner that starts from nothing makes of them."""
+    """Window sets with one input: drives by name, and what a learner without a memory makes of them."""
 
     def __init__(self, folder: Path, input_name: str) -> None:
         """Read and learn all logs."""

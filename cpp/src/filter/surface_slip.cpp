@@ -12,7 +12,7 @@ namespace {
 
 SLIPWISE_TUNING(kGuessed, 2.0);  // surfaces that the guess of their spread counts as
 SLIPWISE_TUNING(kSpread, 0.1);   // that guess: of the variance of a first drive's prior, since surfaces share a robot
-constexpr int kIterations = 10;     // of expectation and maximisation: the spread settles in a few
+constexpr int kIterations = 10;  // of expectation and maximisation: the spread settles in a few
 
 Eigen::MatrixXd symmetric(const Eigen::MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2.0; }
 
