@@ -236,7 +236,8 @@ void ModelAverage::settle(std::size_t candidate) {
   observed_ = trial.observed[candidate];
 }
 
-/// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open.
+/// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open. A
+/// trial has as many times more segments as it is longer.
 double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const {
   const AverageState of_a = state_on(a);
   const AverageState of_b = state_on(b);
@@ -262,7 +263,11 @@ double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const
   open += by_slip *
           (of_a.estimate.covariance.topLeftCorner(slip, slip) + of_b.estimate.covariance.topLeftCorner(slip, slip)) *
           by_slip.transpose();
-  return count == 0 ? 0.0 : difference.dot(Cholesky(open).solve(difference)) / 2.0;
+  if (count == 0) {
+    return 0.0;
+  }
+  const double segments = settings_.surfaces.trial;
+  return segments / static_cast<double>(count) * difference.dot(Cholesky(open).solve(difference)) / 2.0;
 }
 
 }  // namespace slipwise

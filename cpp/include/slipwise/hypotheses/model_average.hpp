@@ -88,7 +88,7 @@ class ModelAverage {
   bool moved() const { return moved_; }
   /// Forgets which segments were the last: another run begins.
   void start_run() { recent_.clear(); }
-  /// Log odds that the segments driven of late would give one of two surfaces against the other, were it the one.
+  /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
   /// What is known where a surface is driven on.
   AverageState state_on(const SurfaceMemory& surface) const;
