@@ -97,6 +97,8 @@ DESTROYING = (
     "live --replay drive.csv --results drive.csv",
     "live --replay drive.csv --model m.yaml -o m.yaml",
     "live --replay drive.csv --settings s.toml -o s.toml",
+    "excite --area 8x8 --vehicle husky --model m.yaml --json m.yaml",
+    "fleet drive.csv --settings s.toml --json s.toml",
     "inspect drive.csv --json drive.csv",
     "inspect drive.csv --settings s.toml --json s.toml",
     "convert drive.csv -o drive.csv",
