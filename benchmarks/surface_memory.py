@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from data_sets import SHORT_HORIZON, data_folder
+from data_sets import FEW, SHORT_HORIZON, data_folder, data_sets, input_names
 from numpy.typing import NDArray
 from simulated_log import SLIP, simulated_log
 from terrain_change import coloured, white
@@ -211,12 +211,12 @@ def right_surfaces(
     return names, right
 
 
-def one_surface(log: Log, input_name: str, horizon: float) -> float | None:
+def one_surface(log: Log, input_name: str, horizon: float) -> float:
     """Return the mean error of a log with a memory over that without, of position and heading together."""
     drive = prepare_run(log, input_name)
     alone = errors(learn_log(drive, Settings(), (horizon,)).predictions[0]).mean(axis=0)
     with_memory = errors(learn_sequence([drive], Settings(), (horizon,)).logs[0].predictions[0]).mean(axis=0)
-    return float(np.sqrt(np.prod(with_memory / alone))) if alone.all() else None
+    return float(np.sqrt(np.prod(with_memory / alone)))
 
 
 def print_visits(visits: Sequence[Visit], title: str) -> None:
@@ -249,7 +249,7 @@ def main() -> int:
         "--quick", action="store_true", help="two orders, and a fifth of the simulated visits"
     )
     arguments = parser.parse_args()
-    content: dict[str, Any] = {"real": {}, "simulated": []}
+    content: dict[str, Any] = {"real": {}, "alone": {}, "simulated": []}
     folder = data_folder()
     for input_name in ("wheel", "command") if folder else ():
         robot = Warthog(folder or Path(), input_name)
@@ -264,6 +264,13 @@ def main() -> int:
             [v for v in visits if v.second and "same" in v.order], f"{input_name}: second visits, same logs"
         )
         content["real"][input_name] = [asdict(v) for v in visits]
+    for data in data_sets(folder) if folder else []:
+        if data.name in FEW:
+            log = slipwise.open_log(data.path)
+            for name in input_names(log):
+                ratio = one_surface(log, name, data.horizon)
+                print(f"one log alone, {data.name} from {name}s: {ratio:.4f} of the error without a memory")
+                content["alone"][f"{data.name} {name}"] = ratio
     for noise in NOISES:
         result = simulated_visits(noise, 20 if arguments.quick else 100, 1.0, seed=0)
         print(f"\nsimulated, {noise} slip: {result}")
