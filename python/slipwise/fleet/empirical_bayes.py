@@ -13,7 +13,7 @@ from slipwise.errors import SettingsError
 Floats = NDArray[np.float64]
 
 ITERATIONS = 1000
-TOLERANCE = 1e-5  # change of the between-robot variance, in units of it and of the smallest measured one
+TOLERANCE = 1e-4  # change of the between-robot variance, in units of it and of the smallest measured one
 LEAST = 1e-12  # of the between-robot variance, in units of the smallest measured one
 
 
@@ -34,13 +34,16 @@ class FleetPrior:
         return self.between + self.mean_covariance
 
 
-def fleet_prior(estimates: Floats, covariances: Floats, *, dof: float | None = None) -> FleetPrior:
+def fleet_prior(
+    estimates: Floats, covariances: Floats, *, dof: float | None = None, start: Floats | None = None
+) -> FleetPrior:
     """Fit mean and covariance of robots by expectation maximisation of the marginal likelihood.
 
     Args:
         estimates: [N, P] of at least two robots.
         covariances: [N, P, P] of the estimates.
         dof: degrees of freedom of a Student t of the robots, against one odd robot; None: they are normal.
+        start: [P, P] where the search for the robots' covariance begins; by default at that of the estimates.
 
     Raises:
         SettingsError: there are fewer than two robots, or shapes do not fit.
@@ -50,7 +53,8 @@ def fleet_prior(estimates: Floats, covariances: Floats, *, dof: float | None = N
         raise SettingsError("a fleet needs two robots at least, with a covariance each")
     scale = np.sqrt(np.einsum("nii->ni", covariances).min(axis=0) + 1e-300)
     y, s = estimates / scale, covariances / np.outer(scale, scale)
-    between = np.atleast_2d(np.cov(y.T)) + LEAST * np.eye(size)
+    first = np.atleast_2d(np.cov(y.T)) if start is None else start / np.outer(scale, scale)
+    between = first + LEAST * np.eye(size)
     weight = np.ones(count)
     for _ in range(ITERATIONS):
         before = between

@@ -91,7 +91,7 @@ def _parameter(table: Mapping[str, NDArray[Any]], name: str) -> ParameterFinding
         if len(vehicles) > 1
         else None
     )
-    odd = [] if prior is None else _odd(name, vehicles, estimate, std)
+    odd = [] if prior is None else _odd(name, vehicles, (estimate, std), prior)
     unit = str(table["unit"][rows[0]])
     return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, (*odd, *drifts))
 
@@ -104,14 +104,18 @@ def pooled(values: Floats, stds: Floats) -> tuple[float, float]:
     return float(prior.mean[0]), float(math.sqrt(prior.mean_covariance[0, 0]))
 
 
-def _odd(name: str, vehicles: Sequence[str], estimate: Floats, std: Floats) -> list[Finding]:
+def _odd(
+    name: str, vehicles: Sequence[str], measured: tuple[Floats, Floats], prior: FleetPrior
+) -> list[Finding]:
     """Compare each vehicle with what the others say of a new one; two vehicles cannot tell which is odd."""
-    found = []
+    found, (estimate, std) = [], measured
     for place, vehicle in enumerate(vehicles):
         others = np.arange(len(vehicles)) != place
         if others.sum() < 2:
             return []
-        rest = fleet_prior(estimate[others, None], std[others, None, None] ** 2, dof=STUDENT_DOF)
+        rest = fleet_prior(
+            estimate[others, None], std[others, None, None] ** 2, dof=STUDENT_DOF, start=prior.between
+        )
         off = float(estimate[place] - rest.mean[0])
         spread = math.sqrt(float(rest.new_robot[0, 0]) + float(std[place]) ** 2)
         chance = _two_sided(off / spread, float(others.sum() - 1))

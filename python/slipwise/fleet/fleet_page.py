@@ -14,10 +14,12 @@ from slipwise.fleet.findings import FALSE_DISCOVERIES, FEWEST_LOGS, Finding, Par
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import bullets, missing, number, table
 from slipwise.reporting.page import Part, page_of
+from slipwise.reporting.thinning import CURVE_POINTS, thinned
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a4fa3", "#4d4d4d")
 FLEET = "#1b2430"
 TWO_SIGMA = 2.0
+FEWEST_POINTS = 20  # of a vehicle that are drawn of one parameter
 MOST_ROWS = 500  # of unusable logs that are listed
 
 Columns = Mapping[str, NDArray[Any]]
@@ -39,7 +41,8 @@ def fleet_page(
         ),
         Part(
             "Vehicles side by side",
-            "Every log with two standard deviations, and what the fleet expects of its next robot.",
+            "Logs with two standard deviations, evenly thinned where there are many, and what the fleet "
+            "expects of its next robot.",
             "".join(_side_by_side(columns, each).html() for each in findings)
             or missing("There is no log that could be used."),
             folded=True,
@@ -144,7 +147,9 @@ def _figure(key: str, found: ParameterFindings, traces: list[dict[str, Any]], x:
 
 
 def _rows(columns: Columns, found: ParameterFindings, vehicle: str) -> NDArray[np.int64]:
-    return np.flatnonzero((columns["parameter"] == found.parameter) & (columns["vehicle"] == vehicle))
+    """Return the rows of one vehicle and parameter, evenly thinned where they are many."""
+    rows = np.flatnonzero((columns["parameter"] == found.parameter) & (columns["vehicle"] == vehicle))
+    return rows[thinned(len(rows), max(FEWEST_POINTS, CURVE_POINTS // len(found.vehicles)))]
 
 
 def _points(columns: Columns, found: ParameterFindings, vehicle: str, place: int) -> dict[str, Any]:

@@ -17,6 +17,8 @@ from slipwise.files import write_text_whole, write_whole
 from slipwise.fleet.learned_rows import LogRows, Row
 
 ROWS, UNUSABLE = "rows", "unusable"
+#: Of the rows that a fleet is looked at by.
+COLUMNS = ("vehicle", "month", "key", "start", "seconds", "good", "parameter", "unit", "value", "std")
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
 _KEY = re.compile(r"[0-9a-f]{16}-[0-9a-f]{16}")
 _OF_LOG = ("key", "log", "log_sha256", "settings_sha256", "version", "start", "seconds", "distance")
@@ -55,7 +57,10 @@ class Store:
         return path
 
     def table(self) -> dict[str, NDArray[Any]]:
-        """Return all rows as columns by name, vehicle and month included; empty where there are none."""
+        """Return the columns `COLUMNS` of all rows by name, in order of vehicle and time; empty without rows.
+
+        A text is there once, however many rows have it.
+        """
         import pyarrow.dataset as dataset
 
         folder = self.folder / ROWS
@@ -63,11 +68,11 @@ class Store:
             return {}
         text = _text_partitions()
         partitioned = dataset.partitioning(flavor="hive", schema=text)
-        table = dataset.dataset(folder, format="parquet", partitioning=partitioned).to_table()
+        table = dataset.dataset(folder, format="parquet", partitioning=partitioned).to_table(list(COLUMNS))
         ordered = table.sort_by(
             [("vehicle", "ascending"), ("start", "ascending"), ("parameter", "ascending")]
         )
-        return {name: np.asarray(ordered[name].to_pylist()) for name in ordered.column_names}
+        return {name: _column(ordered[name]) for name in ordered.column_names}
 
     def unusable(self) -> list[dict[str, Any]]:
         """Return log, vehicle and failure of every log that could not be used, in order of the log."""
@@ -75,6 +80,16 @@ class Store:
             json.loads(path.read_text(encoding="utf-8")) for path in (self.folder / UNUSABLE).glob("*.json")
         ]
         return sorted(found, key=lambda entry: str(entry["log"]))
+
+
+def _column(column: Any) -> NDArray[Any]:
+    import pyarrow as pa
+
+    if not pa.types.is_string(column.type):
+        return np.asarray(column.to_numpy())
+    encoded = column.combine_chunks().dictionary_encode()
+    texts = np.array(encoded.dictionary.to_pylist(), dtype=object)
+    return np.asarray(texts[encoded.indices.to_numpy()])
 
 
 def _text_partitions() -> Any:

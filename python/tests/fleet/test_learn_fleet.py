@@ -69,7 +69,7 @@ def test_interrupt_keeps_what_was_learned_before(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         learn_fleet(logs(tmp_path, "a", "stops", "c"), store, Here())
     assert len(store.keys()) == 1
-    assert store.table()["log"].tolist() == [str(tmp_path / "a.csv")] * 2
+    assert store.table()["parameter"].tolist() == ["ang.w", "lon.V"]
 
 
 def test_progress_counts_all_logs_and_ends_with_none_left(tmp_path: Path) -> None:
