@@ -11,6 +11,7 @@ from typing import IO
 from slipwise.errors import LogError
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
+from slipwise.live.samples import Sample
 from slipwise.live.transport import OnSample
 
 
@@ -59,12 +60,7 @@ class Pipe:
             for number, line in enumerate(self._lines, start=1):
                 if self._stopped.is_set():
                     return
-                try:
-                    samples = self._reader.read(line)
-                except LogError as problem:
-                    self._wrong.add(f"line {number}: {problem}")
-                    continue
-                for sample in samples:
+                for sample in self._wrong.sound(self._reader, line, f"line {number}"):
                     on_sample(sample)
         self._done.set()
 
@@ -77,13 +73,17 @@ class WrongLines:
         self._new: list[str] = []
         self._count: Counter[str] = Counter()
 
-    def add(self, text: str) -> None:
-        """Take the reason why a line or packet cannot be used."""
+    def sound(self, reader: LineReader, line: str, place: str) -> list[Sample]:
+        """Return the samples of a line; where it cannot be used, none, and why is kept with its place."""
+        try:
+            return reader.read(line)
+        except LogError as problem:
+            kind = str(problem)
         with self._lock:
-            kind = text.partition(": ")[2]
             self._count[kind] += 1
             if self._count[kind] == 1:
-                self._new.append(f"left out, {text}")
+                self._new.append(f"left out, {place}: {kind}")
+        return []
 
     def take(self) -> list[str]:
         """Return what is new."""

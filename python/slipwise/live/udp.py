@@ -7,7 +7,7 @@ import contextlib
 import socket
 import threading
 
-from slipwise.errors import LogError, SettingsError
+from slipwise.errors import SettingsError
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import Output
 from slipwise.live.pipe import WrongLines
@@ -88,10 +88,5 @@ class Udp:
                 return
             number += 1
             for line in packet.decode("utf-8", errors="replace").splitlines():
-                try:
-                    samples = self._reader.read(line)
-                except LogError as problem:
-                    self._wrong.add(f"packet {number}: {problem}")
-                    continue
-                for sample in samples:
+                for sample in self._wrong.sound(self._reader, line, f"packet {number}"):
                     on_sample(sample)
