@@ -7,6 +7,7 @@ import json
 import re
 from dataclasses import asdict
 from pathlib import Path
+from sys import intern
 from typing import Any
 from urllib.parse import quote
 
@@ -20,6 +21,7 @@ ROWS, UNUSABLE = "rows", "unusable"
 #: Of the rows that a fleet is looked at by.
 COLUMNS = ("vehicle", "month", "key", "start", "seconds", "good", "parameter", "unit", "value", "std")
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
+AT_ONCE = 500  # files
 _KEY = re.compile(r"[0-9a-f]{16}-[0-9a-f]{16}")
 _OF_LOG = ("key", "log", "log_sha256", "settings_sha256", "version", "start", "seconds", "distance")
 _OF_VERDICT = ("input", "good", "verdict")
@@ -59,20 +61,17 @@ class Store:
     def table(self) -> dict[str, NDArray[Any]]:
         """Return the columns `COLUMNS` of all rows by name, in order of vehicle and time; empty without rows.
 
-        A text is there once, however many rows have it.
+        Some files are read at once, and a text is there once: thousands of logs take little memory.
         """
-        import pyarrow.dataset as dataset
-
-        folder = self.folder / ROWS
-        if not any(folder.glob(PARTS)):
+        paths = sorted((self.folder / ROWS).glob(PARTS))
+        columns: dict[str, list[Any]] = {name: [] for name in COLUMNS}
+        for first in range(0, len(paths), AT_ONCE):
+            for name, values in _read(paths[first : first + AT_ONCE]).items():
+                columns[name].extend(values)
+        if not columns["key"]:
             return {}
-        text = _text_partitions()
-        partitioned = dataset.partitioning(flavor="hive", schema=text)
-        table = dataset.dataset(folder, format="parquet", partitioning=partitioned).to_table(list(COLUMNS))
-        ordered = table.sort_by(
-            [("vehicle", "ascending"), ("start", "ascending"), ("parameter", "ascending")]
-        )
-        return {name: _column(ordered[name]) for name in ordered.column_names}
+        order = np.lexsort((columns["parameter"], columns["start"], columns["vehicle"]))
+        return {name: _column(values)[order] for name, values in columns.items()}
 
     def unusable(self) -> list[dict[str, Any]]:
         """Return log, vehicle and failure of every log that could not be used, in order of the log."""
@@ -82,20 +81,25 @@ class Store:
         return sorted(found, key=lambda entry: str(entry["log"]))
 
 
-def _column(column: Any) -> NDArray[Any]:
+def _read(paths: list[Path]) -> dict[str, list[Any]]:
+    """Return the columns of some logs; vehicle and month are in the names of their folders."""
     import pyarrow as pa
+    import pyarrow.dataset as dataset
 
-    if not pa.types.is_string(column.type):
-        return np.asarray(column.to_numpy())
-    encoded = column.combine_chunks().dictionary_encode()
-    texts = np.array(encoded.dictionary.to_pylist(), dtype=object)
-    return np.asarray(texts[encoded.indices.to_numpy()])
+    of_folders = pa.schema([("vehicle", pa.string()), ("month", pa.string())])
+    partitioned = dataset.partitioning(flavor="hive", schema=of_folders)
+    files = dataset.dataset(list(map(str, paths)), format="parquet", partitioning=partitioned)
+    table = files.to_table(list(COLUMNS))
+    return {
+        name: list(map(intern, table[name].to_pylist()))
+        if pa.types.is_string(table[name].type)
+        else table[name].to_pylist()
+        for name in COLUMNS
+    }
 
 
-def _text_partitions() -> Any:
-    import pyarrow as pa
-
-    return pa.schema([("vehicle", pa.string()), ("month", pa.string())])
+def _column(values: list[Any]) -> NDArray[Any]:
+    return np.array(values, dtype=object if isinstance(values[0], str) else None)
 
 
 def _write(path: Path, learned: LogRows) -> None:
