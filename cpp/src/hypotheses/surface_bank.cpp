@@ -90,20 +90,22 @@ void SurfaceBank::keep_present(const Averages& averages, const DisturbanceModel&
 
 /// What was known of the present surface at parting is remembered.
 void SurfaceBank::leave_present(const Averages& averages, const DisturbanceModel& law) {
-  if (!present_ && static_cast<int>(segments_) < settings_.fewest) {
+  if (!present_ && std::cmp_less(segments_, settings_.fewest)) {
     return;
   }
+  const std::size_t place = present_ ? *present_ : surfaces_.size();
   if (!present_) {
     surfaces_.push_back({.name = new_name(), .visits = 1, .used = ++clock_});
-    present_ = surfaces_.size() - 1;
+    present_ = place;
     events_.push_back({.kind = SurfaceEvent::Kind::Opened, .name = surfaces_.back().name});
   }
-  Surface& surface = surfaces_[*present_];
+  Surface& surface = surfaces_[place];
   flush(surface);
   for_each(averages, [&](std::size_t i, ModelAverage& average) {
-    surface.memories[i] = average.parting() ? *average.parting() : average.remember();
+    const auto& parting = average.parting();
+    surface.memories[i] = parting ? *parting : average.remember();
   });
-  merge_confounded(averages, law, *present_);
+  merge_confounded(averages, law, place);
 }
 
 void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place) {
@@ -113,7 +115,7 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   const ModelAverage& leader = *averages[leader_];
   const double told_apart = -std::log(settings_.false_alarm);
   const auto known = [&](const Surface& each) {
-    return static_cast<int>(each.segments) >= settings_.fewest && each.memories[leader_];
+    return std::cmp_greater_equal(each.segments, settings_.fewest) && each.memories[leader_];
   };
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& own = surfaces_[place];
@@ -132,9 +134,10 @@ void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   Surface& older = surfaces_[older_place];
   const Surface& newer = surfaces_[newer_place];
   for (std::size_t k = 0; k < kAverages; ++k) {
-    if (older.memories[k] && newer.memories[k]) {
-      older.memories[k] = older.segments >= newer.segments ? joined(*older.memories[k], *newer.memories[k])
-                                                           : joined(*newer.memories[k], *older.memories[k]);
+    auto& mine = older.memories[k];
+    const auto& its = newer.memories[k];
+    if (mine && its) {
+      mine = older.segments >= newer.segments ? joined(*mine, *its) : joined(*its, *mine);
     }
   }
   events_.push_back({.kind = SurfaceEvent::Kind::Merged, .name = older.name, .other = newer.name});

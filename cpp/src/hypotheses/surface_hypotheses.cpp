@@ -56,8 +56,9 @@ std::optional<AverageState> MotionHypotheses::on_surface(const Surface& surface)
   const std::array<const ModelAverage*, kAverages> all{&joint_, direct_ ? &*direct_ : nullptr,
                                                        cascaded_ ? &cascaded_->slip() : nullptr};
   for (const std::size_t place : {kCascaded, kJoint, kDirect}) {
-    if (all[place] != nullptr && surface.memories[place]) {
-      return all[place]->state_on(*surface.memories[place]);
+    const auto& memory = surface.memories[place];
+    if (all[place] != nullptr && memory) {
+      return all[place]->state_on(*memory);
     }
   }
   return std::nullopt;

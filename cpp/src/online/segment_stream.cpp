@@ -16,15 +16,15 @@
 namespace slipwise {
 namespace {
 
-constexpr double kGravity = 9.80665;     // [m/s^2]
-SLIPWISE_TUNING(kSlipLength, 1.0);       // [s] of segments behind wheel speeds
-SLIPWISE_TUNING(kWheelLength, 1.0);      // [s] wheel speeds tell a step's response from its start on
-constexpr double kLookBack = 20.0;       // [s] of inputs before a segment; an actuator remembers no more
-constexpr double kActuatorBack = 5.0;    // [s] of commands before wheel speeds; their filter goes on from the last
-constexpr double kWheelsBack = 3.0;      // [s] of wheel speeds before a segment; no clock offset is larger
-constexpr double kLongestGap = 120.0;    // [s] between poses, after which the segment before it may still end
-constexpr long kFramesApart = 1L << 40;  // numbers of frames before a break and after it are never the same
-constexpr double kSpare = 10.0;          // [s] that inputs are kept for longer than a segment may need
+constexpr double kGravity = 9.80665;   // [m/s^2]
+SLIPWISE_TUNING(kSlipLength, 1.0);     // [s] of segments behind wheel speeds
+SLIPWISE_TUNING(kWheelLength, 1.0);    // [s] wheel speeds tell a step's response from its start on
+constexpr double kLookBack = 20.0;     // [s] of inputs before a segment; an actuator remembers no more
+constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
+constexpr double kWheelsBack = 3.0;    // [s] of wheel speeds before a segment; no clock offset is larger
+constexpr double kLongestGap = 120.0;  // [s] between poses, after which the segment before it may still end
+constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a break and after it are never the same
+constexpr double kSpare = 10.0;                   // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
