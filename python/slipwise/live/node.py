@@ -30,7 +30,7 @@ from slipwise.live.watch.watcher import Watcher
 
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
-REST = 0.005  # s between two looks for samples
+REST = 0.01  # s between two looks for samples
 ODOMETRY_EVERY = 0.02  # s of stamps
 STATUS_EVERY = 0.2  # s of the wall clock
 NOTICES_EVERY = 1.0  # s of the wall clock
