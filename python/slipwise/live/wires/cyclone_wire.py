@@ -6,6 +6,7 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,6 +17,7 @@ from slipwise.live.wires.cyclone_discovery import CycloneDiscovery, Publication
 from slipwise.live.wires.cyclone_graph import PARTICIPANT_DATA, CycloneGraph, endpoint_data
 from slipwise.live.wires.cyclone_service import CycloneService
 from slipwise.live.wires.cyclone_types import cyclone_type
+from slipwise.live.wires.delivery import Delivery
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.quality import Quality, hearing_all
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
@@ -32,7 +34,7 @@ _LOOK = 0.25  # s between looks for silent topics
 class _Subscription:
     topic: str
     type_name: str
-    on_message: OnMessage
+    deliver: Callable[[bytes], None]
     latched: bool
     quality: Quality
     reader: Any
@@ -69,7 +71,8 @@ class CycloneWire:
         self._subscriptions: list[_Subscription] = []
         self._silence = SilenceWatch()
         self._lock = threading.RLock()
-        self._closed = threading.Event()
+        self._delivery = Delivery(self._silence)
+        self._closed = self._delivery.closed
         self._wake: Any = GuardCondition(self._participant)
         self._waitset: Any = WaitSet(self._participant)
         self._waitset.attach(self._wake)
@@ -96,11 +99,12 @@ class CycloneWire:
         """
         require_topic(topic)
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             quality = hearing_all(self._offered(topic), latched=latched)
             reader, condition = self._make_reader(topic, type_name, quality)
             self._silence.want(topic, type_name)
-            made = _Subscription(topic, type_name, on_message, latched, quality, reader, condition)
+            deliver = self._delivery.to(topic, on_message)
+            made = _Subscription(topic, type_name, deliver, latched, quality, reader, condition)
             self._subscriptions = [*self._subscriptions, made]
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> None:
@@ -112,7 +116,7 @@ class CycloneWire:
         from cyclonedds.pub import DataWriter
 
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             if require_topic(topic) not in self._writers:
                 qos = _qos(Quality(reliable=True, latched=latched), type_name, depth=1 if latched else _DEPTH)
                 writer = DataWriter(self._participant, self._topic(f"rt{topic}", type_name), qos=qos)
@@ -146,7 +150,7 @@ class CycloneWire:
         vendor = None
         while vendor is None and time.monotonic() < until:
             with self._lock:
-                self._require_open()
+                self._delivery.require_open()
                 self._discovery.refresh()
                 vendor = next((found.vendor for found in self._of_others() if found.topic == reply), None)
             if vendor is None:
@@ -218,13 +222,7 @@ class CycloneWire:
             _log.exception("%s cannot be read", subscription.topic)
             return
         for message in messages:
-            if self._closed.is_set():
-                return
-            self._silence.heard(subscription.topic)
-            try:
-                subscription.on_message(message)
-            except Exception:
-                _log.exception("a message of %s was not understood", subscription.topic)
+            subscription.deliver(message)
 
     def _adapt(self) -> None:
         """Read again where a publisher offers less than is asked for."""
@@ -275,10 +273,6 @@ class CycloneWire:
 
     def _offered(self, topic: str) -> list[Quality]:
         return [found.quality for found in self._discovery.publications() if found.topic == f"rt{topic}"]
-
-    def _require_open(self) -> None:
-        if self._closed.is_set():
-            raise SettingsError("the connection to ROS is closed", advice="open another one")
 
 
 def _qos(quality: Quality, type_name: str, *, depth: int) -> Any:

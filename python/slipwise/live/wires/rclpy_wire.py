@@ -6,11 +6,13 @@ from __future__ import annotations
 import logging
 import os
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from slipwise.errors import SettingsError
+from slipwise.live.wires.delivery import Delivery
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.quality import Quality, hearing_all
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
@@ -26,7 +28,7 @@ _LOOK = 0.25  # s between looks at who publishes
 class _Subscription:
     topic: str
     type_name: str
-    on_message: OnMessage
+    deliver: Callable[[bytes], None]
     latched: bool
     quality: Quality
     entity: Any
@@ -71,7 +73,8 @@ class RclpyWire:
         self._subscriptions: list[_Subscription] = []
         self._silence = SilenceWatch()
         self._lock = threading.RLock()
-        self._closed = threading.Event()
+        self._delivery = Delivery(self._silence)
+        self._closed = self._delivery.closed
         self._node.create_timer(_LOOK, self._look)
         self._executor: Any = import_module("rclpy.executors").SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)
@@ -103,9 +106,10 @@ class RclpyWire:
         """
         require_topic(topic)
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             quality = hearing_all(self._offered(topic), latched=latched)
-            made = _Subscription(topic, type_name, on_message, latched, quality, None)
+            deliver = self._delivery.to(topic, on_message)
+            made = _Subscription(topic, type_name, deliver, latched, quality, None)
             made.entity = self._make_subscription(made)
             self._silence.want(topic, type_name)
             self._subscriptions.append(made)
@@ -117,7 +121,7 @@ class RclpyWire:
             SettingsError: there is no such type, or no such name of a topic.
         """
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             if require_topic(topic) not in self._publishers:
                 quality = _profile(Quality(reliable=True, latched=latched), depth=1 if latched else _DEPTH)
                 self._publishers[topic] = self._node.create_publisher(_class_of(type_name), topic, quality)
@@ -140,7 +144,7 @@ class RclpyWire:
         """
         serialization: Any = import_module("rclpy.serialization")
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             kind = _class_of(type_name)
             if require_topic(service) not in self._clients:
                 self._clients[service] = self._node.create_client(kind, service)
@@ -207,18 +211,9 @@ class RclpyWire:
                 self._silence.seen(made.topic, seen)
 
     def _make_subscription(self, made: _Subscription) -> Any:
-        def deliver(message: bytes) -> None:
-            if self._closed.is_set():
-                return
-            self._silence.heard(made.topic)
-            try:
-                made.on_message(message)
-            except Exception:
-                _log.exception("a message of %s was not understood", made.topic)
-
         profile = _profile(made.quality, depth=_DEPTH)
         return self._node.create_subscription(
-            _class_of(made.type_name), made.topic, deliver, profile, raw=True
+            _class_of(made.type_name), made.topic, made.deliver, profile, raw=True
         )
 
     def _offered(self, topic: str) -> list[Quality]:
@@ -230,10 +225,6 @@ class RclpyWire:
             )
             for found in self._node.get_publishers_info_by_topic(topic)
         ]
-
-    def _require_open(self) -> None:
-        if self._closed.is_set():
-            raise SettingsError("the connection to ROS is closed", advice="open another one")
 
 
 def _class_of(type_name: str) -> Any:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import logging
 import os
 import socket
 import threading
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlparse
 
 from slipwise.errors import SettingsError
+from slipwise.live.wires.delivery import Delivery
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.silence import PublisherSeen, SilenceWatch
@@ -21,8 +21,6 @@ from slipwise.live.wires.wire import OnMessage, WireTopic
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
-
-_log = logging.getLogger(__name__)
 
 
 class RospyWire:
@@ -52,7 +50,8 @@ class RospyWire:
         self._subscribers: dict[str, list[Any]] = {}
         self._silence = SilenceWatch()
         self._lock = threading.RLock()
-        self._closed = threading.Event()
+        self._delivery = Delivery(self._silence)
+        self._closed = self._delivery.closed
 
     def topics(self) -> list[WireTopic]:
         """Return what is published by others now."""
@@ -82,17 +81,12 @@ class RospyWire:
         require_topic(topic)
         self._require_type(type_name)
 
-        def deliver(message: Any) -> None:
-            if self._closed.is_set():
-                return
-            self._silence.heard(topic)
-            try:
-                on_message(bytes(ros_types().ros1_to_cdr(message._buff, type_name)))  # noqa: SLF001
-            except Exception:
-                _log.exception("a message of %s was not understood", topic)
+        def to_bytes(message: Any) -> bytes:
+            return bytes(ros_types().ros1_to_cdr(message._buff, type_name))  # noqa: SLF001
 
+        deliver = self._delivery.to(topic, on_message, to_bytes)
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             self._silence.want(topic, type_name)
             made = self._rospy.Subscriber(
                 topic, self._rospy.AnyMsg, deliver, queue_size=1000, tcp_nodelay=True
@@ -107,7 +101,7 @@ class RospyWire:
         """
         self._require_type(type_name)
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             if require_topic(topic) not in self._publishers:
                 made = self._rospy.Publisher(
                     topic, self._class_of(type_name), latch=latched, queue_size=100, tcp_nodelay=True
@@ -172,10 +166,6 @@ class RospyWire:
                 f'there is no message type "{type_name}" in ROS 1',
                 advice='a type is named like "nav_msgs/msg/Odometry"',
             )
-
-    def _require_open(self) -> None:
-        if self._closed.is_set():
-            raise SettingsError("the connection to ROS is closed", advice="open another one")
 
 
 def _ros2_name(type_name: str) -> str:

@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 import json
-import logging
 import threading
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 from slipwise.errors import SettingsError
+from slipwise.live.wires.delivery import Delivery
 from slipwise.live.wires.options import WireOptions
 from slipwise.live.wires.ros_types import require_type
 from slipwise.live.wires.silence import PATIENCE, PublisherSeen, SilenceWatch
@@ -26,7 +25,6 @@ from slipwise.live.wires.zenoh_graph import (
     read_token,
 )
 
-_log = logging.getLogger(__name__)
 _ASK_AGAIN = 2.0  # s for which a service is waited for
 
 
@@ -64,12 +62,13 @@ class ZenohWire:
         self._id = str(self._session.info.zid())
         self._node = NodeTokens(self._domain, self._id, options.node_name, options.namespace)
         self._lock = threading.RLock()
-        self._closed = threading.Event()
+        self._silence = SilenceWatch()
+        self._delivery = Delivery(self._silence)
+        self._closed = self._delivery.closed
         self._publishers: dict[str, _Publisher] = {}
         self._wanted: dict[str, str] = {}
         self._keep: list[Any] = []  # tokens and subscriptions end with their objects
         self._endpoints: dict[str, Endpoint] = {}
-        self._silence = SilenceWatch()
         self._keep.append(self._session.liveliness().declare_token(self._node.of_node()))
         graph = f"@ros2_lv/{self._domain}/**"
         self._keep.append(self._session.liveliness().declare_subscriber(graph, self._on_token, history=True))
@@ -93,10 +92,10 @@ class ZenohWire:
 
         key = data_key(self._domain, require_topic(topic), require_type(type_name), any_hash=True)
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             self._silence.want(topic, type_name)
             self._wanted[topic] = type_name
-            deliver = self._deliverer(topic, on_message)
+            deliver = self._delivery.to(topic, on_message, lambda sample: bytes(sample.payload.to_bytes()))
             if latched:
                 history = HistoryConfig(detect_late_publishers=True, max_samples=1)
                 self._keep.append(declare_advanced_subscriber(self._session, key, deliver, history=history))
@@ -115,7 +114,7 @@ class ZenohWire:
 
         key = data_key(self._domain, require_topic(topic), require_type(type_name))
         with self._lock:
-            self._require_open()
+            self._delivery.require_open()
             if topic in self._publishers:
                 return
             if latched:
@@ -137,7 +136,7 @@ class ZenohWire:
         with self._lock:
             if topic not in self._publishers:
                 self.advertise(topic, type_name, latched=latched)
-            self._require_open()
+            self._delivery.require_open()
             publisher = self._publishers[topic]
             publisher.sent += 1
             publisher.entity.put(payload, attachment=attachment(publisher.sent, publisher.gid))
@@ -153,7 +152,7 @@ class ZenohWire:
         key = data_key(self._domain, require_topic(service), require_type(type_name), any_hash=True)
         until = time.monotonic() + timeout
         while (left := until - time.monotonic()) > 0:
-            self._require_open()
+            self._delivery.require_open()
             replies = self._session.get(
                 key,
                 payload=request,
@@ -202,18 +201,6 @@ class ZenohWire:
         self._keep.clear()
         self._publishers.clear()
 
-    def _deliverer(self, topic: str, on_message: OnMessage) -> Callable[[Any], None]:
-        def deliver(sample: Any) -> None:
-            if self._closed.is_set():
-                return
-            self._silence.heard(topic)
-            try:
-                on_message(bytes(sample.payload.to_bytes()))
-            except Exception:
-                _log.exception("a message of %s was not understood", topic)
-
-        return deliver
-
     def _announce(self, topic: str, type_name: str, *, publishes: bool, latched: bool) -> str:
         number = len(self._keep) + len(self._publishers) + 1
         token = self._node.of_endpoint(number, topic, type_name, publishes=publishes, latched=latched)
@@ -244,10 +231,6 @@ class ZenohWire:
     def _of_others(self) -> list[Endpoint]:
         with self._lock:
             return [endpoint for endpoint in self._endpoints.values() if endpoint.session != self._id]
-
-    def _require_open(self) -> None:
-        if self._closed.is_set():
-            raise SettingsError("the connection to ROS is closed", advice="open another one")
 
 
 def _config(options: WireOptions) -> Any:
