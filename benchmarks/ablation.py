@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from data_sets import FEW, data_folder, data_sets
+from data_sets import FEW, data_sets, required_folder
 from mechanisms import CALIBRATION, LIMITS, MECHANISMS, Mechanism
 from replay_score import MeanReplay, ReplayScore, mean_replay
 from tuning_constants import build_tuned_core
@@ -115,10 +115,7 @@ def main() -> int:
     parser.add_argument("--mechanism", default="", help="only mechanisms whose name contains this")
     parser.add_argument("--workers", type=int, default=2, help="processes at a time")
     arguments = parser.parse_args()
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     logs = [
         d.name for d in data_sets(folder) if arguments.only in d.name and (not arguments.few or d.name in FEW)
     ]

@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from data_sets import DataSet, data_folder, data_sets, input_names
+from data_sets import DataSet, data_sets, input_names, required_folder
 from numpy.typing import NDArray
 
 import slipwise
@@ -119,10 +119,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--json", type=Path, help="write the figures to this file too")
     arguments = parser.parse_args()
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     with ProcessPoolExecutor() as pool:
         rows = [row for found in pool.map(measure, data_sets(folder)) for row in found]
     print_table(rows)

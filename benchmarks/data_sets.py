@@ -51,6 +51,15 @@ def data_folder() -> Path | None:
     return Path(value) if value else None
 
 
+def required_folder() -> Path:
+    """Return the folder that SLIPWISE_DATA names; where it is not set, the benchmark ends with code 2."""
+    folder = data_folder()
+    if folder is None:
+        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
+        raise SystemExit(2)
+    return folder
+
+
 def data_sets(folder: Path) -> list[DataSet]:
     """Return all logs of the folder by name."""
     return [

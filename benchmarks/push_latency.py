@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from data_sets import DataSet, data_folder, data_sets, input_names
+from data_sets import DataSet, data_sets, input_names, required_folder
 from numpy.typing import NDArray
 
 import slipwise
@@ -172,10 +172,7 @@ def main() -> int:
     parser.add_argument("--processor-time", action="store_true", help="where other work shares the machine")
     arguments = parser.parse_args()
     now = time.thread_time_ns if arguments.processor_time else time.perf_counter_ns
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     chosen = [data for data in data_sets(folder) if arguments.only in data.name]
     found: list[Latency] = []
     with progress_bar("pushing") as progress:

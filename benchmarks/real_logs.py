@@ -12,7 +12,7 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict
 from pathlib import Path
 
-from data_sets import DataSet, data_folder, data_sets
+from data_sets import DataSet, data_sets, required_folder
 from log_score import LogScore, log_score, mean_score
 from real_log_tables import (
     Target,
@@ -109,10 +109,7 @@ def main() -> int:
     parser.add_argument("--json", type=Path, help="write all figures to this file too")
     parser.add_argument("--only", default="", help="only logs whose name contains this")
     arguments = parser.parse_args()
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     start = time.perf_counter()
     scores = score_all(folder, arguments.only)
     reference = folder / "reference.csv"

@@ -21,7 +21,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from data_sets import FEW, data_folder, data_sets
+from data_sets import FEW, data_sets, required_folder
 from replay_score import ReplayScore, mean_replay
 from tuning_constants import build_tuned_core, tuning_constants
 from variants import Variant, of_input, scored_variants
@@ -219,10 +219,7 @@ def main() -> int:
     if arguments.list:
         print("\n".join(f"{each.name:50} {each.value}" for each in chosen))
         return 0
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     every = arguments.all or arguments.only
     logs = [d.name for d in data_sets(folder) if arguments.only in d.name and (every or d.name in FEW)]
     output, done = Output(arguments.json), []

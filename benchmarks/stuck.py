@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from data_sets import DataSet, data_folder, data_sets, input_names
+from data_sets import DataSet, data_sets, input_names, required_folder
 from numpy.typing import NDArray
 
 import slipwise
@@ -164,10 +164,7 @@ def main() -> int:
     parser.add_argument("--only", default="", help="only logs whose name contains this")
     parser.add_argument("--json", type=Path, help="write all alarms to this file too")
     arguments = parser.parse_args()
-    folder = data_folder()
-    if folder is None:
-        print("SLIPWISE_DATA is not set: it names the folder that holds the real logs")
-        return 2
+    folder = required_folder()
     chosen = [data for data in data_sets(folder) if arguments.only in data.name]
     found: list[Watched] = []
     with progress_bar("pushing") as progress:
