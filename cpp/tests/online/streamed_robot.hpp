@@ -54,15 +54,34 @@ inline LearnerSettings learner_settings(bool from_commands) {
   return settings;
 }
 
+/// A measurement of a run, and when it arrives.
+struct Arrival {
+  double at;   ///< [s]
+  int stream;  ///< 0: commands, 1: wheels, 2: poses
+  std::size_t place;
+};
+
+/// Pushes measurements of a run in the order of arrival; `arrived` is called with each time.
+template <class Arrived>
+void push_arrivals(MotionLearner& learner, const Recording& run, std::vector<Arrival> arrivals,
+                   const Arrived& arrived) {
+  std::ranges::stable_sort(arrivals, {}, &Arrival::at);
+  for (const auto& [at, stream, i] : arrivals) {
+    if (stream == 0) {
+      learner.push_command(run.commands[i].t, run.commands[i].twist);
+    } else if (stream == 1) {
+      learner.push_wheels(run.wheels[i].t, run.wheels[i].twist);
+    } else {
+      learner.push_pose(run.poses[i]);
+    }
+    arrived(at);
+  }
+}
+
 /// Pushes a run with each stream late by its own random time of up to `latest`, in the order of arrival.
 inline void push_late(MotionLearner& learner, const Recording& run, double latest, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> late(0.0, latest);
-  struct Arrival {
-    double at;
-    int stream;
-    std::size_t place;
-  };
   std::vector<Arrival> arrivals;
   const auto add = [&](int stream, const auto& samples) {
     double before = -1e300;
@@ -74,16 +93,7 @@ inline void push_late(MotionLearner& learner, const Recording& run, double lates
   add(0, run.commands);
   add(1, run.wheels);
   add(2, run.poses);
-  std::ranges::stable_sort(arrivals, {}, &Arrival::at);
-  for (const auto& [at, stream, i] : arrivals) {
-    if (stream == 0) {
-      learner.push_command(run.commands[i].t, run.commands[i].twist);
-    } else if (stream == 1) {
-      learner.push_wheels(run.wheels[i].t, run.wheels[i].twist);
-    } else {
-      learner.push_pose(run.poses[i]);
-    }
-  }
+  push_arrivals(learner, run, std::move(arrivals), [](double /*at*/) {});
 }
 
 }  // namespace slipwise::tests

@@ -12,6 +12,7 @@
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
+#include "streamed_robot.hpp"
 
 namespace slipwise::tests {
 
@@ -107,21 +108,17 @@ inline TrueRobot true_robot(const TrueDrive& drive) {
   return robot;
 }
 
-/// Pushes what is stamped within [begin, end), each stream late by its seconds, in the order of arrival; `arrived` is
-/// called with each time of arrival.
+/// How late streams arrive [s].
 struct Lateness {
   double inputs = 0.0;
   double poses = 0.0;
 };
 
+/// Pushes what is stamped within [begin, end), each stream late by its seconds, in the order of arrival; `arrived` is
+/// called with each time of arrival.
 template <class Arrived>
 void push_within(MotionLearner& learner, const Recording& run, const Span& span, const Lateness& late,
                  const Arrived& arrived) {
-  struct Arrival {
-    double at;
-    int stream;
-    std::size_t place;
-  };
   std::vector<Arrival> arrivals;
   const auto add = [&](int stream, const auto& samples, double lateness) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -133,17 +130,7 @@ void push_within(MotionLearner& learner, const Recording& run, const Span& span,
   add(0, run.commands, late.inputs);
   add(1, run.wheels, late.inputs);
   add(2, run.poses, late.poses);
-  std::ranges::stable_sort(arrivals, {}, &Arrival::at);
-  for (const auto& [at, stream, i] : arrivals) {
-    if (stream == 0) {
-      learner.push_command(run.commands[i].t, run.commands[i].twist);
-    } else if (stream == 1) {
-      learner.push_wheels(run.wheels[i].t, run.wheels[i].twist);
-    } else {
-      learner.push_pose(run.poses[i]);
-    }
-    arrived(at);
-  }
+  push_arrivals(learner, run, std::move(arrivals), arrived);
 }
 
 }  // namespace slipwise::tests
