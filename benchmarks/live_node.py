@@ -12,6 +12,7 @@ random instants; then its cache is read, and a node goes on from it.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import random
 import resource
@@ -34,9 +35,8 @@ from slipwise.calibration.live_table import LiveTable
 from slipwise.cli.output import Column, Output
 from slipwise.live.build import build_node
 from slipwise.live.cache import Cache, CacheKey
-from slipwise.live.outputs import Output as Given
+from slipwise.live.feed import Feed
 from slipwise.live.samples import Command, Pose, Sample, Wheels
-from slipwise.live.transport import OnSample
 from slipwise.models import load_model
 
 SEED = 20
@@ -59,39 +59,17 @@ def samples_of(measured: Measured) -> list[Sample]:
     return [sample for _, _, sample in rows]
 
 
-class Driving:
+class Driving(Feed):
     """A transport that drives on for some seconds of the simulation, as fast as the node takes it."""
 
     def __init__(self, seconds: float, *, seed: int = SEED) -> None:
-        self._day, self._seconds = DrivenDay(seed), seconds
-        self._done = threading.Event()
         self.driven = 0.0
+        super().__init__(self._drive(DrivenDay(seed), seconds))
 
-    def subscribe(self, on_sample: OnSample) -> None:
-        """Drive in a thread."""
-        threading.Thread(target=self._drive, args=(on_sample,), daemon=True).start()
-
-    def publish(self, output: Given) -> None:
-        """Nobody listens."""
-
-    def notices(self) -> list[str]:
-        """Nothing to say."""
-        return []
-
-    @property
-    def finished(self) -> bool:
-        """Whether all is driven."""
-        return self._done.is_set()
-
-    def close(self) -> None:
-        """Nothing to stop."""
-
-    def _drive(self, on_sample: OnSample) -> None:
-        while self.driven < self._seconds:
-            for sample in samples_of(self._day.next(PIECE)):
-                on_sample(sample)
+    def _drive(self, day: DrivenDay, seconds: float) -> Iterator[Sample]:
+        while self.driven < seconds:
+            yield from samples_of(day.next(PIECE))
             self.driven += PIECE
-        self._done.set()
 
 
 @dataclass(frozen=True)
@@ -137,18 +115,15 @@ def _ticks(process: int) -> int:
     return int(fields[11]) + int(fields[12])
 
 
-class publishing:  # noqa: N801 (used as a function)
-    """Publishes a drive over Cyclone DDS in real time, from a process of its own."""
-
-    def __init__(self, seconds: float) -> None:
-        self._process = subprocess.Popen([sys.executable, __file__, "--publish", str(seconds)])
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, *_: object) -> None:
-        self._process.kill()
-        self._process.wait()
+@contextlib.contextmanager
+def publishing(seconds: float) -> Iterator[None]:
+    """Publish a drive over Cyclone DDS in real time, from a process of its own."""
+    process = subprocess.Popen([sys.executable, __file__, "--publish", str(seconds)])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
 
 
 def publish(seconds: float) -> None:
@@ -183,7 +158,7 @@ def publish(seconds: float) -> None:
         Pose: ("/pose", "geometry_msgs/msg/PoseWithCovarianceStamped"),
     }
     day, begin, now = DrivenDay(SEED), time.monotonic(), time.time()
-    for piece in range(int(seconds // 10) + 1):
+    for _ in range(int(seconds // 10) + 1):
         for sample in samples_of(day.next(10.0)):
             due = sample.t - EPOCH
             time.sleep(max(0.0, begin + due - time.monotonic()))
@@ -197,7 +172,6 @@ def publish(seconds: float) -> None:
             else:
                 message = t[kind](stamp, pose(sample.x, sample.y, sample.yaw))
             wire.publish(topic, kind, bytes(store.serialize_cdr(message, kind)))
-        del piece
     wire.close()
 
 

@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 
 from sample_logs import Drive, simulated_log
 
@@ -13,10 +12,10 @@ from slipwise.calibration import Settings
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.live.build import Built, build_node
+from slipwise.live.feed import Feed
 from slipwise.live.outputs import Note, Output, Status
 from slipwise.live.replay import samples_of
 from slipwise.live.samples import Sample
-from slipwise.live.transport import OnSample
 
 SLIP = Drive(
     seconds=90.0,
@@ -35,37 +34,15 @@ def driven(drive: Drive = SLIP, input_name: str = "wheel") -> list[Sample]:
     return list(samples_of(run))
 
 
-class Scripted:
-    """Delivers samples as fast as the node takes them; a callable among them is called instead."""
+class Scripted(Feed):
+    """Delivers samples as fast as the node takes them, and keeps what the node gives."""
 
-    def __init__(self, script: Iterable[Sample | Callable[[], None]]) -> None:
-        self._script = list(script)
-        self._done = threading.Event()
+    def __init__(self, script: Iterable[Sample]) -> None:
+        super().__init__(script)
         self.outputs: list[Output] = []
-
-    def subscribe(self, on_sample: OnSample) -> None:
-        def deliver() -> None:
-            for step in self._script:
-                if callable(step):
-                    step()
-                else:
-                    on_sample(step)
-            self._done.set()
-
-        threading.Thread(target=deliver, daemon=True).start()
 
     def publish(self, output: Output) -> None:
         self.outputs.append(output)
-
-    def notices(self) -> list[str]:
-        return []
-
-    @property
-    def finished(self) -> bool:
-        return self._done.is_set()
-
-    def close(self) -> None:
-        pass
 
     @property
     def said(self) -> list[str]:
@@ -77,7 +54,7 @@ class Scripted:
 
 
 def run_node(
-    script: Sequence[Sample | Callable[[], None]], table: LiveTable | None = None, input_name: str = "wheel"
+    script: Sequence[Sample], table: LiveTable | None = None, input_name: str = "wheel"
 ) -> tuple[Built, Scripted]:
     """Run a node over a script; return what it was built of, and the transport."""
     transport = Scripted(script)

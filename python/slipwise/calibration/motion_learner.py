@@ -98,10 +98,8 @@ class MotionLearner:
 
     def start_run(self, name: str) -> None:
         """Begin a run: nothing is joined across runs; what was learned stays."""
-        if self._runs and not np.isfinite(self._core.newest):
-            self._runs.pop()  # the run before had no measurement
+        self._name_run(name)
         self._core.start_run()
-        self._runs.append(name)
 
     def push_command(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
         """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
@@ -231,10 +229,8 @@ class MotionLearner:
             label: name of the surface, where somebody thinks to know it; a wrong one is overruled.
             date: of the drive, for the table of surfaces.
         """
-        if self._runs and not np.isfinite(self._core.newest):
-            self._runs.pop()  # the run before had no measurement
+        self._name_run(name)
         self._core.start_drive(label, date)
-        self._runs.append(name)
 
     def cue_surface(self, label: str = "") -> None:
         """Say that the surface changes now: to the one of this name, or to another where it is empty."""
@@ -260,11 +256,6 @@ class MotionLearner:
     def settings(self) -> Settings:
         """What is learned and how."""
         return self._settings
-
-    @property
-    def newest(self) -> float:
-        """Stamp of the newest measurement of the run [s]; minus infinity before the first."""
-        return float(self._core.newest)
 
     def judged_model(self, *, limits: bool = True, log: Log | None = None) -> tuple[Model, Judgement]:
         """Return what `model` does, and how its predictions compare with the kinematic baseline's.
@@ -352,6 +343,12 @@ class MotionLearner:
 
     def __reduce__(self) -> tuple[Callable[[bytes], MotionLearner], tuple[bytes]]:
         return MotionLearner.load, (self.save(),)
+
+    def _name_run(self, name: str) -> None:
+        """Name the run that begins, in place of the one before where that had no measurement."""
+        if self._runs and not np.isfinite(self._core.newest):
+            self._runs.pop()
+        self._runs.append(name)
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from slipwise.live.node import LiveNode
     from slipwise.logs import LogOptions
 
-WATCHING = "Watching"
-GIVING = "What others get"
-
 
 @takes_log_options
 def live(

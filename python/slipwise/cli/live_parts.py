@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from slipwise.logs import Log, LogOptions
     from slipwise.models import Model
 
-SILENT_ROBOT = None  # s; a robot may start later
-
 
 @dataclass(frozen=True)
 class Robot:
@@ -135,7 +133,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         named = replace(named, router=f"tcp/{table.address}")
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     try:
-        roles = find_roles(wire, options, say, own=f"/{table.name}", seconds=SILENT_ROBOT)
+        roles = find_roles(wire, options, say, own=f"/{table.name}")
         for note in roles.guessed:
             say(note)
         input_name = table.input or ("command" if roles.command is not None else "wheel")

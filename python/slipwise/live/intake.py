@@ -30,8 +30,7 @@ class Intake:
     def start_run(self, name: str) -> None:
         """Begin a recording: nothing is joined across runs."""
         self._clock.restart()
-        self._gates.restart()
-        self._learner.start_run(name)
+        self._begin(name)
 
     def take(self, sample: Stamped) -> None:
         """Take one sample in the order in which it came."""
@@ -46,8 +45,7 @@ class Intake:
                 f"the clock was set back by {before - self._clock.newest:.1f} s: a new run begins",
             )
             self._said.count("the clock was set back")
-            self._gates.restart()
-            self._learner.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
+            self._begin(f"after the clock was set at {self._clock.newest:.3f} s")
         for each in taken:
             self._gates.take(each)
             self._push(each)
@@ -59,6 +57,10 @@ class Intake:
             if event.kind == "rejected":
                 self._said.count(event.reason)
         return events
+
+    def _begin(self, name: str) -> None:
+        self._gates.restart()
+        self._learner.start_run(name)
 
     def _push(self, sample: Stamped) -> None:
         learner = self._learner

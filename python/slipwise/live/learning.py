@@ -72,6 +72,11 @@ class Learning:
             self._said.note(t, f"the model is {self.validity.whole}: {self.validity.why}")
         return True
 
+    @property
+    def valid_now(self) -> Model | None:
+        """The last valid model while the state is that it may be used; None otherwise."""
+        return self.valid if self.validity.whole == "estimated" else None
+
     def given(self) -> tuple[Model | None, str]:
         """Return the model that others get, and which one that is; None: the kinematic baseline."""
         whole: Validity = self.validity.whole

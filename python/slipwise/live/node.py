@@ -151,7 +151,7 @@ class LiveNode:
         parts = self._parts
         model, which = parts.learning.given()
         if parts.applied is not None:
-            valid = parts.learning.valid if parts.learning.validity.whole == "estimated" else None
+            valid = parts.learning.valid_now
             parts.applied.step(t, valid, parts.learning.validity.of)
             if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
                 self._hand_on(t)
@@ -189,7 +189,7 @@ class LiveNode:
 
     def _apply_now(self, t: float) -> None:
         parts = self._parts
-        valid = parts.learning.valid if parts.learning.validity.whole == "estimated" else None
+        valid = parts.learning.valid_now
         if parts.applied is None:
             parts.said.note(t, "nothing is handed on: the node runs with --apply off")
         elif valid is None:

@@ -4,22 +4,20 @@
 from __future__ import annotations
 
 import heapq
-import threading
 import time
 from collections.abc import Iterator
 
 from slipwise.calibration.prepared_run import PreparedRun, prepare_run
 from slipwise.errors import SettingsError
-from slipwise.live.outputs import Output
+from slipwise.live.feed import Feed
 from slipwise.live.samples import Command, Pose, RunStart, Sample, Wheels
-from slipwise.live.transport import OnSample
 from slipwise.logs import Log
 from slipwise.segments import recording_rows
 
 AS_FAST_AS_IT_GOES = 0.0
 
 
-class Replay:
+class Replay(Feed):
     """Delivers what `calibrate` would learn from, run after run.
 
     Args:
@@ -34,48 +32,18 @@ class Replay:
 
     def __init__(self, log: Log, input_name: str, *, rate: float = 1.0) -> None:
         if not rate >= AS_FAST_AS_IT_GOES:
-            raise SettingsError(
-                f"the rate is {rate:g}", where="--rate", advice="such as 10, or 0 for no wait"
-            )
-        self._drive, self._rate = prepare_run(log, input_name), rate
-        self._stopped, self._done = threading.Event(), threading.Event()
-        self._thread: threading.Thread | None = None
+            raise SettingsError(f"the rate is {rate:g}", where="--rate", advice="such as 10, or 0: no waits")
+        super().__init__(self._paced(prepare_run(log, input_name), rate))
 
-    def subscribe(self, on_sample: OnSample) -> None:
-        """Begin to deliver."""
-        self._thread = threading.Thread(target=self._deliver, args=(on_sample,), name="replay", daemon=True)
-        self._thread.start()
-
-    def publish(self, output: Output) -> None:
-        """Nobody listens."""
-
-    def notices(self) -> list[str]:
-        """Nothing to say."""
-        return []
-
-    @property
-    def finished(self) -> bool:
-        """Whether the log is at its end."""
-        return self._done.is_set()
-
-    def close(self) -> None:
-        """Stop where it is."""
-        self._stopped.set()
-        if self._thread is not None:
-            self._thread.join(timeout=2.0)
-
-    def _deliver(self, on_sample: OnSample) -> None:
-        for run in self._drive:
-            on_sample(RunStart(run.run.name))
+    def _paced(self, drive: tuple[PreparedRun, ...], rate: float) -> Iterator[Sample]:
+        for run in drive:
+            yield RunStart(run.run.name)
             begin = time.monotonic()
             for sample in samples_of(run):
-                if self._rate > 0.0:
-                    due = begin + (sample.t - run.run.span[0]) / self._rate
+                if rate > 0.0:
+                    due = begin + (sample.t - run.run.span[0]) / rate
                     self._stopped.wait(max(0.0, due - time.monotonic()))
-                if self._stopped.is_set():
-                    return
-                on_sample(sample)
-        self._done.set()
+                yield sample
 
 
 def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose]:

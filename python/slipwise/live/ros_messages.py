@@ -13,6 +13,7 @@ import numpy as np
 
 from slipwise.live.diagnostics import Diagnostic, diagnostics_of, note_diagnostic
 from slipwise.live.outputs import AppliedParameters, Floats, ModelText, Note, Odometry, Output, Path, Status
+from slipwise.live.wires.ros_types import ros_types
 
 if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
@@ -76,9 +77,7 @@ class RosMessages:
 
     def __init__(self, name: str = "slipwise") -> None:
         """`name`: of the node, which stands before what diagnostics are about."""
-        from rosbags.typesys import Stores, get_typestore
-
-        self.store: Typestore = get_typestore(Stores.ROS2_HUMBLE)
+        self.store: Typestore = ros_types()
         self._name = name
         types: dict[str, Callable[..., Any]] = dict(self.store.types)
         self._types = types

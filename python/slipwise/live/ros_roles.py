@@ -5,9 +5,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 
-from slipwise.errors import LogError
 from slipwise.live.wires.wire import RosWire
 from slipwise.logs.messages import TF
 from slipwise.logs.options import LogOptions
@@ -19,33 +17,27 @@ SETTLED = 1.5  # s for which what is guessed must stay the same: discovery takes
 SAY_AFTER = 3.0  # s without the topics, after which it is said what is waited for
 
 
-@dataclass
-class _Seen:
-    names: frozenset[str] = frozenset()
-    since: float = 0.0
-
-
 def find_roles(
     wire: RosWire,
     options: LogOptions,
     say: Callable[[str], None],
     *,
     own: str = "",
-    seconds: float | None = None,
 ) -> Roles:
-    """Wait until the robot's topics are there, and choose among them.
+    """Wait until the robot's topics are there, however long that takes, and choose among them.
 
     Args:
         wire: shows what is published.
         options: topics that are given; the others are guessed.
         say: is told what is waited for.
         own: the name below which the node publishes; such topics are never chosen.
-        seconds: how long to wait; None: for ever.
 
     Raises:
-        LogError: a given topic has the wrong type, the guess is unclear, or the time is over.
+        LogError: a given topic has the wrong type, or the guess is unclear.
     """
-    begin, seen, said = time.monotonic(), _Seen(), False
+    begin = since = time.monotonic()
+    before: frozenset[str] = frozenset()
+    said = False
     while True:
         topics = [
             Topic(topic.name, topic.type, 1)
@@ -54,14 +46,10 @@ def find_roles(
         ]
         now = time.monotonic()
         names = frozenset(topic.name for topic in topics)
-        if names != seen.names:
-            seen = _Seen(names, now)
+        if names != before:
+            before, since = names, now
         missing = _missing(topics, options)
-        if not missing and (now > seen.since + SETTLED or _all_given(options)):
-            return choose_topics(topics, options)
-        if seconds is not None and now > begin + seconds:
-            if missing:
-                raise LogError(f"the robot is silent: no {missing}", advice=_advice(names))
+        if not missing and (now > since + SETTLED or _all_given(options)):
             return choose_topics(topics, options)
         if missing and not said and now > begin + SAY_AFTER:
             said = True
@@ -88,8 +76,3 @@ def _missing(topics: list[Topic], options: LogOptions) -> str:
 
 def _kinds(topics: list[Topic]) -> str:
     return "pose topic and a command or wheel topic beside it" if topics else "topics of a robot"
-
-
-def _advice(names: frozenset[str]) -> str:
-    there = f"there is {', '.join(sorted(names)[:12])}" if names else "no publisher was found at all"
-    return f"{there}; check --domain and --transport, or name the topics"

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Outputs become ROS messages that rosbags, and rclpy where a test names one, read back as they were."""
+"""Outputs become ROS messages that rosbags, and rclpy, read back as they were."""
 
 from __future__ import annotations
 
 import json
 import math
-import os
 import subprocess
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ from live.sample_outputs import driven_outputs, odometry_at, straight_path, wait
 from slipwise.live.outputs import ModelText, Note, Output
 from slipwise.live.ros_messages import TOPICS, RosMessage, RosMessages, stamp_ns
 
-ROS_PYTHON = os.environ.get("SLIPWISE_ROS_PYTHON")  # of an environment where rclpy can be imported
 READ_WITH_RCLPY = """
 import importlib, json, sys
 from rclpy.serialization import deserialize_message, serialize_message
@@ -118,14 +117,13 @@ def test_stamps_keep_their_nanoseconds_and_stay_within_a_header() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(ROS_PYTHON is None, reason="SLIPWISE_ROS_PYTHON names no Python with rclpy")
-def test_rclpy_reads_every_message_and_writes_the_same_bytes(messages: RosMessages) -> None:
+def test_rclpy_reads_every_message_and_writes_the_same_bytes(messages: RosMessages, ros_python: Path) -> None:
     outputs = [*driven_outputs()[-60:], straight_path(asked=True), Note(1.0, "said: Ä")]
     sent = [message for output in outputs for message in messages.of(output)]
     assert {message.topic for message in sent} == set(TOPICS)
     lines = "".join(json.dumps([m.type, m.payload.hex()]) + "\n" for m in sent)
     ran = subprocess.run(
-        [str(ROS_PYTHON), "-c", READ_WITH_RCLPY], input=lines, capture_output=True, text=True, check=True
+        [str(ros_python), "-c", READ_WITH_RCLPY], input=lines, capture_output=True, text=True, check=True
     )
     answers = [json.loads(line) for line in ran.stdout.splitlines()]
     assert len(answers) == len(sent)

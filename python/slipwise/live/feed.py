@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Samples from a program as a transport: nobody listens to results."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterable
+
+from slipwise.live.outputs import Output
+from slipwise.live.samples import Sample
+from slipwise.live.transport import OnSample
+
+
+class Feed:
+    """Delivers samples one after the other, as fast as they come and the node takes them.
+
+    Args:
+        samples: in the order in which they arrive.
+    """
+
+    def __init__(self, samples: Iterable[Sample]) -> None:
+        self._samples = samples
+        self._stopped, self._done = threading.Event(), threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def subscribe(self, on_sample: OnSample) -> None:
+        """Begin to deliver, in a thread."""
+        self._thread = threading.Thread(target=self._deliver, args=(on_sample,), name="feed", daemon=True)
+        self._thread.start()
+
+    def publish(self, output: Output) -> None:
+        """Nobody listens."""
+
+    def notices(self) -> list[str]:
+        """Nothing to say."""
+        return []
+
+    @property
+    def finished(self) -> bool:
+        """Whether all samples were delivered."""
+        return self._done.is_set()
+
+    def close(self) -> None:
+        """Stop where it is."""
+        self._stopped.set()
+        if self._thread is not None:
+            self._thread.join(timeout=2.0)
+
+    def _deliver(self, on_sample: OnSample) -> None:
+        for sample in self._samples:
+            if self._stopped.is_set():
+                return
+            on_sample(sample)
+        self._done.set()
