@@ -12,6 +12,7 @@ Floats = NDArray[np.float64]
 
 _FRACTION = 0.95
 _POINTS = 49  # of the closed outline
+_ROUNDING = 1e-9  # of the larger variance: what is flat to rounding may come out below zero
 
 
 def ellipse(centre: Floats, covariance: Floats, dof: float) -> Floats | None:
@@ -30,8 +31,8 @@ def outline_of(centre: Floats, covariance: Floats, radius: float) -> Floats | No
     if not (np.isfinite(covariance).all() and np.isfinite(centre).all()):
         return None
     values, vectors = np.linalg.eigh(0.5 * (covariance + covariance.T))
-    if values[0] < 0.0:
+    if values[0] < -_ROUNDING * abs(values[1]):
         return None
     angle = np.linspace(0.0, 2.0 * np.pi, _POINTS)
     circle = np.column_stack((np.cos(angle), np.sin(angle)))
-    return np.asarray(centre + radius * (circle * np.sqrt(values)) @ vectors.T)
+    return np.asarray(centre + radius * (circle * np.sqrt(np.maximum(values, 0.0))) @ vectors.T)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.ellipse import ellipse
+from slipwise.ellipse import ellipse, outline_of
 from slipwise.student import ellipse_squared
 
 
@@ -22,3 +22,15 @@ def test_what_is_no_covariance_has_no_ellipse() -> None:
     assert ellipse(np.zeros(2), np.array([[1.0, 2.0], [2.0, 1.0]]), 5.0) is None
     assert ellipse(np.zeros(2), np.full((2, 2), np.nan), 5.0) is None
     assert ellipse(np.array([np.nan, 0.0]), np.eye(2), 5.0) is None
+
+
+def test_an_ellipse_that_is_flat_to_rounding_is_a_line() -> None:
+    ends = np.array([[4.03394781e-30, -8.96432847e-31], [-8.96432847e-31, 1.99207299e-31]])
+    assert np.linalg.det(ends / ends[0, 0]) < 0.0
+    outline = outline_of(np.array([1.41053162, 0.33787062]), ends, 1.0)
+    assert outline is not None
+    assert np.isfinite(outline).all()
+    direction = np.array([1.0, -0.2222])
+    flat = outline_of(np.zeros(2), np.outer(direction, direction), 1.0)
+    assert flat is not None
+    assert np.abs(np.cross(flat, direction)).max() < 1e-6
