@@ -9,6 +9,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
 #include "slipwise/online/student_t.hpp"
@@ -312,14 +313,23 @@ void bind_online(nb::module_& m) {
       .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")
-      .def("on_surface", &MotionLearner::on_surface, "surface"_a,
-           "What is known where one of them is driven on; None where it has no memory.")
+      .def(
+          "on_surface",
+          [](const MotionLearner& learner, const Surface& surface, std::size_t structure) {
+            return learner.on_surface(surface, structure_of(structure));
+          },
+          "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
+      .def("begin_with", &MotionLearner::begin_with, "known"_a, "law"_a, "wheels"_a,
+           "Begins with what another learner knew, before anything was learned.")
+      .def("add_surfaces", &MotionLearner::add_surfaces, "other"_a,
+           "Takes in the surfaces of another learner of the same robot; returns their names here.")
       .def("surface_events", &MotionLearner::surface_events, "What happened to them since the last call.")
       .def(
           "save", [](const MotionLearner& learner) { return bytes_of(learner.save()); }, "All of it as bytes.")
       .def_static(
           "load", [](const nb::bytes& saved) { return MotionLearner::load(view_of(saved)); }, "saved"_a,
           "The learner whose bytes these are.")
+      .def_prop_ro("settings", [](const MotionLearner& learner) { return learner.settings(); })
       .def_prop_ro("newest", &MotionLearner::newest);
 }
 

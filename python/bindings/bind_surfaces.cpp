@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of the surfaces that a learner remembers.
+#include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "slipwise/hypotheses/surface_bank.hpp"
+#include "checked_shapes.hpp"
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
 
 namespace nb = nanobind;
+using namespace nb::literals;
 
 namespace slipwise::bindings {
 
@@ -26,6 +29,31 @@ void bind_surfaces(nb::module_& m) {
       .def_rw("unknown", &SurfaceSettings::unknown)
       .def_rw("merge", &SurfaceSettings::merge)
       .def_rw("most", &SurfaceSettings::most);
+  nb::class_<SurfaceSlip>(m, "SurfaceSlip", "Slip of a surface under one basis, given the robot.")
+      .def(
+          "__init__",
+          [](SurfaceSlip* self, const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+             const Eigen::MatrixXd& by_robot, const Eigen::VectorXd& robot, const std::array<double, 2>& speeds,
+             const Eigen::Vector3d& noise_scale) {
+            check_square(covariance, mean.size(), "the covariance of slip");
+            check_columns(by_robot, robot.size(), "slip by the robot");
+            if (by_robot.rows() != mean.size()) {
+              throw std::invalid_argument("slip by the robot needs one row per term");
+            }
+            new (self) SurfaceSlip{.mean = mean,
+                                   .covariance = covariance,
+                                   .by_robot = by_robot,
+                                   .robot = robot,
+                                   .prior_std = Eigen::VectorXd::Ones(mean.size()),
+                                   .speeds = {.v = speeds[0], .omega = speeds[1]},
+                                   .noise_scale = NoiseScale({}, noise_scale)};
+          },
+          "mean"_a, "covariance"_a, "by_robot"_a, "robot"_a, "speeds"_a, "noise_scale"_a)
+      .def_ro("mean", &SurfaceSlip::mean)
+      .def_ro("covariance", &SurfaceSlip::covariance)
+      .def_ro("by_robot", &SurfaceSlip::by_robot)
+      .def_ro("robot", &SurfaceSlip::robot)
+      .def_prop_ro("noise_scale", [](const SurfaceSlip& slip) { return slip.noise_scale.value(); });
   nb::class_<Surface>(m, "Surface", "A surface that is remembered.")
       .def(nb::init<>())
       .def_ro("name", &Surface::name)
@@ -36,10 +64,61 @@ void bind_surfaces(nb::module_& m) {
       .def_prop_ro("speeds", [](const Surface& surface) {
         return std::array<double, 2>{surface.speeds.v, surface.speeds.omega};
       });
+  nb::class_<NamedMemory>(m, "SurfaceMemory", "What is remembered of a surface, per basis.")
+      .def(
+          "__init__",
+          [](NamedMemory* self, const std::vector<std::string>& bases, const std::vector<SurfaceSlip>& slips,
+             const Eigen::VectorXd& weights, std::size_t observed) {
+            check_size(weights, std::ssize(slips), "the weights of bases");
+            if (bases.size() != slips.size()) {
+              throw std::invalid_argument("a memory needs one name per basis");
+            }
+            new (self) NamedMemory{bases, {.slips = slips, .weights = weights, .observed = observed}};
+          },
+          "bases"_a, "slips"_a, "weights"_a, "observed"_a)
+      .def_ro("bases", &NamedMemory::bases)
+      .def_prop_ro("slips", [](const NamedMemory& memory) { return memory.memory.slips; })
+      .def_prop_ro("weights", [](const NamedMemory& memory) { return memory.memory.weights; })
+      .def_prop_ro("observed", [](const NamedMemory& memory) { return memory.memory.observed; });
+  nb::class_<SlipOnSurface>(m, "SlipOnSurface", "Slip of a surface in the terms of one structure.")
+      .def_ro("state", &SlipOnSurface::state)
+      .def_ro("memory", &SlipOnSurface::memory)
+      .def_prop_ro("prior_speeds", [](const SlipOnSurface& slip) {
+        return std::array<double, 2>{slip.prior_speeds.v, slip.prior_speeds.omega};
+      });
+  nb::class_<KnownSurface>(m, "KnownSurface", "A surface that another learner knew.")
+      .def(
+          "__init__",
+          [](KnownSurface* self, const std::string& name, const std::array<double, 3>& seconds_and_speeds,
+             const std::array<std::size_t, 2>& segments_and_visits, const std::string& last_seen,
+             const NamedMemory& memory) {
+            const auto& [seconds, v, omega] = seconds_and_speeds;
+            new (self) KnownSurface{.facts = {.name = name,
+                                              .seconds = seconds,
+                                              .segments = segments_and_visits[0],
+                                              .visits = segments_and_visits[1],
+                                              .last_seen = last_seen,
+                                              .speeds = {.v = v, .omega = omega}},
+                                    .memory = memory};
+          },
+          "name"_a, "seconds_and_speeds"_a, "segments_and_visits"_a, "last_seen"_a, "memory"_a,
+          "Seconds driven, and the speed [m/s] and yaw rate [rad/s] covered; segments learned and visits.");
+  nb::class_<KnownBefore>(m, "KnownBefore", "What a learner begins with.")
+      .def(
+          "__init__",
+          [](KnownBefore* self, const MotionPosterior& model, std::size_t structure,
+             const std::vector<KnownSurface>& surfaces, const std::array<double, 2>& labels) {
+            new (self) KnownBefore{model, surfaces, {.all = labels[0], .right = labels[1]}};
+            self->model.structure = structure_of(structure);
+          },
+          "model"_a, "structure"_a, "surfaces"_a, "labels"_a, "Labels: how many there were, and how many were right.");
   nb::class_<SurfaceBank>(m, "SurfaceBank", "The surfaces that are remembered.")
       .def_prop_ro("surfaces", [](const SurfaceBank& bank) { return bank.surfaces(); })
       .def_prop_ro("present", &SurfaceBank::present)
-      .def_prop_ro("label_reliability", &SurfaceBank::label_reliability);
+      .def_prop_ro("label_reliability", &SurfaceBank::label_reliability)
+      .def_prop_ro("labels", [](const SurfaceBank& bank) {
+        return std::array<double, 2>{bank.labels().all, bank.labels().right};
+      });
   nb::enum_<SurfaceEvent::Kind>(m, "SurfaceEventKind", "What happened to a surface.")
       .value("Opened", SurfaceEvent::Kind::Opened)
       .value("Recalled", SurfaceEvent::Kind::Recalled)

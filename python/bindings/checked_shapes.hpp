@@ -10,6 +10,7 @@
 
 #include "slipwise/actuator/input_history.hpp"
 #include "slipwise/filter/estimate.hpp"
+#include "slipwise/filter/motion_posterior.hpp"
 #include "slipwise/motion/motion_model.hpp"
 
 namespace slipwise::bindings {
@@ -47,6 +48,15 @@ inline void check_inputs(const std::vector<const InputHistory*>& inputs, std::si
   if (std::ranges::find(inputs, nullptr) != inputs.end()) {
     throw std::invalid_argument("each segment needs inputs, got None");
   }
+}
+
+/// A way to explain motion by its number.
+inline Structure structure_of(std::size_t number) {
+  if (number >= kStructures) {
+    throw std::invalid_argument("structures are numbered from 0 to " + std::to_string(kStructures - 1) + ", got " +
+                                std::to_string(number));
+  }
+  return static_cast<Structure>(number);
 }
 
 /// An estimate of all parameters of a model.

@@ -75,6 +75,16 @@ DisturbanceFilter::DisturbanceFilter(DisturbanceModel law) : law_(std::move(law)
   prior_ = law_.weights;
 }
 
+void DisturbanceFilter::begin_with(const DisturbanceModel& law) {
+  const auto same = [](const SlipDisturbance& a, const SlipDisturbance& b) {
+    return a.linear == b.linear && a.angular == b.angular && a.time_constant == b.time_constant;
+  };
+  check_disturbance(law);
+  if (std::ranges::equal(law.candidates, law_.candidates, same)) {
+    law_.weights = law.weights;
+  }
+}
+
 void DisturbanceFilter::learn(const MotionPosterior& posterior, const SlipNow& now, const DrivenSegment& segment) {
   const DisturbedTerms terms = disturbed_terms(posterior.model, posterior.prior_std);
   check_fits(now, law_, terms);

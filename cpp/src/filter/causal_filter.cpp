@@ -105,6 +105,15 @@ void CausalFilter::go_on_with(const SurfaceSlip& surface, double drift) {
   start_from_here();
 }
 
+void CausalFilter::know_robot(const Estimate& robot) {
+  const Eigen::Index size = std::ssize(robot.mean);
+  Eigen::MatrixXd& covariance = state_.estimate.covariance;
+  state_.estimate.mean.tail(size) = robot.mean;
+  covariance.bottomRows(size).setZero();
+  covariance.rightCols(size).setZero();
+  covariance.bottomRightCorner(size, size) = robot.covariance;
+}
+
 SurfaceSlip CausalFilter::new_surface(std::span<const SurfaceSlip> known) const {
   const Eigen::Index robot = model_.size() - model_.slip_size();
   SurfaceSlip fresh = shrunk_prior(known, state_.estimate.mean.tail(robot), slip_std_, speeds_);

@@ -22,6 +22,11 @@ void DrivenSpeeds::see(const InputHistory& inputs, const Segment& segment) {
   }
 }
 
+void DrivenSpeeds::begin_with(const ReferenceSpeeds& speeds, double seconds) {
+  speeds_.add(speeds.v, seconds);
+  yaw_rates_.add(speeds.omega, seconds);
+}
+
 ReferenceSpeeds DrivenSpeeds::reference() const {
   return {.v = speeds_.quantile(kReferenceFraction, kLeastSpeed),
           .omega = yaw_rates_.quantile(kReferenceFraction, kLeastSpeed)};

@@ -68,6 +68,11 @@ void CascadedModel::learn_actuator(const WheelSegment& segment) {
   actuator_.learn(segment.commands, segment.wheels, segment.start, segment.end);
 }
 
+void CascadedModel::begin_with(const Estimate& actuator, const CausalFilterSettings& settings) {
+  actuator_.begin_with(actuator, settings);
+  refresh();
+}
+
 ScoredSegment CascadedModel::predict(const DrivenSegment& segment) {
   return score_.score(model_, posterior_->estimate, segment.inputs, segment.segment);
 }

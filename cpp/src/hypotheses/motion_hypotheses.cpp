@@ -120,6 +120,9 @@ void MotionHypotheses::join_cascade() {
   tried_[index(Structure::Cascaded)] = true;
   weights_[index(Structure::Cascaded)] = kPrior[index(Structure::Cascaded)] / whole;
   evidence_[index(Structure::Cascaded)] = evidence_[index(Structure::Joint)];
+  if (begun_with_ == Structure::Cascaded) {
+    favour(Structure::Cascaded);
+  }
 }
 
 void MotionHypotheses::start_slip(const DrivenSegment& segment) {

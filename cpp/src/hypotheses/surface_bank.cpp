@@ -43,20 +43,6 @@ SurfaceMemory joined(const SurfaceMemory& more, const SurfaceMemory& less) {
 
 std::vector<SurfaceEvent> SurfaceBank::take_events() { return std::exchange(events_, {}); }
 
-std::string SurfaceBank::new_name() {
-  const auto taken = [&](const std::string& name) {
-    return std::ranges::any_of(surfaces_, [&](const Surface& each) { return each.name == name; });
-  };
-  if (!label_.empty() && !taken(label_)) {
-    return label_;
-  }
-  std::string name;
-  do {
-    name = "surface " + std::to_string(++named_);
-  } while (taken(name));
-  return name;
-}
-
 void SurfaceBank::see(const InputHistory& inputs, const Segment& segment) {
   if (!settings_.remember) {
     return;
@@ -129,10 +115,13 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   }
 }
 
-/// The older one keeps its name.
+/// The older one keeps its name, unless only the newer one was named by somebody.
 void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   Surface& older = surfaces_[older_place];
-  const Surface& newer = surfaces_[newer_place];
+  Surface& newer = surfaces_[newer_place];
+  if (numbered(older.name) && !numbered(newer.name)) {
+    std::swap(older.name, newer.name);
+  }
   for (std::size_t k = 0; k < kAverages; ++k) {
     auto& mine = older.memories[k];
     const auto& its = newer.memories[k];
@@ -155,6 +144,33 @@ void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   }
 }
 
+void SurfaceBank::know(std::vector<Surface> surfaces, const LabelCounts& labels) {
+  surfaces_ = std::move(surfaces);
+  labels_ = labels;
+  clock_ = surfaces_.size();
+  for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    surfaces_[i].used = i + 1;
+  }
+}
+
+std::vector<std::string> SurfaceBank::add(const Averages& averages, const DisturbanceModel& law,
+                                          std::vector<Surface> others, std::size_t leader) {
+  leader_ = leader;
+  std::vector<std::string> names;
+  for (Surface& other : others) {
+    const std::string wanted = other.name;
+    for (int count = 2; taken(other.name); ++count) {
+      other.name = wanted + " (" + std::to_string(count) + ")";
+    }
+    other.used = ++clock_;
+    surfaces_.push_back(std::move(other));
+    names.push_back(surfaces_.back().name);
+    merge_confounded(averages, law, surfaces_.size() - 1);
+  }
+  drop_least_used(settings_.most);
+  return names;
+}
+
 /// Never the present one.
 void SurfaceBank::drop(std::size_t place) {
   events_.push_back({.kind = SurfaceEvent::Kind::Dropped, .name = surfaces_[place].name});
@@ -162,25 +178,6 @@ void SurfaceBank::drop(std::size_t place) {
   if (present_ && *present_ > place) {
     --*present_;
   }
-}
-
-void SurfaceBank::trust_label(std::vector<SurfaceCandidate>& candidates) const {
-  if (label_.empty()) {
-    return;
-  }
-  const auto named = std::ranges::find_if(candidates, [&](const SurfaceCandidate& each) {
-    return each.kind == Kind::Known && surfaces_[each.place].name == label_;
-  });
-  const auto likely =
-      named != candidates.end() ? named : std::ranges::find(candidates, Kind::New, &SurfaceCandidate::kind);
-  if (likely == candidates.end()) {
-    return;
-  }
-  const double others = 1.0 - likely->prior;
-  for (SurfaceCandidate& each : candidates) {
-    each.prior *= others > 0.0 ? (1.0 - label_reliability()) / others : 1.0;
-  }
-  likely->prior = others > 0.0 ? label_reliability() : 1.0;
 }
 
 std::vector<SurfaceCandidate> SurfaceBank::candidates_of_start() const {
@@ -210,7 +207,7 @@ std::vector<SurfaceCandidate> SurfaceBank::candidates_of_change() const {
 
 void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
                        double since) {
-  trust_label(candidates);
+  weigh_by_label(candidates);
   for_each(averages, [&](std::size_t i, ModelAverage& average) {
     std::vector<SurfaceMemory> known;
     for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
@@ -230,14 +227,29 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
   keep_present(averages, law);
   date_ = start.date;
   label_ = start.label;
+  wanted_ = surfaces_.empty() ? label_ : "";
   if (!surfaces_.empty()) {
     open(averages, law, candidates_of_start(), kNow);
     present_.reset();
   }
 }
 
+/// A label says nothing new where it is the one that speaks already, or names the surface that is driven on.
 void SurfaceBank::cue(const Averages& averages, const DisturbanceModel& law, const std::string& label) {
-  if (!settings_.remember || averages[leader_]->trial()) {
+  const bool open_already = settings_.remember && averages[leader_]->trial().has_value();
+  const std::string& named = open_already ? label_ : (present_ ? surfaces_[*present_].name : wanted_);
+  const bool same = !label.empty() && label == named;
+  if (!settings_.remember || same || (open_already && label.empty())) {
+    return;
+  }
+  if (open_already) {
+    label_ = label;
+    for_each(averages, [&](std::size_t /*i*/, ModelAverage& average) {
+      if (average.trial()) {
+        const Eigen::ArrayXd factors = label_factors(slipwise::present(average.trial()).candidates);
+        average.weigh_trial(factors.log());
+      }
+    });
     return;
   }
   keep_present(averages, law);
@@ -278,7 +290,12 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
 void SurfaceBank::enter_new() {
   present_.reset();
   ++clock_;
-  while (surfaces_.size() >= settings_.most) {
+  drop_least_used(settings_.most - 1);
+}
+
+/// Until at most so many are left.
+void SurfaceBank::drop_least_used(std::size_t most) {
+  while (surfaces_.size() > most) {
     const auto least = std::ranges::min_element(surfaces_, [](const Surface& a, const Surface& b) {
       return std::pair(a.visits, a.used) < std::pair(b.visits, b.used);
     });
@@ -312,11 +329,7 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
   if (candidate.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
   }
-  if (!label_.empty()) {
-    labels_ += 1.0;
-    right_labels_ += recalled.empty() || recalled == label_ ? 1.0 : 0.0;
-  }
-  take(candidate, recalled, probability, segments);
+  take(candidate, judge_label(candidate, recalled), probability, segments);
   return true;
 }
 

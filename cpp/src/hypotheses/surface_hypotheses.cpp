@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structures and the surfaces that they share.
-#include <array>
-
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 
 namespace slipwise {
 namespace {
 
 constexpr std::size_t kJoint = 0;
-constexpr std::size_t kDirect = 1;
 constexpr std::size_t kCascaded = 2;
 
 }  // namespace
@@ -50,18 +47,6 @@ SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
   MotionHypotheses now = *this;
   now.bank_.keep_present(now.averages(), law);
   return now.bank_;
-}
-
-std::optional<AverageState> MotionHypotheses::on_surface(const Surface& surface) const {
-  const std::array<const ModelAverage*, kAverages> all{&joint_, direct_ ? &*direct_ : nullptr,
-                                                       cascaded_ ? &cascaded_->slip() : nullptr};
-  for (const std::size_t place : {kCascaded, kJoint, kDirect}) {
-    const auto& memory = surface.memories[place];
-    if (all[place] != nullptr && memory) {
-      return all[place]->state_on(*memory);
-    }
-  }
-  return std::nullopt;
 }
 
 }  // namespace slipwise

@@ -189,6 +189,11 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
   mix_trial();
 }
 
+void ModelAverage::weigh_trial(const Eigen::VectorXd& log_factors) {
+  present(trial_).log_odds += log_factors;
+  mix_trial();
+}
+
 void ModelAverage::mix_trial() {
   const SurfaceTrial& trial = present(trial_);
   const Eigen::VectorXd likely = trial.probabilities();

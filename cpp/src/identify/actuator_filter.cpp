@@ -32,8 +32,13 @@ ActuatorFilter::ActuatorFilter(const CausalFilterSettings& settings, std::size_t
     : model_({"none", {}, {}, {}}, {.dynamics = true, .response = true}), next_(std::clamp(waiting, kFirst, kLast)) {
   const Estimate prior = prior_estimate(model_, {.v = 1.0, .omega = 1.0}, settings.prior);
   prior_std_ = prior.covariance.diagonal().cwiseSqrt();
+  begin_with(prior, settings);
+}
+
+void ActuatorFilter::begin_with(const Estimate& known, const CausalFilterSettings& settings) {
+  banks_.clear();
   const auto add = [&](std::vector<Eigen::Index> places, const std::vector<double BodyTwist::*>& parts) {
-    const Estimate own{prior.mean(places), prior.covariance(places, places)};
+    const Estimate own{known.mean(places), known.covariance(places, places)};
     Bank bank{.places = std::move(places), .candidates = {}, .weights = {}, .refits = {}};
     for (const ActuatorNoise& shape : kShapes) {
       bank.candidates.emplace_back(ChannelModel{parts, own, shape, settings.iekf});

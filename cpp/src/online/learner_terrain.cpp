@@ -2,6 +2,7 @@
 // What a learner does about terrain when it is told: it forgets a part, begins a drive, or recalls a surface.
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "slipwise/online/motion_learner.hpp"
 
@@ -26,6 +27,18 @@ void MotionLearner::cue_surface(const std::string& label) {
   work_through();  // what waits was driven on the surface before
   hypotheses_.cue_surface(disturbance_.law(), label);
   known_.back() = now_known(known_.back().until);
+}
+
+void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels) {
+  hypotheses_.begin_with(known, settings_.stream.segment_length, wheels);
+  if (settings_.learn_disturbance) {
+    disturbance_.begin_with(law);
+  }
+  known_.back() = now_known(known_.back().until);
+}
+
+std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
+  return hypotheses_.add_surfaces(disturbance_.law(), other);
 }
 
 void MotionLearner::consider_surfaces() { hypotheses_.consider_surfaces(disturbance_.law()); }

@@ -9,7 +9,7 @@ import numpy as np
 
 from slipwise.calibration.estimator_run import run_estimator
 from slipwise.calibration.judgement import Judgement
-from slipwise.calibration.learned_log import Keep, learn_log
+from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
@@ -66,10 +66,10 @@ def calibrate(
     drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)
     refuse_empty(windows, log)
-    found = _contradictions(log, input_name, settings)
+    found = found_contradictions(log, input_name, settings)
     learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
     learned = learn(settings, windows, progress)
-    judged, content = _judged_content(learned, windows, (log, input_name, settings), found)
+    judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return Calibration(
         model_of(content, log, found),
         judged.verdict,
@@ -88,17 +88,18 @@ def model_of_log(learned: Learned, log: Log, input_name: str, settings: Settings
         LogError: no model holds what was learned.
     """
     windows = learning_windows(prepare_run(log, input_name), input_name, settings)
-    found = _contradictions(log, input_name, settings)
-    judged, content = _judged_content(learned, windows, (log, input_name, settings), found)
+    found = found_contradictions(log, input_name, settings)
+    judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return model_of(content, log, found), judged.judgement
 
 
-def _contradictions(log: Log, input_name: str, settings: Settings) -> tuple[Contradiction, ...]:
+def found_contradictions(log: Log, input_name: str, settings: Settings) -> tuple[Contradiction, ...]:
+    """Return where poses and inputs contradict each other."""
     yaw = settings.sensor_extrinsics.yaw
     return contradictions(log, input_name, settings.segment.unknown_after, sensor_yaw=yaw)
 
 
-def _judged_content(
+def judged_content(
     learned: Learned,
     windows: WindowSet,
     given: tuple[Log, str, Settings],
@@ -121,7 +122,11 @@ def _judged_content(
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn in one pass, which also makes the predictions that are judged."""
     keep = Keep(settings.vehicle.wheel_separation)
-    learned = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress)
+    return learned_by(learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep, progress=progress))
+
+
+def learned_by(learned: LearnedLog) -> Learned:
+    """Return what a pass of the learner over a log gives to judge."""
     students = {
         p.horizon: student_of(student)
         for p, student in zip(learned.predictions, learned.students, strict=True)

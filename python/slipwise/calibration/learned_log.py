@@ -69,21 +69,43 @@ def learn_log(
     core = core_settings(settings, drive[0].input_name, horizons)
     learner, events = _core.MotionLearner(core), []
     for done in pushed(learner, drive):
-        events += [event for event in learner.events() if keep is not None and event.kind == _LEARNED]
+        events += [event for event in learner.events() if keep is not None and event.kind == LEARNED]
         if progress is not None:
             progress(done)
+    return learned_of(learner, events, horizons, drive, keep)
+
+
+def learned_of(
+    learner: _core.MotionLearner,
+    events: Sequence[_core.LearnerEvent],
+    horizons: Sequence[float],
+    drive: tuple[PreparedRun, ...],
+    keep: Keep | None,
+) -> LearnedLog:
+    """Return what a learner made of all that was pushed.
+
+    Args:
+        learner: which has learned it.
+        events: of segments learned, where the history is kept.
+        horizons: of the predictions [s].
+        drive: the runs that were pushed.
+        keep: what is needed beside predictions.
+    """
     model = learner.model()
-    bases = tuple(basis.name for basis in core.hypotheses.bases)
-    several = core.hypotheses.several
+    hypotheses = learner.settings.hypotheses
+    bases = tuple(basis.name for basis in hypotheses.bases)
     predictions, baseline = held_out_predictions(model, horizons, drive)
     found = None if keep is None else learner.find_limits(keep.wheel_separation)
+    history = None
+    if keep is not None:
+        history = _history(events, model.motion, bases, drive, several=hypotheses.several)
     return LearnedLog(
         kept=kept_posterior(model, found),
         slip=posterior_of(model.slip, model.disturbance),
         students=tuple(model.students),
         predictions=predictions,
         baseline=baseline,
-        history=None if keep is None else _history(events, model.motion, bases, drive, several=several),
+        history=history,
         bases=bases,
         segments=model.segments,
         seconds=model.seconds,
@@ -98,18 +120,32 @@ def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None
     return replace(kept, limits=found.search.limits) if found and motion.structure == LIMITS else kept
 
 
-_LEARNED = _core.EventKind.SegmentLearned
+LEARNED = _core.EventKind.SegmentLearned
 
 
-def pushed(learner: _core.MotionLearner, drive: tuple[PreparedRun, ...]) -> Iterator[float]:
-    """Push all runs, piece by piece; yields the fraction done."""
+Cue = tuple[float, str]  # a stamp [s] and the name of the surface from then on
+
+
+def pushed(
+    learner: _core.MotionLearner, drive: tuple[PreparedRun, ...], cues: Sequence[Sequence[Cue]] = ()
+) -> Iterator[float]:
+    """Push all runs, piece by piece; yields the fraction done.
+
+    Args:
+        learner: what is given the measurements.
+        drive: the runs, in the order of time.
+        cues: of each run, when somebody named the surface; the learner is told at that time.
+    """
     for place, run in enumerate(drive):
         learner.start_run()
-        edges = np.linspace(*run.run.span, STEPS + 1)
-        edges[0], edges[-1] = -np.inf, np.inf
-        for k in range(STEPS):
-            learner.push(recording_of(run.run, float(edges[k]), float(edges[k + 1])))
-            yield (place + (k + 1) / STEPS) / len(drive)
+        told = dict(cues[place]) if place < len(cues) else {}
+        edges = np.unique([*np.linspace(*run.run.span, STEPS + 1)[1:-1], *told])
+        for k, since in enumerate([-np.inf, *edges.tolist()]):
+            if since in told:
+                learner.cue_surface(told[since])
+            until = float(edges[k]) if k < len(edges) else np.inf
+            learner.push(recording_of(run.run, since, until))
+            yield (place + (k + 1) / (len(edges) + 1)) / len(drive)
     learner.end_run()
     yield 1.0
 

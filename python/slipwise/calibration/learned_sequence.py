@@ -8,11 +8,22 @@ from dataclasses import dataclass
 
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.learned_log import predictions_of, pushed
+from slipwise.calibration.learned_log import (
+    LEARNED,
+    Cue,
+    Keep,
+    LearnedLog,
+    learned_of,
+    predictions_of,
+    pushed,
+)
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.prepared_run import PreparedRun
+from slipwise.calibration.prepared_run import PreparedRun, has_wheels
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
+from slipwise.calibration.surface_sections import begin_with
+from slipwise.models.model import Model
 
 _WORDS = {
     _core.SurfaceEventKind.Opened: "new",
@@ -62,6 +73,21 @@ class LearnedSequence:
 
     logs: tuple[VisitedLog, ...]
     surfaces: tuple[SurfaceSummary, ...]
+    labels: tuple[float, float]  # labels that were judged, and how many were right
+    learner: _core.MotionLearner
+    learned: LearnedLog | None = None  # of all logs together, where it was asked
+
+
+@dataclass(frozen=True)
+class SequenceOptions:
+    """What a sequence begins with, and what is wanted of it."""
+
+    start: Model | None = None  # whose robot and surfaces are known
+    labels: tuple[str, ...] = ()  # of each log; without them, those of its column `terrain`
+    keep: Keep | None = None  # what a model file needs beside predictions
+
+
+_NOTHING = SequenceOptions()
 
 
 def learn_sequence(
@@ -69,6 +95,7 @@ def learn_sequence(
     settings: Settings,
     horizons: Sequence[float],
     *,
+    options: SequenceOptions = _NOTHING,
     progress: Progress | None = None,
 ) -> LearnedSequence:
     """Push logs through one learner; each begins on a surface that is remembered, or on a new one.
@@ -77,34 +104,71 @@ def learn_sequence(
         drives: the runs of each log, in the order of time.
         settings: what to learn and how.
         horizons: of the predictions [s].
+        options: what is known at the start, labels, and what is wanted.
         progress: called with the fraction done, 0 to 1.
 
     Raises:
-        SettingsError: a basis or a term is unknown.
+        SettingsError: a basis or a term is unknown, or not that of the model to begin with.
+        ModelError: the model to begin with has another input, or no memory of surfaces.
     """
-    core = core_settings(settings, drives[0][0].input_name, horizons, remember=True)
-    learner, visited = _core.MotionLearner(core), []
+    learner = _begun(drives, settings, horizons, options.start)
+    visited: list[VisitedLog] = []
     runs: tuple[PreparedRun, ...] = ()
+    learned: list[_core.LearnerEvent] = []
     learner.surface_events()
     for place, drive in enumerate(drives):
-        learner.start_drive("", "")
+        cues = _begin_drive(learner, drive, options.labels[place] if options.labels else None)
         runs += drive
         held_out: list[list[_core.HeldOutPrediction]] = [[] for _ in horizons]
-        for done in pushed(learner, drive):
+        for done in pushed(learner, drive, cues):
             for event in learner.events():
                 if event.prediction is not None:
                     held_out[event.prediction.horizon].append(event.prediction)
+                elif options.keep is not None and event.kind == LEARNED:
+                    learned.append(event)
             if progress is not None:
                 progress((place + done) / len(drives))
-        bank = learner.surfaces()
-        visited.append(
-            VisitedLog(
-                predictions_of(held_out, horizons, runs)[0],
-                "" if bank.present is None else bank.surfaces[bank.present].name,
-                tuple(_change(event) for event in learner.surface_events()),
-            )
-        )
-    return LearnedSequence(tuple(visited), tuple(summary_of(each) for each in learner.surfaces().surfaces))
+        visited.append(_visited(learner, predictions_of(held_out, horizons, runs)[0]))
+    bank = learner.surfaces()
+    judged, right = bank.labels
+    return LearnedSequence(
+        tuple(visited),
+        tuple(summary_of(each) for each in bank.surfaces),
+        (judged, right),
+        learner,
+        None if options.keep is None else learned_of(learner, learned, horizons, runs, options.keep),
+    )
+
+
+def _begun(
+    drives: Sequence[tuple[PreparedRun, ...]],
+    settings: Settings,
+    horizons: Sequence[float],
+    start: Model | None,
+) -> _core.MotionLearner:
+    input_name = drives[0][0].input_name
+    learner = _core.MotionLearner(core_settings(settings, input_name, horizons, remember=True))
+    if start is not None:
+        begin_with(learner, start, input_name, wheels=any(has_wheels(drive) for drive in drives))
+    return learner
+
+
+def _begin_drive(
+    learner: _core.MotionLearner, drive: tuple[PreparedRun, ...], label: str | None
+) -> list[tuple[Cue, ...]]:
+    """Begin a log; returns the labels of each run that come while it is driven."""
+    cues = [labels_of(run.run) if label is None else () for run in drive]
+    learner.start_drive(label or label_at_start(cues[0], drive[0].run), date_of(drive))
+    return cues
+
+
+def _visited(learner: _core.MotionLearner, predictions: tuple[Predictions, ...]) -> VisitedLog:
+    bank = learner.surfaces()
+    return VisitedLog(
+        predictions,
+        "" if bank.present is None else bank.surfaces[bank.present].name,
+        tuple(_change(event) for event in learner.surface_events()),
+    )
 
 
 def summary_of(surface: _core.Surface) -> SurfaceSummary:

@@ -52,6 +52,7 @@ class ModelFacts:
     seconds: float  # of all segments learned
     segments: int
     surfaces: tuple[schema.SurfaceSection, ...] = ()  # that are remembered
+    labels: schema.LabelSection | None = None  # what labels of them were worth
 
 
 def judgement_of(learned: Learned) -> Judgement:
@@ -105,6 +106,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             held_out=judged.judgement.held_out,
         ),
         surfaces=list(facts.surfaces),
+        labels=facts.labels,
     )
 
 

@@ -22,7 +22,7 @@ from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judg
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
-from slipwise.calibration.surface_sections import surface_sections
+from slipwise.calibration.surface_sections import begin_with, label_section, surface_sections
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
@@ -232,6 +232,19 @@ class MotionLearner:
         self._name_run(name)
         self._core.start_drive(label, date)
 
+    def begin_with(self, model: Model, *, wheels: bool = False) -> None:
+        """Begin with a robot and its surfaces as a model file has them, before anything is pushed.
+
+        Args:
+            model: of the same input, learned with a memory of surfaces.
+            wheels: whether wheel speeds will come beside the commands.
+
+        Raises:
+            ModelError: the model has another input, or no memory of surfaces.
+            SettingsError: something was pushed already, or the model was learned with other bases.
+        """
+        begin_with(self._core, model, self._input, wheels=wheels)
+
     def cue_surface(self, label: str = "") -> None:
         """Say that the surface changes now: to the one of this name, or to another where it is empty."""
         self._core.cue_surface(label)
@@ -290,7 +303,8 @@ class MotionLearner:
             range=Range(speed=[slowest, fastest], yaw_rate=[right, left], slope=model.steepest),
             seconds=model.seconds,
             segments=model.segments,
-            surfaces=surface_sections(self._core, learned.kept),
+            surfaces=surface_sections(self._core, learned.kept.structure, learned.kept.motion),
+            labels=label_section(self._core),
         )
         content = model_content(learned, Judged(judgement, verdict), facts)
         return model_of(content, Log(()), ()), judgement

@@ -1,27 +1,36 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The surfaces that a learner remembers, as the model file has them."""
+"""The surfaces that a learner remembers, as the model file has them, and back."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from slipwise import _core
-from slipwise.calibration.learner import CASCADED, JOINT, LIMITS, Posterior
-from slipwise.models.schema import SurfaceSection
+from slipwise.calibration.learner import BASELINE, CASCADED, DIRECT, JOINT, LIMITS
+from slipwise.errors import ModelError, SettingsError
+from slipwise.models.model import Model
+from slipwise.models.schema import LabelSection, SurfaceBasis, SurfaceMemorySection, SurfaceSection
 
 
-def surface_sections(learner: _core.MotionLearner, kept: Posterior) -> tuple[SurfaceSection, ...]:
-    """Return the surfaces with the slip of the model that is kept.
+def surface_sections(
+    learner: _core.MotionLearner, structure: int, motion: _core.MotionModel
+) -> tuple[SurfaceSection, ...]:
+    """Return the surfaces with the slip of a model; the baseline has none.
 
-    A model without lags has too few terms to hold what is remembered, and gets none.
+    Args:
+        learner: what remembers them.
+        structure: how the model explains motion.
+        motion: the model, whose first parameters are the slip.
     """
-    if kept.structure not in (JOINT, CASCADED, LIMITS):
+    if structure == BASELINE:
         return ()
-    size = kept.motion.basis.size
     sections = []
     for surface in learner.surfaces().surfaces:
-        state = learner.on_surface(surface)
-        if state is None or len(state.estimate.mean) < size:
+        known = learner.on_surface(surface, structure)
+        if known is None:
             continue
         speed, yaw_rate = surface.speeds
+        size = motion.basis.size
         sections.append(
             SurfaceSection(
                 name=surface.name,
@@ -31,8 +40,127 @@ def surface_sections(learner: _core.MotionLearner, kept: Posterior) -> tuple[Sur
                 last_seen=surface.last_seen,
                 speed=speed,
                 yaw_rate=yaw_rate,
-                slip=state.estimate.mean[:size].tolist(),
-                covariance=state.estimate.covariance[:size, :size].tolist(),
+                slip=known.state.estimate.mean[:size].tolist(),
+                covariance=known.state.estimate.covariance[:size, :size].tolist(),
+                memory=_memory(known),
             )
         )
     return tuple(sections)
+
+
+def _memory(known: _core.SlipOnSurface) -> SurfaceMemorySection:
+    memory = known.memory
+    return SurfaceMemorySection(
+        observed=memory.observed,
+        prior_speeds=list(known.prior_speeds),
+        weights=dict(zip(memory.bases, map(float, memory.weights), strict=True)),
+        bases={
+            name: SurfaceBasis(
+                slip=slip.mean.tolist(),
+                covariance=slip.covariance.tolist(),
+                by_robot=slip.by_robot.tolist(),
+                robot=slip.robot.tolist(),
+                variance_scale=slip.noise_scale.tolist(),
+            )
+            for name, slip in zip(memory.bases, memory.slips, strict=True)
+        },
+    )
+
+
+def label_section(learner: _core.MotionLearner) -> LabelSection | None:
+    """Return what labels were worth; None where there were none."""
+    judged, right = learner.surfaces().labels
+    return LabelSection(all=judged, right=right) if judged else None
+
+
+def known_before(model: Model) -> _core.KnownBefore:
+    """Return a model and its surfaces as a learner begins with them.
+
+    Raises:
+        ModelError: the model remembers no surface, or only serves predictions on them.
+    """
+    content = model.content
+    if not content.surfaces:
+        raise ModelError(
+            "the model remembers no surfaces",
+            advice="learn it with `slipwise calibrate --memory LOG...`",
+        )
+    surfaces = []
+    for surface in content.surfaces:
+        if surface.memory is None:
+            raise ModelError(
+                f"learning cannot go on from the surface {surface.name!r}: the file has no memory of it",
+                advice="learn the logs again with `slipwise calibrate --memory LOG...`",
+            )
+        surfaces.append(_known_surface(surface, surface.memory))
+    labels = content.labels or LabelSection(all=0.0, right=0.0)
+    return _core.KnownBefore(model.posterior, structure_of(model), surfaces, (labels.all, labels.right))
+
+
+def begin_with(learner: _core.MotionLearner, model: Model, input_name: str, *, wheels: bool) -> None:
+    """Let a learner begin with the robot and the surfaces of a model file, before anything is pushed.
+
+    Args:
+        learner: which has learned nothing yet.
+        model: of the same input, learned with a memory of surfaces.
+        input_name: of the learner, "command" or "wheel".
+        wheels: whether wheel speeds will come beside commands.
+
+    Raises:
+        ModelError: the model has another input, or no memory of surfaces.
+        SettingsError: something was learned already, or the model was learned with other bases.
+    """
+    if model.content.input != input_name:
+        raise ModelError(
+            f"the model to begin with is of {model.content.input}s, and these logs are of {input_name}s",
+            advice=f"say --input {model.content.input}, where the logs have them",
+        )
+    known = known_before(model)
+    ours = {basis.name for basis in learner.settings.hypotheses.bases}
+    theirs = model.content.surfaces[0].memory
+    if theirs is not None and ours.isdisjoint(theirs.bases):
+        raise SettingsError(
+            f"the surfaces were learned with {', '.join(theirs.bases)}, not with {', '.join(sorted(ours))}",
+            where="basis",
+            advice="give the settings that they were learned with",
+        )
+    try:
+        learner.begin_with(known, model.disturbance, wheels)
+    except ValueError as problem:
+        raise SettingsError(str(problem)) from problem
+
+
+def structure_of(model: Model) -> int:
+    """Return how a model explains motion, of `learner.STRUCTURES`."""
+    content = model.content
+    if content.limits is not None:
+        return LIMITS
+    if content.response:
+        return CASCADED
+    return DIRECT if content.delays else JOINT
+
+
+def _known_surface(surface: SurfaceSection, memory: SurfaceMemorySection) -> _core.KnownSurface:
+    v, omega = memory.prior_speeds
+    slips = []
+    for basis in memory.bases.values():
+        size = len(basis.slip)
+        slips.append(
+            _core.SurfaceSlip(
+                np.array(basis.slip, dtype=np.float64),
+                np.array(basis.covariance, dtype=np.float64).reshape(size, size),
+                np.array(basis.by_robot, dtype=np.float64).reshape(size, len(basis.robot)),
+                np.array(basis.robot, dtype=np.float64),
+                (v, omega),
+                np.array(basis.variance_scale, dtype=np.float64),
+            )
+        )
+    names = list(memory.bases)
+    weights = np.array([memory.weights[name] for name in names])
+    return _core.KnownSurface(
+        surface.name,
+        (surface.seconds, surface.speed, surface.yaw_rate),
+        (surface.segments, surface.visits),
+        surface.last_seen,
+        _core.SurfaceMemory(names, slips, weights, memory.observed),
+    )

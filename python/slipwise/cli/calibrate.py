@@ -13,6 +13,7 @@ from slipwise.cli.options import (
     Estimator,
     Input,
     Json,
+    Labels,
     Logs,
     Report,
     Runs,
@@ -24,6 +25,7 @@ from slipwise.cli.options import (
 
 if TYPE_CHECKING:
     from slipwise.calibration import Calibration
+    from slipwise.cli.learn_logs import LearnedLogs, Opened
     from slipwise.cli.output import Output
     from slipwise.logs import Log, LogOptions
 
@@ -47,6 +49,15 @@ def calibrate(
             "run folder, and figures in the report. Settings: [smoothing].",
         ),
     ] = False,
+    memory: Annotated[
+        bool,
+        typer.Option(
+            "--memory",
+            help="The logs are drives of one robot in the order of time: surfaces are remembered, recalled "
+            "and kept in the model file. Learning goes on from a model file (.yaml) before them.",
+        ),
+    ] = False,
+    terrain: Labels = None,
     report: Report = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no HTML report.")] = False,
     runs: Runs = Path("runs"),
@@ -64,32 +75,32 @@ def calibrate(
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
       slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
+      slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
+      slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --terrain sand
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
-    from slipwise.calibration import calibrate as learn
     from slipwise.cli.command_line import command_line
+    from slipwise.cli.learn_logs import Asked, learn_logs, opened
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
     from slipwise.cli.tables import show_killed_runs
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.files import write_text_whole
-    from slipwise.logs import open_log
     from slipwise.reporting.session import report_calibration
 
     out = Output(json)
-    chosen = chosen_settings(settings, basis, estimator)
+    named = settings or basis or estimator
+    chosen = chosen_settings(settings, basis, estimator) if named or not memory else None
     refuse_unwritable(output, report, out.written_file, inputs=(*logs, log_options.poses, settings))
+    asked = Asked(
+        logs, log_options, input_name and input_name.value, chosen, smooth, memory, tuple(terrain or ())
+    )
     with progress_bar("reading") as update:
-        log = open_log(*logs, options=log_options)
+        given = opened(asked)
         with run_folder(runs, "calibrate") as folder:
-            calibration = learn(
-                log,
-                input=input_name and input_name.value,
-                settings=chosen,
-                smooth=smooth,
-                progress=lambda fraction: update("learning", fraction),
-            )
+            learned = learn_logs(given, lambda fraction: update("learning", fraction))
+            log, calibration, chosen = given.log, learned.calibration, learned.settings
             files = {
                 "model": calibration.model.save(folder / "model.yaml"),
                 "settings": write_settings(folder, chosen),
@@ -104,10 +115,11 @@ def calibrate(
                 )
             if output is not None:
                 files["model"] = calibration.model.save(output)
-            document = _document(log, calibration, files)
+            document = _document(log, calibration, files) | _memory_part(given, learned)
             write_text_whole(folder / "result.json", to_json(document))
             out.document(document)
     _show(out, calibration, files | {"run folder": folder})
+    _show_memory(out, given, learned)
     show_killed_runs(out, runs)
     return _exit_code(calibration)
 
@@ -127,6 +139,34 @@ def _document(log: Log, calibration: Calibration, files: dict[str, Path]) -> dic
         | calibration_part(calibration)
         | log_part(log, calibration.left_out)
     )
+
+
+def _memory_part(given: Opened, learned: LearnedLogs) -> dict[str, Any]:
+    """Return what became of surfaces; nothing where there was no memory."""
+    from dataclasses import asdict
+
+    sequence = learned.sequence
+    if sequence is None:
+        return {}
+    visited = zip(given.names, sequence.logs, strict=True)
+    return {
+        "visits": [
+            {"log": name, "surface": log.surface, "changes": [asdict(change) for change in log.changes]}
+            for name, log in visited
+        ],
+        "surfaces": [asdict(surface) for surface in sequence.surfaces],
+        "labels": dict(zip(("all", "right"), sequence.labels, strict=True)),
+    }
+
+
+def _show_memory(out: Output, given: Opened, learned: LearnedLogs) -> None:
+    from slipwise.cli.tables import show_memory_changes, show_surfaces
+
+    if learned.sequence is not None:
+        for name, log in zip(given.names, learned.sequence.logs, strict=True):
+            out.line(f"{name} ended on {log.surface or 'a surface that is open'}.")
+        show_surfaces(out, learned.sequence.surfaces)
+        show_memory_changes(out, given.names, learned.sequence)
 
 
 def _show(out: Output, calibration: Calibration, files: dict[str, Path]) -> None:

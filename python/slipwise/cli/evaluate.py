@@ -12,6 +12,7 @@ from slipwise.cli.options import (
     Basis,
     Input,
     Json,
+    Labels,
     Logs,
     Report,
     Runs,
@@ -64,9 +65,10 @@ def evaluate(
         typer.Option(
             "--memory",
             help="The logs are drives of one robot in the order of time: surfaces are remembered from one to "
-            "the next, and recalled.",
+            "the next, and recalled. --model is the model whose surfaces are known before.",
         ),
     ] = False,
+    terrain: Labels = None,
     basis: Basis = None,
     settings: SettingsFile = None,
     report: Report = None,
@@ -90,9 +92,11 @@ def evaluate(
       slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
       slipwise evaluate drive.csv --vendor-wheel-separation-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate --memory sand.csv asphalt.csv sand2.csv --predictions predictions.csv
+      slipwise evaluate --memory --model monday.yaml tuesday.csv --terrain sand
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
     from slipwise.cli.evaluation_verdict import verdict_on
+    from slipwise.cli.memory_options import refuse_labels, sequence_options
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -113,10 +117,12 @@ def evaluate(
     if memory:
         from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory
 
+        begin = sequence_options(models, terrain, logs)
         asked = MemoryQuestion(
-            logs, log_options, input_name and input_name.value, options, predictions, report
+            logs, log_options, input_name and input_name.value, options, begin, predictions, report
         )
         return evaluate_memory(out, asked, chosen, runs)
+    refuse_labels(terrain)
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         with run_folder(runs, "evaluate") as folder:

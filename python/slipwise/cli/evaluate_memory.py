@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +12,7 @@ from slipwise.cli.output import Column, Output
 
 if TYPE_CHECKING:
     from slipwise.calibration import Settings
+    from slipwise.calibration.learned_sequence import SequenceOptions
     from slipwise.evaluation import EvaluationOptions, SequenceEvaluation
     from slipwise.logs import LogOptions
 
@@ -24,6 +25,7 @@ class MemoryQuestion:
     log_options: LogOptions
     input: str | None
     options: EvaluationOptions
+    begin: SequenceOptions  # what is known before, and labels
     predictions: Path | None  # file to write
     report: Path | None = None
 
@@ -51,7 +53,7 @@ def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs
             logs,
             input=asked.input,
             settings=settings,
-            options=asked.options,
+            options=replace(asked.options, memory=asked.begin),
             progress=update,
         )
         files = {"settings": write_settings(folder, settings)}
@@ -91,9 +93,10 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
         (Column("log"), Column("surface"), *(Column(name, True) for name in columns)),
         rows,
     )
-    from slipwise.cli.tables import show_surfaces
+    from slipwise.cli.tables import show_memory_changes, show_surfaces
 
     show_surfaces(out, sequence.learned.surfaces)
+    show_memory_changes(out, sequence.names, sequence.learned)
 
 
 def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str, Any]:
@@ -110,4 +113,5 @@ def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str,
             for name, evaluation, log, visit in visited
         ],
         "surfaces": [asdict(surface) for surface in sequence.learned.surfaces],
+        "labels": dict(zip(("all", "right"), sequence.learned.labels, strict=True)),
     }

@@ -26,6 +26,7 @@ from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.show import show
 from slipwise.cli.simulate import simulate
+from slipwise.cli.surfaces import surfaces
 from slipwise.cli.terrain import terrain
 
 DEBUG = "--debug"
@@ -64,6 +65,7 @@ _COMMANDS = (
 )
 for _command, _summary in _COMMANDS:
     app.command(_command.__name__, short_help=_summary)(_command)
+app.add_typer(surfaces, name="surfaces", short_help="Join and name the surfaces that models remember.")
 app.add_typer(terrain, name="terrain", short_help="Name the surface by vibration and motor currents.")
 
 

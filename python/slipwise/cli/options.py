@@ -66,6 +66,14 @@ Folder = Annotated[
     Path | None, optional("DIR", "Write here, not into a new folder below `runs`.", "-o", "--output")
 ]
 ModelFile = Annotated[Path, typer.Argument(metavar="MODEL", show_default=False, help="A model file (.yaml).")]
+Labels = Annotated[
+    list[str] | None,
+    optional(
+        "LABEL",
+        "With --memory: the surface of all logs, or given once for each; else the column `terrain` says it.",
+        "--terrain",
+    ),
+]
 Duration = Annotated[float, typer.Option(metavar="SECONDS", help="How long to drive.")]
 Seed = Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")]
 Runs = Annotated[Path, typer.Option(metavar="DIR", help="Where run folders are kept.")]

@@ -74,5 +74,7 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
         "verdict": content.verdict.model_dump(),
         "range": content.range.model_dump(),
         "provenance": content.provenance.model_dump(),
-        "surfaces": [surface.model_dump(exclude={"slip", "covariance"}) for surface in content.surfaces],
+        "surfaces": [
+            surface.model_dump(exclude={"slip", "covariance", "memory"}) for surface in content.surfaces
+        ],
     }

@@ -16,7 +16,7 @@ from slipwise.number_text import estimate_texts, number_text
 if TYPE_CHECKING:
     from slipwise.calibration import History, Verdict
     from slipwise.calibration.identifiability import Confounded
-    from slipwise.calibration.learned_sequence import SurfaceSummary
+    from slipwise.calibration.learned_sequence import LearnedSequence, SurfaceSummary
     from slipwise.evaluation import Evaluation, Score
     from slipwise.evaluation.result import ErrorSummary
     from slipwise.logs import LeftOut
@@ -125,7 +125,7 @@ def show_killed_runs(output: Output, runs: Path) -> None:
 
 def show_surfaces(output: Output, surfaces: Sequence[SurfaceSummary | SurfaceSection]) -> None:
     """Show the surfaces that are remembered."""
-    columns = ("driven [s]", "segments", "visits", "speed [m/s]", "yaw rate [rad/s]")
+    columns = ("driven [s]", "segments", "visits", "speed [m/s]", "yaw rate [rad/s]", "last seen")
     rows = [
         (
             surface.name,
@@ -134,10 +134,26 @@ def show_surfaces(output: Output, surfaces: Sequence[SurfaceSummary | SurfaceSec
             f"{surface.visits}",
             f"{surface.speed:.2f}",
             f"{surface.yaw_rate:.2f}",
+            surface.last_seen,
         )
         for surface in surfaces
     ]
     output.table("Surfaces", (Column("name"), *(Column(name, True) for name in columns)), rows)
+
+
+def show_memory_changes(output: Output, names: Sequence[str], learned: LearnedSequence) -> None:
+    """Say which surfaces became one or were dropped, and what labels were worth."""
+    for name, log in zip(names, learned.logs, strict=True):
+        for change in log.changes:
+            if change.what == "merged":
+                output.line(
+                    f"{name}: {change.other} cannot be told apart from {change.name}, and is one with it."
+                )
+            elif change.what == "dropped":
+                output.line(f"{name}: {change.name} was dropped, as the least used of too many.")
+    judged, right = learned.labels
+    if judged:
+        output.line(f"Labels were right {right:.0f} times of {judged:.0f}.")
 
 
 def show_scores(output: Output, evaluation: Evaluation) -> None:

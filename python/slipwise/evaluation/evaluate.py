@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from slipwise.calibration.calibrate import learning_windows, refuse_empty
+from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, choose_input, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
@@ -42,6 +43,7 @@ class EvaluationOptions:
     model: Model | Mapping[str, Model] | None = None  # model files as they are: `model`, or several by name
     # What a calibration of this log with these settings predicted, by method: not learned a second time.
     made: Mapping[str, tuple[Predictions, ...]] = field(default_factory=dict)
+    memory: SequenceOptions | None = None  # what a sequence of logs begins with, and labels of them
 
     @property
     def models(self) -> dict[str, Model]:

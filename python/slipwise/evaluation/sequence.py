@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from slipwise.calibration.learned_sequence import LearnedSequence, learn_sequence
+from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
 from slipwise.calibration.prepared_run import choose_input, prepare_run
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.errors import LogError, SettingsError
@@ -76,12 +76,13 @@ def evaluate_sequence(
         logs: names and logs, in the order of time.
         input: "command" or "wheel"; without it, what the first log has.
         settings: what to learn and how.
-        options: methods and horizons.
+        options: methods, horizons, and what the memory begins with.
         progress: called with what is done, and the fraction.
 
     Raises:
         LogError: a log has no such input, no poses, or no window of any horizon.
         SettingsError: a method, a basis or a horizon is wrong, or `auto` is not among the methods.
+        ModelError: the model to begin with has another input, or no memory of surfaces.
     """
     settings, options = settings or Settings(), options or EvaluationOptions()
     methods = options.methods or ("none", REMEMBERING)
@@ -95,13 +96,15 @@ def evaluate_sequence(
         method_info(name, options.models)
     if not logs:
         raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
-    input_name = input or choose_input(logs[0][1])
+    memory = options.memory or SequenceOptions()
+    input_name = input or (memory.start.content.input if memory.start else choose_input(logs[0][1]))
     drives = [prepare_run(log, input_name) for _, log in logs]
     horizons = sorted(set(options.horizons))
     learned = learn_sequence(
         drives,
         settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE}),
         horizons,
+        options=memory,
         progress=None if progress is None else lambda done: progress("memory", done),
     )
     evaluations = []

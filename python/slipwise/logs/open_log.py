@@ -43,7 +43,7 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     if len(paths) > 1 and options.poses is not None:
         advice = "read the logs one by one, each with its own poses"
         raise SettingsError("one file of poses goes with one log", where="--poses", advice=advice)
-    return _joined([_open_one(Path(path), options) for path in paths])
+    return joined([_open_one(Path(path), options) for path in paths])
 
 
 def readable(path: Path) -> tuple[Path, bool]:
@@ -127,7 +127,8 @@ def _named(log: Log, file: Path, path: Path) -> Log:
     return replace(log, sources=tuple(replace(source, path=str(path)) for source in log.sources))
 
 
-def _joined(logs: list[Log]) -> Log:
+def joined(logs: list[Log]) -> Log:
+    """Return several logs as one; runs of the same name get that of their file."""
     if len(logs) == 1:
         return logs[0]
     names = Counter(name for log in logs for name in {run.name for run in log.runs})
@@ -146,6 +147,6 @@ def _joined(logs: list[Log]) -> Log:
 
 def _labels(logs: list[Log]) -> list[str]:
     """Return a name for each file; the file's own, numbered where it occurs twice."""
-    stems = [run_name(Path(log.sources[0].path)) for log in logs]
+    stems = [run_name(Path(log.sources[0].path)) if log.sources else "log" for log in logs]
     counted = Counter(stems)
     return [stem if counted[stem] == 1 else f"{number}-{stem}" for number, stem in enumerate(stems, start=1)]

@@ -67,8 +67,11 @@ class Model:
                 advice="calibrate again, or restore the file",
             )
         for surface in self.content.surfaces:
-            if not _is_covariance(
-                np.array(surface.covariance, dtype=np.float64).reshape(len(surface.slip), -1)
+            known = surface.memory.bases.values() if surface.memory is not None else ()
+            if not all(
+                _is_covariance(np.array(each.covariance, dtype=np.float64).reshape(len(each.slip), -1))
+                for each in (surface, *known)
+                if each.slip
             ):
                 raise ModelError(
                     f"the covariance of the surface {surface.name!r} is not symmetric and positive",
@@ -256,8 +259,9 @@ class Model:
             f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
         )
         content = self.content.model_dump(mode="json")
-        if not self.content.surfaces:
-            del content["surfaces"]
+        for key in ("surfaces", "labels"):
+            if not content[key]:
+                del content[key]
         body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
         return head + body
 

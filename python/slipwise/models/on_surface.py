@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A model on one of the surfaces that it remembers."""
+"""A model on one of the surfaces that it remembers, and their names."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import numpy as np
 
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
+from slipwise.models.schema import LONGEST_NAME, ModelFile, SurfaceSection
 
 
 def on_surface(model: Model, name: str) -> Model:
@@ -36,4 +37,38 @@ def on_surface(model: Model, name: str) -> Model:
         else parameter
         for i, parameter in enumerate(content.parameters)
     ]
-    return Model(content.model_copy(update={"parameters": parameters, "covariance": covariance.tolist()}))
+    changed = {"parameters": parameters, "covariance": covariance.tolist()}
+    return Model(content.model_copy(update=changed | _noise(content, surface)))
+
+
+def renamed(model: Model, old: str, new: str) -> Model:
+    """Return the model with another name for one of its surfaces.
+
+    Raises:
+        ModelError: there is no such surface, the new name is taken, empty or too long.
+    """
+    names = [each.name for each in model.content.surfaces]
+    if old not in names:
+        known = ", ".join(names)
+        raise ModelError(f"the model remembers no surface {old!r}", advice=f"it remembers {known or 'none'}")
+    if new in names or not new.strip() or len(new) > LONGEST_NAME:
+        what = "taken" if new in names else f"not of 1 to {LONGEST_NAME} characters"
+        raise ModelError(f"the name {new[:LONGEST_NAME]!r} is {what}", advice="give another name")
+    surfaces = [
+        each.model_copy(update={"name": new}) if each.name == old else each for each in model.content.surfaces
+    ]
+    return Model(model.content.model_copy(update={"surfaces": surfaces}))
+
+
+def _noise(content: ModelFile, surface: SurfaceSection) -> dict[str, object]:
+    """The noise of driving on the surface, and the weights of the bases there, where these are remembered."""
+    memory = surface.memory
+    if memory is None:
+        return {}
+    scales = np.array([basis.variance_scale for basis in memory.bases.values()])
+    weights = np.array([memory.weights[name] for name in memory.bases])
+    scale = (weights @ scales / weights.sum()).tolist()
+    return {
+        "noise": content.noise.model_copy(update={"variance_scale": scale}),
+        "weights": dict(memory.weights),
+    }

@@ -12,6 +12,7 @@ from slipwise.student import LEAST_DOF, MOST_DOF
 SCHEMA_VERSION = 4
 
 UNIDENTIFIABLE_RATIO = 0.5  # posterior / prior variance above which a parameter counts as not identifiable
+LONGEST_NAME = 80  # characters of the name of a surface
 LARGEST = 1e30  # of any number; nothing about a ground robot is larger in SI units
 
 
@@ -183,10 +184,51 @@ class LimitsSection(_Section):
     gain_omega: Positive  # [-]
 
 
+class SurfaceBasis(_Section):
+    """What one basis knows of a surface, given the robot: what learning goes on from."""
+
+    slip: list[Finite]  # one value per term, where the robot's parameters are `robot`
+    covariance: list[list[Finite]]  # of these, were the robot known
+    by_robot: list[list[Finite]]  # how they move with the robot's parameters
+    robot: list[Finite]
+    variance_scale: Triple  # learned factor of the variances of (x, y, yaw) [-]
+
+    @model_validator(mode="after")
+    def _shapes_fit(self) -> SurfaceBasis:
+        size = len(self.slip)
+        if len(self.covariance) != size or any(len(row) != size for row in self.covariance):
+            raise ValueError(f"covariance of a basis must have {size} rows of {size} numbers")
+        if len(self.by_robot) != size or any(len(row) != len(self.robot) for row in self.by_robot):
+            raise ValueError(f"by_robot of a basis must have {size} rows of {len(self.robot)} numbers")
+        return self
+
+
+class SurfaceMemorySection(_Section):
+    """What a learner goes on from where it comes to the surface again."""
+
+    observed: Annotated[int, Field(ge=0)]  # segments by which bases were weighted
+    prior_speeds: Annotated[list[Positive], Field(min_length=2, max_length=2)]  # of the prior [m/s, rad/s]
+    weights: dict[str, NotNegative]  # of the bases
+    bases: dict[str, SurfaceBasis]
+
+    @model_validator(mode="after")
+    def _bases_fit(self) -> SurfaceMemorySection:
+        if set(self.weights) != set(self.bases) or not sum(self.weights.values()) > 0.0:
+            raise ValueError("the memory of a surface needs a weight for each basis, not all of them 0")
+        return self
+
+
+class LabelSection(_Section):
+    """What labels of surfaces were worth."""
+
+    all: NotNegative  # labels that were judged by the surface that was then found
+    right: NotNegative
+
+
 class SurfaceSection(_Section):
     """The slip of a surface that was driven on; lags, delays and noise are those of the model."""
 
-    name: Annotated[str, Field(min_length=1, max_length=80)]
+    name: Annotated[str, Field(min_length=1, max_length=LONGEST_NAME)]
     seconds: NotNegative  # driven on it
     segments: Annotated[int, Field(ge=0)]  # learned on it
     visits: Annotated[int, Field(ge=0)]
@@ -195,6 +237,7 @@ class SurfaceSection(_Section):
     yaw_rate: NotNegative  # the same [rad/s]
     slip: list[Finite]  # one value per slip parameter, in their order
     covariance: list[list[Finite]]  # of these
+    memory: SurfaceMemorySection | None = None  # without it, the surface serves predictions alone
 
     @model_validator(mode="after")
     def _covariance_fits(self) -> SurfaceSection:
@@ -229,6 +272,7 @@ class ModelFile(_Section):
     surfaces: list[
         SurfaceSection
     ] = []  # that are remembered; the parameters are those of the last one driven
+    labels: LabelSection | None = None  # of surfaces, where somebody gave some
 
     @model_validator(mode="after")
     def _surfaces_have_this_slip(self) -> ModelFile:

@@ -16,7 +16,7 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
-from bindings.sound_arguments import of_type, other_objects, sound
+from bindings.sound_arguments import other_objects, owner_of, sound
 from bindings.stub_calls import Bound, bound_functions
 
 from slipwise import _core
@@ -64,7 +64,7 @@ def target(bound: Bound) -> Callable[..., Any]:
     kind = getattr(_core, bound.owner)
     if bound.name == "__init__":
         return kind  # type: ignore[no-any-return]
-    owner = kind if bound.name == "with_response" else of_type(bound.owner)
+    owner = kind if bound.name == "with_response" else owner_of(bound)
     return getattr(owner, bound.name)  # type: ignore[no-any-return]
 
 

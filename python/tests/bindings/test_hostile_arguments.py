@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from bindings.sound_arguments import of_type, sound
+from bindings.sound_arguments import of_type, owner_of, sound
 from bindings.stub_calls import bound_functions
 
 from slipwise import _core
@@ -66,7 +66,7 @@ def test_every_binding_works_with_its_sound_arguments(number: int) -> None:
     if bound.name == "__init__":
         getattr(_core, bound.owner)(*given)
     elif bound.owner:
-        getattr(of_type(bound.owner), bound.name)(*given)
+        getattr(owner_of(bound), bound.name)(*given)
     else:
         getattr(_core, bound.name)(*given)
 

@@ -110,6 +110,9 @@ DESTROYING = (
     "evaluate drive.csv --poses p.csv --json p.csv",
     "compare m.yaml other.yaml --json other.yaml",
     "compare m.yaml other.yaml drive.csv --json drive.csv",
+    "surfaces list m.yaml --json m.yaml",
+    "surfaces rename m.yaml a b -o m.yaml",
+    "surfaces merge m.yaml other.yaml -o other.yaml",
     "plan --model m.yaml --map map.yaml --json m.yaml",
     "plan --model m.yaml --map map.yaml --json map.yaml",
     "plan --model m.yaml --map map.yaml -o map",
@@ -151,7 +154,7 @@ def test_every_path_that_a_command_takes_is_known_here() -> None:
         commands += [(f"{group.name} ", command) for command in group.typer_instance.registered_commands]
     for before, command in commands:
         assert command.callback is not None
-        name = before + command.callback.__name__
+        name = before + (command.name or command.callback.__name__)
         signature = inspect.signature(command.callback, eval_str=True)
         paths = {name for name, parameter in signature.parameters.items() if "Path" in str(parameter)}
         assert paths <= READ | WRITTEN, name

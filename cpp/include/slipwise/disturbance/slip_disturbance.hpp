@@ -87,6 +87,8 @@ class DisturbanceFilter {
                               const std::array<double, 2>& span) const;
 
   const DisturbanceModel& law() const { return law_; }
+  /// Begins with the weights of a law that was learned before; nothing changes where its candidates are others.
+  void begin_with(const DisturbanceModel& law);
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -44,6 +44,8 @@ class CausalFilter {
   /// Goes on with the slip of a surface; what is the robot's stays as learned. `drift` of its prior variance is added:
   /// no surface is quite as it was.
   void go_on_with(const SurfaceSlip& surface, double drift);
+  /// The robot is as it was learned before: `robot` are the parameters after those of slip.
+  void know_robot(const Estimate& robot);
   /// The prior of a surface that was never driven, from those that were (derivations/surface-memory.md).
   SurfaceSlip new_surface(std::span<const SurfaceSlip> known) const;
   const ReferenceSpeeds& speeds() const { return speeds_; }
@@ -55,6 +57,10 @@ class CausalFilter {
   Estimate reported() const;
   /// Standard deviations of the prior now in force, [parameters].
   Eigen::VectorXd prior_std() const;
+  /// Of slip, [slip], at other speeds.
+  Eigen::VectorXd slip_std_at(const ReferenceSpeeds& speeds) const {
+    return slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
+  }
   /// Learned factor of the noise variances of (x, y, theta).
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
   const NoiseSettings& noise() const { return settings_.noise; }

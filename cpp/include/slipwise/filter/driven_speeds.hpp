@@ -13,6 +13,8 @@ class DrivenSpeeds {
  public:
   /// Adds the inputs of one segment.
   void see(const InputHistory& inputs, const Segment& segment);
+  /// Begins with what was driven before, at speeds about these for so many `seconds`.
+  void begin_with(const ReferenceSpeeds& speeds, double seconds);
   /// The 90th percentiles so far, at least 0.05.
   ReferenceSpeeds reference() const;
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <utility>
 
 #include "slipwise/segment/segment_covariance.hpp"
 
@@ -26,6 +27,9 @@ struct NoiseSettings {
 class NoiseScale {
  public:
   explicit NoiseScale(const NoiseSettings& settings = {}) : settings_(settings) {}
+  /// As it was learned before; it follows the next residuals as fast as those of the first segments.
+  NoiseScale(const NoiseSettings& settings, Eigen::Vector3d value)
+      : settings_(settings), value_(std::move(value)), segments_(settings.prior_segments) {}
 
   /// Learned factor of the noise variances of (x, y, theta).
   const Eigen::Vector3d& value() const { return value_; }

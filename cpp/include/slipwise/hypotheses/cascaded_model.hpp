@@ -38,6 +38,9 @@ class CascadedModel {
   bool refit_slice() { return actuator_.refit_slice() || slip_.refit_slice(); }
   /// Learns the actuator model from commands and wheel speeds.
   void learn_actuator(const WheelSegment& segment);
+  /// Begins with an actuator that was learned before.
+  void begin_with(const Estimate& actuator, const CausalFilterSettings& settings);
+  const MotionModel& actuator_model() const { return actuator_.model(); }
   /// Predicts a segment of the commands by what was known when `refresh` was called last.
   ScoredSegment predict(const DrivenSegment& segment);
   /// Joins what is known of slip and actuator.

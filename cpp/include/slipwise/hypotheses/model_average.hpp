@@ -32,7 +32,7 @@ struct AverageState {
   Eigen::VectorXd prior_std;
   /// Posterior / prior variance per parameter over the models that have it; 1: nothing learned, more: they disagree.
   Eigen::VectorXd variance_ratio;
-  Eigen::Vector3d noise_scale;
+  Eigen::Vector3d noise_scale = Eigen::Vector3d::Zero();
   Eigen::VectorXd weights;  ///< one per model, they sum to 1
 };
 
@@ -72,6 +72,8 @@ class ModelAverage {
   /// the mixture until one is taken. What was known of the present surface before `since` is kept as `parting`.
   void open_trial(const std::vector<SurfaceCandidate>& candidates, std::span<const SurfaceMemory> known,
                   const DisturbanceModel& law, double since);
+  /// Somebody says which candidates are likelier: log factors of their odds, which count from now on.
+  void weigh_trial(const Eigen::VectorXd& log_factors);
   /// What competes now; nothing where one surface is driven on.
   const std::optional<SurfaceTrial>& trial() const { return trial_; }
   /// Takes one of the candidates: learning goes on from its posterior.
@@ -92,6 +94,14 @@ class ModelAverage {
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
   /// What is known where a surface is driven on.
   AverageState state_on(const SurfaceMemory& surface) const;
+  /// The memory of all bases from one of some: of the others, what is known now is remembered. `same_robot` says
+  /// whether it goes with the parameters of this robot, as this average has them.
+  /// \throws std::invalid_argument when a basis has another number of terms there.
+  SurfaceMemory completed(const NamedMemory& some, bool same_robot) const;
+  /// Begins with a robot that was learned before: those of its parameters that `known` has, a model's posterior.
+  void know_robot(const MotionModel& known_model, const Estimate& known);
+  /// Begins on a surface that is remembered, as if it had just been left after so many `seconds` of driving.
+  void begin_on(const SurfaceMemory& surface, double seconds, double segment_length);
 
   const MotionModel& model() const { return model_; }
   AverageState state() const;

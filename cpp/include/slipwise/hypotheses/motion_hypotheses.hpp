@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "slipwise/filter/motion_posterior.hpp"
@@ -35,6 +36,26 @@ struct HypothesisSettings {
 
   /// Whether more than one structure may come to be tried.
   bool several() const { return baseline || (dynamics && (cascaded || direct)); }
+};
+
+/// Slip of a surface in the terms of one structure.
+struct SlipOnSurface {
+  AverageState state;            ///< of the average of all bases
+  NamedMemory memory;            ///< of each
+  ReferenceSpeeds prior_speeds;  ///< of the prior under which it was learned
+};
+
+/// A surface that another learner knew.
+struct KnownSurface {
+  Surface facts;  ///< its memories are not used
+  NamedMemory memory;
+};
+
+/// What a learner begins with: the model, surfaces and labels of another one.
+struct KnownBefore {
+  MotionPosterior model;
+  std::vector<KnownSurface> surfaces;
+  LabelCounts labels;
 };
 
 /// How one structure took a segment in.
@@ -78,8 +99,14 @@ class MotionHypotheses {
   SurfaceBank surfaces_now(const DisturbanceModel& law) const;
   const SurfaceBank& bank() const { return bank_; }
   std::vector<SurfaceEvent> take_surface_events() { return bank_.take_events(); }
-  /// What the average that knows surfaces best says where one of them is driven on; nothing where it has no memory.
-  std::optional<AverageState> on_surface(const Surface& surface) const;
+  /// What is known of a surface in the terms of a structure; nothing where it has no memory.
+  std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
+  /// Begins with what another learner knew, before anything is learned. `wheels_known` says whether wheel speeds come
+  /// beside the commands.
+  /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.
+  void begin_with(const KnownBefore& known, double segment_length, bool wheels_known);
+  /// Takes in what another learner of the same robot remembers (`SurfaceBank::add`).
+  std::vector<std::string> add_surfaces(const DisturbanceModel& law, const KnownBefore& other);
 
   /// What the heaviest structure knows.
   std::shared_ptr<const MotionPosterior> posterior() const;
@@ -100,7 +127,7 @@ class MotionHypotheses {
     a(self.settings_, self.joint_, self.direct_, self.direct_bases_, self.cascaded_, self.baseline_, self.tried_,
       self.weights_);
     a(self.evidence_, self.updates_, self.count_, self.segment_, self.to_predict_, self.predicted_, self.averaging_);
-    a(self.bank_);
+    a(self.bank_, self.begun_with_);
   }
 
  private:
@@ -113,6 +140,9 @@ class MotionHypotheses {
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);
+  void favour(Structure structure);
+  std::array<const ModelAverage*, kAverages> all_averages() const;
+  Surface completed(const KnownSurface& known, std::size_t place) const;
   void update_weights();
   void drop_refuted();
   std::vector<Structure> structures() const;
@@ -134,6 +164,7 @@ class MotionHypotheses {
   std::vector<ScoredSegment> predicted_;  ///< so far
   bool averaging_ = false;                ///< an average is learning it
   SurfaceBank bank_;
+  std::optional<Structure> begun_with_;  ///< which was the best before
 };
 
 }  // namespace slipwise

@@ -46,6 +46,12 @@ struct SurfaceEvent {
   int segments = 0;          ///< that spoke before it was taken
 };
 
+/// How often labels named the surface that was then taken.
+struct LabelCounts {
+  double all = 0.0;
+  double right = 0.0;
+};
+
 /// Recalls a surface where it comes back, and opens another where none of those known fits
 /// (derivations/surface-memory.md).
 class SurfaceBank {
@@ -70,8 +76,15 @@ class SurfaceBank {
   std::optional<std::size_t> present() const { return present_; }
   /// What happened since the last call.
   std::vector<SurfaceEvent> take_events();
-  /// How often labels were right: (right + 9) / (all + 10).
-  double label_reliability() const { return (right_labels_ + 9.0) / (labels_ + 10.0); }
+  /// How often labels are right: the mean of a Beta distribution that began with 9 of 10.
+  double label_reliability() const { return (labels_.right + 9.0) / (labels_.all + 10.0); }
+  const LabelCounts& labels() const { return labels_; }
+  /// Begins with surfaces that were learned before.
+  void know(std::vector<Surface> surfaces, const LabelCounts& labels);
+  /// Takes in surfaces of another memory of the same robot. One that cannot be told apart from one that is known
+  /// becomes one with it; one whose name is taken gets a number. Returns their names here.
+  std::vector<std::string> add(const Averages& averages, const DisturbanceModel& law, std::vector<Surface> others,
+                               std::size_t leader);
   const SurfaceSettings& settings() const { return settings_; }
 
   /// Names what is saved.
@@ -79,7 +92,7 @@ class SurfaceBank {
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.surfaces_, self.present_, self.seconds_, self.segments_, self.speeds_, self.clock_,
       self.date_);
-    a(self.events_, self.label_, self.labels_, self.right_labels_, self.named_, self.leader_);
+    a(self.events_, self.label_, self.wanted_, self.labels_, self.named_, self.leader_);
   }
 
  private:
@@ -87,7 +100,9 @@ class SurfaceBank {
             double since);
   std::vector<SurfaceCandidate> candidates_of_start() const;
   std::vector<SurfaceCandidate> candidates_of_change() const;
-  void trust_label(std::vector<SurfaceCandidate>& candidates) const;
+  Eigen::ArrayXd label_factors(const std::vector<SurfaceCandidate>& candidates) const;
+  void weigh_by_label(std::vector<SurfaceCandidate>& candidates) const;
+  std::string judge_label(const SurfaceCandidate& candidate, const std::string& recalled);
   bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
   void leave_present(const Averages& averages, const DisturbanceModel& law);
   void take(const SurfaceCandidate& candidate, const std::string& recalled, double probability, int segments);
@@ -96,6 +111,9 @@ class SurfaceBank {
   void merge_confounded(const Averages& averages, const DisturbanceModel& law, std::size_t place);
   void merge(std::size_t older_place, std::size_t newer_place);
   void drop(std::size_t place);
+  void drop_least_used(std::size_t most);
+  bool taken(const std::string& name) const;
+  static bool numbered(const std::string& name);  // whether nobody named it
   std::string new_name();
 
   SurfaceSettings settings_;
@@ -107,9 +125,9 @@ class SurfaceBank {
   std::size_t clock_ = 0;     ///< surfaces taken so far
   std::string date_;
   std::vector<SurfaceEvent> events_;
-  std::string label_;  ///< that speaks in the trial
-  double labels_ = 0.0;
-  double right_labels_ = 0.0;
+  std::string label_;   ///< that speaks in the trial
+  std::string wanted_;  ///< name of the surface that has no entry yet
+  LabelCounts labels_;
   std::size_t named_ = 0;   ///< surfaces that got a number for a name
   std::size_t leader_ = 0;  ///< average that decides
 };

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "slipwise/filter/surface_slip.hpp"
@@ -31,6 +32,12 @@ struct SurfaceMemory {
   std::vector<SurfaceSlip> slips;  ///< per basis
   Eigen::VectorXd weights;         ///< of the bases
   std::size_t observed = 0;        ///< segments weighted by
+};
+
+/// A memory whose bases are named, as a model file has it.
+struct NamedMemory {
+  std::vector<std::string> bases;  ///< one per slip of the memory
+  SurfaceMemory memory;
 };
 
 /// What the surface under the robot may be.

@@ -28,6 +28,9 @@ class ActuatorFilter {
   /// begins before they are all learned.
   explicit ActuatorFilter(const CausalFilterSettings& settings, std::size_t waiting = 0);
 
+  /// Begins with what was learned before, in the parameters of `model`.
+  void begin_with(const Estimate& known, const CausalFilterSettings& settings);
+
   /// Learns the wheel speeds from `start` to `end` [s], in input stamps. Nothing later is used.
   /// \throws std::invalid_argument when the end is not after the start.
   /// After 3, 4, 5, 7, ... 256 windows a refit of all of them begins, which takes effect a thirty-second as many

@@ -135,8 +135,18 @@ class MotionLearner {
   SurfaceBank surfaces() const;
   /// What happened to them since the last call.
   std::vector<SurfaceEvent> surface_events() { return hypotheses_.take_surface_events(); }
-  /// Parameters of the slip, and their covariance, on a surface of `surfaces()`; nothing where it has no memory.
-  std::optional<AverageState> on_surface(const Surface& surface) const { return hypotheses_.on_surface(surface); }
+  /// Slip on a surface of `surfaces()` in the terms of a structure; nothing where it has no memory.
+  std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const {
+    return hypotheses_.on_surface(surface, structure);
+  }
+  /// Begins with what another learner knew: its robot, its slip disturbance `law` and the surfaces it remembers. How
+  /// large errors are is learned again. `wheels` says whether wheel speeds will come beside the commands.
+  /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.
+  void begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels);
+  /// Takes in the surfaces of another learner of the same robot; returns their names here. Those that cannot be told
+  /// apart from one that is known are merged with it (`surface_events`).
+  /// \throws std::invalid_argument when the terms are not those that are learned.
+  std::vector<std::string> add_surfaces(const KnownBefore& other);
 
   const LearnerSettings& settings() const { return settings_; }
   /// All of it as bytes, from which `load` makes a learner that goes on to the same results.

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learning goes on from what another learner knew: its robot and its surfaces (derivations/surface-memory.md).
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/linear/present.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::size_t kJoint = 0;
+constexpr std::size_t kDirect = 1;
+constexpr std::size_t kCascaded = 2;
+constexpr double kFavoured = 0.9;  // weight of the structure that was the best before
+
+std::size_t place_of(const MotionPosterior& model) {
+  if (model.structure == Structure::Direct) {
+    return kDirect;
+  }
+  return model.model.learned().response ? kCascaded : kJoint;
+}
+
+/// Those of its parameters after slip that a model knows by name; others keep what `robot` has.
+Estimate known_by_name(const std::vector<ParameterInfo>& names, Estimate robot, const MotionModel& from,
+                       const Estimate& known) {
+  const std::vector<ParameterInfo> theirs = from.parameters();
+  std::vector<Eigen::Index> here;
+  std::vector<Eigen::Index> there;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto found = std::ranges::find(theirs, names[i].name, &ParameterInfo::name);
+    if (found != theirs.end()) {
+      here.push_back(static_cast<Eigen::Index>(i));
+      there.push_back(found - theirs.begin());
+    }
+  }
+  robot.mean(here) = known.mean(there);
+  robot.covariance(here, Eigen::all).setZero();
+  robot.covariance(Eigen::all, here).setZero();
+  robot.covariance(here, here) = known.covariance(there, there);
+  return robot;
+}
+
+std::vector<ParameterInfo> after_slip(const MotionModel& model) {
+  std::vector<ParameterInfo> names = model.parameters();
+  names.erase(names.begin(), names.begin() + model.slip_size());
+  return names;
+}
+
+/// Segments at steady speeds, by which surfaces are compared before any was driven.
+std::vector<std::pair<InputHistory, Segment>> steady_segments(const ReferenceSpeeds& speeds, double seconds) {
+  std::vector<std::pair<InputHistory, Segment>> all;
+  for (const double v : {0.5, 1.0}) {
+    for (const double omega : {-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const BodyTwist twist{.v = v * speeds.v, .vy = 0.0, .omega = omega * speeds.omega};
+      const Pose2 end = exp(Eigen::Vector3d(twist.v * seconds, 0.0, twist.omega * seconds));
+      all.emplace_back(InputHistory({-1.0}, {twist}), Segment{.start = 0.0, .end = seconds, .measured = end});
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+SurfaceMemory ModelAverage::completed(const NamedMemory& some, bool same_robot) const {
+  SurfaceMemory all = remember();
+  all.observed = some.memory.observed;
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(prior_.size());
+  for (std::size_t i = 0; i < all.slips.size(); ++i) {
+    const auto named = std::ranges::find(some.bases, filters_[i].model().basis().name());
+    if (named == some.bases.end()) {
+      continue;
+    }
+    const auto place = static_cast<std::size_t>(named - some.bases.begin());
+    SurfaceSlip slip = some.memory.slips.at(place);
+    const SurfaceSlip& own = all.slips[i];
+    if (slip.mean.size() != own.mean.size()) {
+      throw std::invalid_argument("a surface has " + std::to_string(slip.mean.size()) + " terms of the basis '" +
+                                  *named + "' where there are " + std::to_string(own.mean.size()) +
+                                  ": give the settings that it was learned with");
+    }
+    if (!same_robot || slip.robot.size() != own.robot.size()) {
+      slip.robot = own.robot;
+      slip.by_robot = Eigen::MatrixXd::Zero(own.by_robot.rows(), own.by_robot.cols());
+    }
+    slip.prior_std = filters_[i].slip_std_at(slip.speeds);
+    slip.noise_scale = NoiseScale(filters_[i].noise(), slip.noise_scale.value());
+    weights[static_cast<Eigen::Index>(i)] = some.memory.weights[static_cast<Eigen::Index>(place)];
+    all.slips[i] = std::move(slip);
+  }
+  all.weights = weights.sum() > 0.0 ? Eigen::VectorXd(weights / weights.sum()) : prior_;
+  return all;
+}
+
+void ModelAverage::know_robot(const MotionModel& known_model, const Estimate& known) {
+  const std::vector<ParameterInfo> names = after_slip(model_);
+  const auto size = std::ssize(names);
+  for (CausalFilter& filter : filters_) {
+    const Estimate& now = filter.estimate();
+    filter.know_robot(
+        known_by_name(names, {now.mean.tail(size), now.covariance.bottomRightCorner(size, size)}, known_model, known));
+  }
+}
+
+void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds, double segment_length) {
+  filters_ = filters_on(surface, 0.0);
+  weights_ = surface.weights;
+  observed_ = surface.observed;
+  const ReferenceSpeeds speeds = surface.slips.back().speeds;
+  speeds_.begin_with(speeds, seconds);
+  for (auto& [inputs, segment] : steady_segments(speeds, segment_length)) {
+    probes_.push_back({inputs, segment, {}, {}});
+  }
+}
+
+std::array<const ModelAverage*, kAverages> MotionHypotheses::all_averages() const {
+  return {&joint_, direct_ ? &*direct_ : nullptr, cascaded_ ? &cascaded_->slip() : nullptr};
+}
+
+/// What one structure remembers is what the others begin with: the slip is the same.
+Surface MotionHypotheses::completed(const KnownSurface& known, std::size_t place) const {
+  Surface surface = known.facts;
+  const auto averages = all_averages();
+  for (std::size_t i = 0; i < kAverages; ++i) {
+    surface.memories[i].reset();
+    if (averages[i] != nullptr) {
+      surface.memories[i] = averages[i]->completed(known.memory, i == place);
+    }
+  }
+  return surface;
+}
+
+void MotionHypotheses::favour(Structure structure) {
+  const double others = 1.0 - weight(structure);
+  for (const Structure each : structures()) {
+    weights_[static_cast<std::size_t>(each)] *= others > 0.0 ? (1.0 - kFavoured) / others : 1.0;
+    evidence_[static_cast<std::size_t>(each)] = 0.0;
+  }
+  weights_[static_cast<std::size_t>(structure)] = others > 0.0 ? kFavoured : 1.0;
+  evidence_[static_cast<std::size_t>(structure)] = std::log(kFavoured / (1.0 - kFavoured));
+}
+
+/// Lags behind limits of the drive are not those that are learned without: of such a model, these begin again.
+void MotionHypotheses::begin_with(const KnownBefore& known, double segment_length, bool wheels_known) {
+  const MotionPosterior& model = known.model;
+  const std::size_t place = place_of(model);
+  std::array<ModelAverage*, kAverages> averages{&joint_, direct_ ? &*direct_ : nullptr,
+                                                cascaded_ ? &cascaded_->slip() : nullptr};
+  if (count_ > 0 || known.surfaces.empty()) {
+    throw std::invalid_argument("a learner begins with surfaces before it has learned anything");
+  }
+  if (averages[place] == nullptr) {
+    throw std::invalid_argument("the surfaces were learned by a structure that is not tried");
+  }
+  if (cascaded_ && wheels_known && !tried(Structure::Cascaded)) {
+    join_cascade();
+  }
+  const bool limited = model.structure == Structure::Limited;
+  if (!limited) {
+    averages[place]->know_robot(model.model, model.estimate);
+  }
+  if (place == kCascaded && !limited && cascaded_) {
+    const std::vector<ParameterInfo> names = cascaded_->actuator_model().parameters();
+    cascaded_->begin_with(
+        known_by_name(names,
+                      prior_estimate(cascaded_->actuator_model(), {.v = 1.0, .omega = 1.0}, settings_.filter.prior),
+                      model.model, model.estimate),
+        settings_.filter);
+  }
+  std::vector<Surface> surfaces;
+  std::ranges::transform(known.surfaces, std::back_inserter(surfaces),
+                         [&](const KnownSurface& each) { return completed(each, place); });
+  double seconds = 0.0;
+  std::ranges::for_each(surfaces, [&](const Surface& each) { seconds += each.seconds; });
+  for (std::size_t i = 0; i < kAverages; ++i) {
+    if (averages[i] != nullptr) {
+      averages[i]->begin_on(slipwise::present(surfaces.back().memories[i]), seconds, segment_length);
+    }
+  }
+  if (cascaded_) {
+    cascaded_->refresh();
+  }
+  bank_.know(std::move(surfaces), known.labels);
+  constexpr std::array kOwn{Structure::Joint, Structure::Direct, Structure::Cascaded};
+  begun_with_ = kOwn[place];
+  if (tried(kOwn[place])) {
+    favour(kOwn[place]);
+  }
+}
+
+std::vector<std::string> MotionHypotheses::add_surfaces(const DisturbanceModel& law, const KnownBefore& other) {
+  const std::size_t place = place_of(other.model);
+  std::vector<Surface> surfaces;
+  std::ranges::transform(other.surfaces, std::back_inserter(surfaces),
+                         [&](const KnownSurface& each) { return completed(each, place); });
+  return bank_.add(averages(), law, std::move(surfaces), leader());
+}
+
+std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface, Structure structure) const {
+  constexpr std::array kPlaces{kJoint, kCascaded, kJoint, kDirect, kJoint};
+  std::size_t place = kPlaces[static_cast<std::size_t>(structure)];
+  if (structure == Structure::Limited && cascaded_ && tried(Structure::Cascaded)) {
+    place = kCascaded;  // what is behind limits is what the cascade learns, where there is one
+  }
+  const ModelAverage* average = all_averages()[place];
+  const auto& memory = surface.memories[place];
+  if (average == nullptr || !memory || structure == Structure::Baseline) {
+    return std::nullopt;
+  }
+  const SurfaceMemory own = average->remember();
+  const auto same_size = [](const SurfaceSlip& a, const SurfaceSlip& b) {
+    return a.mean.size() == b.mean.size() && a.robot.size() == b.robot.size();
+  };
+  if (!std::ranges::equal(own.slips, memory->slips, same_size)) {
+    throw std::invalid_argument("the surface is of a learner with other terms");
+  }
+  SlipOnSurface found{
+      .state = average->state_on(*memory), .memory = {.bases = {}, .memory = *memory}, .prior_speeds = {}};
+  for (std::size_t i = 0; i < memory->slips.size(); ++i) {
+    found.memory.bases.push_back(place == kDirect ? settings_.bases[static_cast<std::size_t>(direct_bases_[i])].name()
+                                                  : settings_.bases[i].name());
+  }
+  found.prior_speeds = memory->slips.back().speeds;
+  return found;
+}
+
+}  // namespace slipwise

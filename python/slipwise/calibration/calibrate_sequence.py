@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: Apache-2.0
+"""From a sequence of logs to a model that remembers the surfaces they were driven on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from slipwise.calibration.calibrate import (
+    JUDGING_HORIZONS,
+    found_contradictions,
+    judged_content,
+    learned_by,
+    learning_windows,
+    model_of,
+    refuse_empty,
+)
+from slipwise.calibration.learned_log import Keep, LearnedLog
+from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
+from slipwise.calibration.learner import Progress
+from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run
+from slipwise.calibration.result import Calibration
+from slipwise.calibration.settings import AVERAGE, Settings, make_settings
+from slipwise.calibration.surface_sections import label_section, surface_sections
+from slipwise.errors import LogError, SettingsError
+from slipwise.logs.log import Log
+from slipwise.logs.open_log import joined
+from slipwise.models import schema
+from slipwise.models.model import Model
+
+_NOTHING = SequenceOptions()
+
+
+def calibrate_sequence(
+    logs: Sequence[Log],
+    *,
+    input: str | None = None,
+    settings: Settings | None = None,
+    options: SequenceOptions = _NOTHING,
+    progress: Progress | None = None,
+) -> tuple[Calibration, LearnedSequence]:
+    """Learn the motion model of a robot from logs one after the other, remembering surfaces.
+
+    Its parameters are those of the surface that the last log ended on. The verdict is on the predictions of
+    all logs.
+
+    Args:
+        logs: what `open_log` returned of each, in the order of time.
+        input: "command" or "wheel"; without it that of the model to begin with, or what the first log has.
+        settings: what to learn and how; without them those of the model to begin with, or the defaults.
+        options: the model to begin with, and labels.
+        progress: called with the fraction done, 0 to 1.
+
+    Raises:
+        LogError: a log has no such input or no poses, all have no window to learn from, or no model holds it.
+        SettingsError: a basis is unknown, or the estimator has no memory.
+        ModelError: the model to begin with has another input, or no memory of surfaces.
+    """
+    if not logs:
+        raise LogError("a sequence needs a log", where="--memory", advice="give logs in the order of time")
+    start = options.start
+    settings = settings or (Settings() if start is None else settings_of(start))
+    if settings.estimator != AVERAGE:
+        raise SettingsError(
+            f"only the estimator {AVERAGE!r} has a memory of surfaces",
+            where="--memory",
+            advice="leave --estimator or --memory away",
+        )
+    input_name = input or (start.content.input if start is not None else choose_input(logs[0]))
+    log = joined(list(logs))
+    drives = _drives(logs, input_name)
+    windows = learning_windows(tuple(run for drive in drives for run in drive), input_name, settings)
+    refuse_empty(windows, log)
+    keep = Keep(settings.vehicle.wheel_separation)
+    sequence = learn_sequence(
+        drives, settings, JUDGING_HORIZONS, options=replace(options, keep=keep), progress=progress
+    )
+    assert sequence.learned is not None  # it was asked to be kept
+    learned = learned_by(sequence.learned)
+    found = found_contradictions(log, input_name, settings)
+    judged, content = judged_content(learned, windows, (log, input_name, settings), found)
+    model = model_of(_with_memory(content, sequence, sequence.learned, start), log, found)
+    calibration = Calibration(
+        model,
+        judged.verdict,
+        learned.history,
+        log.left_out + windows.left_out,
+        log.notes,
+        None,
+        learned.predictions,
+    )
+    return calibration, sequence
+
+
+def settings_of(model: Model) -> Settings:
+    """Return the settings that a model was learned with."""
+    return make_settings(model.content.provenance.settings, where="settings in the model file")
+
+
+def _drives(logs: Sequence[Log], input_name: str) -> list[tuple[PreparedRun, ...]]:
+    """Prepare each log; runs are counted over all of them."""
+    drives, before = [], 0
+    for log in logs:
+        drives.append(tuple(replace(run, index=run.index + before) for run in prepare_run(log, input_name)))
+        before += len(log.runs)
+    return drives
+
+
+def _with_memory(
+    content: schema.ModelFile, sequence: LearnedSequence, learned: LearnedLog, start: Model | None
+) -> schema.ModelFile:
+    """Add surfaces and labels, and what the model that was begun with was learned from."""
+    kept = learned.kept
+    memory: dict[str, object] = {
+        "surfaces": list(surface_sections(sequence.learner, kept.structure, kept.motion)),
+        "labels": label_section(sequence.learner),
+    }
+    if start is None:
+        return content.model_copy(update=memory)
+    before, now = start.content.provenance, content.provenance
+    memory["provenance"] = now.model_copy(
+        update={
+            "logs": [*before.logs, *(log for log in now.logs if log not in before.logs)],
+            "learned_seconds": before.learned_seconds + now.learned_seconds,
+            "learned_segments": before.learned_segments + now.learned_segments,
+        }
+    )
+    memory["range"] = _wider(start.content.range, content.range)
+    return content.model_copy(update=memory)
+
+
+def _wider(a: schema.Range, b: schema.Range) -> schema.Range:
+    return schema.Range(
+        speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
+        yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
+        slope=max(a.slope, b.slope),
+    )

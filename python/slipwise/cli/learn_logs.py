@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The logs of `slipwise calibrate`, opened and learned: all together, or in turn with surfaces remembered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from slipwise.calibration import Calibration, Settings
+    from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions
+    from slipwise.logs import Log, LogOptions
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is to be learned, and how."""
+
+    paths: Sequence[Path]  # logs, and a model to go on from
+    log_options: LogOptions
+    input: str | None
+    settings: Settings | None  # None: those of the model to go on from, or the defaults
+    smooth: bool
+    memory: bool  # of surfaces
+    labels: Sequence[str]
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """The logs that were asked for."""
+
+    asked: Asked
+    logs: tuple[Log, ...]
+    names: tuple[str, ...]  # of their files
+    log: Log  # all of them together
+    begin: SequenceOptions | None  # what a memory begins with; None without one
+
+
+@dataclass(frozen=True, eq=False)
+class LearnedLogs:
+    """What was learned."""
+
+    calibration: Calibration
+    settings: Settings
+    sequence: LearnedSequence | None  # where surfaces were remembered
+
+
+def opened(asked: Asked) -> Opened:
+    """Read the logs.
+
+    Raises:
+        LogError: a log cannot be read.
+        SettingsError: options contradict each other.
+        ModelError: the model to go on from cannot be read.
+    """
+    from slipwise.cli.memory_options import refuse_labels, sequence_options, split_model
+    from slipwise.errors import SettingsError
+    from slipwise.logs import open_log
+    from slipwise.logs.open_log import joined
+
+    if not asked.memory:
+        refuse_labels(asked.labels)
+        return Opened(asked, (), (), open_log(*asked.paths, options=asked.log_options), None)
+    if asked.smooth:
+        raise SettingsError(
+            "smoothing is over one surface", where="--smooth", advice="leave --smooth or --memory away"
+        )
+    models, paths = split_model(asked.paths)
+    begin = sequence_options(models, asked.labels, paths)
+    logs = tuple(open_log(path, options=asked.log_options) for path in paths)
+    return Opened(asked, logs, tuple(path.name for path in paths), joined(list(logs)), begin)
+
+
+def learn_logs(given: Opened, progress: Callable[[float], None]) -> LearnedLogs:
+    """Learn the logs.
+
+    Raises:
+        LogError: there is nothing to learn from, or no model holds it.
+        SettingsError: a basis is unknown, or the estimator has no memory of surfaces.
+        ModelError: learning cannot go on from the model.
+    """
+    from slipwise.calibration import Settings, calibrate
+    from slipwise.calibration.calibrate_sequence import calibrate_sequence, settings_of
+
+    asked = given.asked
+    if given.begin is None:
+        settings = asked.settings or Settings()
+        calibration = calibrate(
+            given.log, input=asked.input, settings=settings, smooth=asked.smooth, progress=progress
+        )
+        return LearnedLogs(calibration, settings, None)
+    start = given.begin.start
+    settings = asked.settings or (Settings() if start is None else settings_of(start))
+    calibration, sequence = calibrate_sequence(
+        given.logs, input=asked.input, settings=settings, options=given.begin, progress=progress
+    )
+    return LearnedLogs(calibration, settings, sequence)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What commands with `--memory` begin with: a model file among the logs, and labels of surfaces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from slipwise.calibration.learned_sequence import SequenceOptions
+
+MODEL_ENDINGS = (".yaml", ".yml")
+
+
+def split_model(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:
+    """Return the model files among what was given, and the logs."""
+    models = [path for path in paths if path.suffix.lower() in MODEL_ENDINGS]
+    return models, [path for path in paths if path not in models]
+
+
+def sequence_options(
+    models: Sequence[Path], labels: Sequence[str] | None, logs: Sequence[Path]
+) -> SequenceOptions:
+    """Return what a sequence begins with.
+
+    Raises:
+        SettingsError: there are several models or no logs, or labels that do not go with the logs.
+        ModelError: the model cannot be read.
+    """
+    from slipwise.calibration.learned_sequence import SequenceOptions
+    from slipwise.calibration.surface_labels import given_labels
+    from slipwise.errors import SettingsError
+    from slipwise.models import load_model
+
+    if len(models) > 1:
+        raise SettingsError(
+            "learning goes on from one model",
+            where=str(models[1]),
+            advice="join their surfaces first: slipwise surfaces merge A.yaml B.yaml -o C.yaml",
+        )
+    if not logs:
+        raise SettingsError("no log was given", where="--memory", advice="give logs in the order of time")
+    start = load_model(models[0]) if models else None
+    return SequenceOptions(start=start, labels=given_labels(labels or (), len(logs)))
+
+
+def refuse_labels(labels: Sequence[str] | None) -> None:
+    """Refuse labels where nothing remembers surfaces.
+
+    Raises:
+        SettingsError: there are some.
+    """
+    from slipwise.errors import SettingsError
+
+    if labels:
+        raise SettingsError(
+            "a label names a surface that is remembered", where="--terrain", advice="add --memory"
+        )

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A model remembers surfaces, and learning goes on from it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_surfaces import FIRM, LOOSE, floor_log, model_of_floors
+
+from slipwise.calibration.calibrate_sequence import calibrate_sequence, settings_of
+from slipwise.calibration.learned_sequence import SequenceOptions
+from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.settings import make_settings
+from slipwise.errors import LogError, ModelError, SettingsError
+from slipwise.models import load_model, on_surface
+
+
+@pytest.mark.slow
+def test_learning_goes_on_from_a_model_file(tmp_path: Path) -> None:
+    start = load_model(model_of_floors(FIRM, LOOSE).save(tmp_path / "start.yaml"))
+    log = floor_log(FIRM, 7)
+    calibration, sequence = calibrate_sequence([log], options=SequenceOptions(start=start))
+    assert [log.surface for log in sequence.logs] == ["surface 1"]
+    assert sequence.logs[0].changes[0].what == "recalled"
+    surfaces = {each.name: each for each in calibration.model.content.surfaces}
+    assert (surfaces["surface 1"].visits, surfaces["surface 2"].visits) == (2, 1)
+    assert calibration.model.content.provenance.learned_segments > start.content.provenance.learned_segments
+    before = np.sqrt(np.diag(on_surface(start, "surface 1").covariance)).mean()
+    after = np.sqrt(np.diag(on_surface(calibration.model, "surface 1").covariance)).mean()
+    assert after < before
+    forgot, _ = calibrate_sequence([log], input="wheel")
+    knows, forgets = (each.predictions[0].heading_error[:5].mean() for each in (calibration, forgot))
+    assert knows < forgets
+
+
+@pytest.mark.slow
+def test_a_log_names_its_surfaces_and_a_label_names_those_that_had_a_number() -> None:
+    logs = [floor_log(FIRM, 1), floor_log(LOOSE, 2, terrain="sand"), floor_log(FIRM, 3, terrain="hall")]
+    calibration, sequence = calibrate_sequence(logs, input="wheel")
+    assert [log.surface for log in sequence.logs] == ["surface 1", "sand", "hall"]
+    assert {each.name for each in calibration.model.content.surfaces} == {"hall", "sand"}
+    assert calibration.model.content.labels is not None
+    assert calibration.model.content.labels.right == 2.0
+
+
+@pytest.mark.slow
+def test_a_learner_of_measurements_begins_with_a_model() -> None:
+    start = model_of_floors(FIRM, LOOSE, labels=("hall", "sand"))
+    learner = MotionLearner("wheel", remember=True)
+    learner.begin_with(start)
+    assert [each.name for each in learner.surfaces()] == ["hall", "sand"]
+    with pytest.raises(ModelError, match="of wheels, and these logs are of commands"):
+        MotionLearner("command", remember=True).begin_with(start)
+
+
+def test_what_has_no_memory_is_refused() -> None:
+    log = floor_log(FIRM, 1)
+    with pytest.raises(LogError, match="needs a log"):
+        calibrate_sequence([])
+    with pytest.raises(SettingsError, match="only the estimator 'average'"):
+        calibrate_sequence([log], settings=make_settings({"estimator": "iekf", "basis": "edd-2"}))
+    model = calibrate_sequence([log], input="wheel")[0].model
+    assert settings_of(model).basis == "auto"
+    forgot = type(model)(model.content.model_copy(update={"surfaces": []}))
+    with pytest.raises(ModelError, match="remembers no surfaces"):
+        calibrate_sequence([log], options=SequenceOptions(start=forgot))
+    with pytest.raises(SettingsError, match="the surfaces were learned with"):
+        calibrate_sequence(
+            [log], settings=make_settings({"basis": "icr-3"}), options=SequenceOptions(start=model)
+        )
