@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
+from bindings.sound_surfaces import SURFACE_ARGUMENTS, SURFACE_OBJECTS, remembering_learner
 from bindings.stub_calls import Bound, bound_functions
 
 from slipwise import _core
@@ -170,37 +171,8 @@ def _small_mppi() -> _core.MppiSettings:
     return settings
 
 
-def _surface_slip() -> _core.SurfaceSlip:
-    slip = np.full(2, 0.01), 0.01 * np.eye(2), np.zeros((2, 4)), np.zeros(4)
-    return _core.SurfaceSlip(*slip, (1.0, 0.5), np.ones(3))
-
-
-def _surface_memory() -> _core.SurfaceMemory:
-    return _core.SurfaceMemory(["edd-2"], [_surface_slip()], np.ones(1), 20)
-
-
-def _known_before() -> _core.KnownBefore:
-    known = _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "2026-01-01", _surface_memory())
-    return _core.KnownBefore(_posterior(), 0, [known], (1.0, 1.0))
-
-
-def _surface() -> _core.Surface:
-    learner = _core.MotionLearner(_remembering())
-    learner.begin_with(_known_before(), _law(), False)
-    return learner.surfaces().surfaces[0]
-
-
-def _remembering() -> _core.LearnerSettings:
-    settings, hypotheses = _learner_settings(), _core.HypothesisSettings()
-    average, surfaces = _core.ModelAverageSettings(), _core.SurfaceSettings()
-    surfaces.remember = True
-    average.surfaces = surfaces
-    hypotheses.bases, hypotheses.average = [_core.named_basis("edd-2")], average
-    settings.hypotheses = hypotheses
-    return settings
-
-
 OBJECTS: dict[str, Callable[[], Any]] = {
+    **SURFACE_OBJECTS,
     "AverageState": lambda: _average().state(),
     "BayesianRegression": _regression,
     "Basis": lambda: _core.named_basis("edd-2"),
@@ -238,11 +210,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "SegmentJacobian": lambda: _core.SegmentJacobian.Thesis,
     "SegmentLinearization": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()),
     "SegmentPath": lambda: _core.linearize_segment(_model(), np.zeros(SIZE), _inputs(), _segment()).path,
-    "KnownBefore": _known_before,
     "SlipNow": _now,
-    "Surface": _surface,
-    "SurfaceMemory": _surface_memory,
-    "SurfaceSlip": _surface_slip,
     "SlipRatioFilterSettings": _slip_ratios,
     "StartList": lambda: _core.StartList(np.zeros((1, 5)), np.zeros((1, 1, 2))),
     "Status": lambda: _core.Status.Converged,
@@ -257,22 +225,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 
 _square, _list3 = 0.01 * np.eye(SIZE), [0.01, 0.01, 0.01]
 ARGUMENTS: dict[str, Callable[[], Any]] = {
-    "SurfaceSlip.__init__ mean": lambda: np.full(2, 0.01),
-    "SurfaceSlip.__init__ covariance": lambda: 0.01 * np.eye(2),
-    "SurfaceSlip.__init__ by_robot": lambda: np.zeros((2, 4)),
-    "SurfaceSlip.__init__ robot": lambda: np.zeros(4),
-    "SurfaceSlip.__init__ noise_scale": lambda: np.ones(3),
-    "SurfaceSlip.__init__ speeds": lambda: (1.0, 0.5),
-    "SurfaceMemory.__init__ bases": lambda: ["edd-2"],
-    "SurfaceMemory.__init__ slips": lambda: [_surface_slip()],
-    "SurfaceMemory.__init__ weights": lambda: np.ones(1),
-    "KnownSurface.__init__ last_seen": lambda: "2026-01-01",
-    "KnownSurface.__init__ seconds_and_speeds": lambda: (60.0, 1.0, 0.5),
-    "KnownSurface.__init__ segments_and_visits": lambda: (24, 1),
-    "KnownBefore.__init__ surfaces": lambda: [
-        _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "", _surface_memory())
-    ],
-    "KnownBefore.__init__ labels": lambda: (1.0, 1.0),
+    **SURFACE_ARGUMENTS,
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "WheelRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),
     "MotionLearner.forget fraction": lambda: 0.5,
@@ -376,7 +329,7 @@ def sound(bound: Bound, parameter: str, annotation: str) -> Any:
 def owner_of(bound: Bound) -> Any:
     """Return an object on which the method works."""
     begins = bound.title == "MotionLearner.begin_with"  # before anything was learned
-    return _core.MotionLearner(_remembering()) if begins else of_type(bound.owner)
+    return remembering_learner() if begins else of_type(bound.owner)
 
 
 def of_type(name: str) -> Any:
