@@ -8,6 +8,8 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "slipwise/segment/foreseen_ground.hpp"
+#include "slipwise/segment/ground.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
@@ -71,9 +73,48 @@ void bind_steady(nb::module_& m) {
       "twist"_a, "times"_a, "noise"_a, "Covariance of the stacked charts at positive times [K], [3K, 3K].");
 }
 
+void bind_ground(nb::module_& m) {
+  nb::class_<ElevationMap>(m, "ElevationMap", "Elevations on a grid, a row for each y, a column for each x.")
+      .def(nb::init<Eigen::MatrixXd, Eigen::Vector2d, double>(), "elevation"_a, "origin"_a, "cell"_a)
+      .def("height", &ElevationMap::height, "x"_a, "y"_a)
+      .def("holds", &ElevationMap::holds, "x"_a, "y"_a);
+  nb::class_<Ground>(m, "Ground", "What is known of the ground under a segment.")
+      .def_static(
+          "grade", [](double rise_x, double rise_y) { return std::make_shared<const Ground>(Grade{rise_x, rise_y}); },
+          "rise_x"_a, "rise_y"_a, "A plane that rises by this per metre along the axes of the segment's first pose.")
+      .def_static(
+          "mapped",
+          [](std::shared_ptr<const ElevationMap> map, const Pose2& start) {
+            return std::make_shared<const Ground>(MappedGround{std::move(map), start});
+          },
+          "map"_a, "start"_a, "A map, and the segment's first pose on it.")
+      .def_static(
+          "measured",
+          [](const Eigen::MatrixX3d& rows) {
+            MeasuredTilts tilts;
+            for (const auto& row : rows.rowwise()) {
+              tilts.at.push_back({row[0], row[1], row[2]});
+            }
+            return std::make_shared<const Ground>(std::move(tilts));
+          },
+          "rows"_a, "An attitude measured along it: rows of (t [s], roll, pitch [rad]) in order of t.")
+      .def(
+          "standings",
+          [](const Ground& ground, const Eigen::MatrixX3d& poses) {
+            Eigen::MatrixX3d found(poses.rows(), 3);
+            for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+              const Standing at = standing_at(ground, Pose2::from_vector(poses.row(i).transpose()));
+              found.row(i) << at.z, at.roll, at.pitch;
+            }
+            return found;
+          },
+          "poses"_a, "Height above the first pose, roll and pitch, [N, 3], at poses [N, 3] seen from it.");
+}
+
 }  // namespace
 
 void bind_segment(nb::module_& m) {
+  bind_ground(m);
   nb::class_<Segment>(m, "Segment", "Two measured poses of one drive.")
       .def(
           "__init__",
@@ -103,6 +144,23 @@ void bind_segment(nb::module_& m) {
             return observed;
           },
           "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
+      .def(
+          "with_ground",
+          [](const Segment& segment, std::shared_ptr<const Ground> ground) {
+            Segment tilted = segment;
+            tilted.ground = std::move(ground);
+            return tilted;
+          },
+          "ground"_a.none(), "The same segment on other ground, level where it is None.")
+      .def(
+          "foreseen",
+          [](const Segment& segment) {
+            Segment ahead = segment;
+            ahead.ground = foreseen_ground(segment.ground);
+            return ahead;
+          },
+          "The same segment as far as it is known when it begins: on the plane that its first attitude tells of.")
+      .def_ro("ground", &Segment::ground)
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
       .def_ro("measured", &Segment::measured)

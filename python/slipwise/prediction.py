@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.frames import data_frame
+from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.logs.log import Inputs
 from slipwise.models.model import Model
 from slipwise.models.schema import StudentT
@@ -42,6 +43,13 @@ class Path:
         Floats  # [N, 3, 3] parameters, the slip disturbance, slip noise, and two measured poses' noise
     )
     dof: Floats  # [N] degrees of freedom of the Student t with this covariance; few are heavy tails
+    standing: Floats | None = None  # [N, 3] z [m] above the start, roll, pitch [rad]; None on level ground
+
+    @property
+    def poses_in_space(self) -> Floats:
+        """The poses as x, y, z [m], roll, pitch, yaw [rad], [N, 6]; the z axis of their frame is vertical."""
+        standing = np.zeros((len(self.t), 3)) if self.standing is None else self.standing
+        return np.column_stack((self.poses[:, :2], standing, self.poses[:, 2]))
 
     def __repr__(self) -> str:
         x, y, yaw = (number_text(value) for value in self.poses[-1].tolist())
@@ -57,6 +65,8 @@ class Path:
         columns = {"t": self.t, **dict(zip(("x", "y", "yaw"), self.poses.T, strict=True))}
         upper = (("xx", 0, 0), ("xy", 0, 1), ("xt", 0, 2), ("yy", 1, 1), ("yt", 1, 2), ("tt", 2, 2))
         columns |= {f"cov_{label}": self.covariance[:, i, j] for label, i, j in upper}
+        if self.standing is not None:
+            columns |= dict(zip(("z", "roll", "pitch"), self.standing.T, strict=True))
         return data_frame(columns | {"dof": self.dof})
 
     def plot(self) -> go.Figure:
@@ -72,6 +82,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     start: float | None = None,
     initial: tuple[float, float] | None = None,
     slip_now: _core.SlipNow | None = None,
+    ground: Ground | None = None,
+    at: Pose = (0.0, 0.0, 0.0),
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -85,10 +97,14 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             commands, before the first of which the robot is at rest.
         slip_now: where the slip disturbance is at the start, as `slip_seen` says; by default nothing recent
             is known of it.
+        ground: what the robot drives on, a `Grade` or an `ElevationMap`; level by default. The path is then
+            also one in space, and gravity acts where the model has terms of it.
+        at: the robot's pose at the start in the frame of the ground (x, y [m], yaw [rad]).
 
     Raises:
         SettingsError: the horizon is not positive or longer than an hour, the start lies before the first
-            command, or commands or initial speeds are not such rows, not finite or beyond all speeds.
+            command, commands or initial speeds are not such rows, not finite or beyond all speeds, or the
+            path leaves the map of elevations.
     """
     model = model.body
     inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
@@ -111,17 +127,22 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
+    under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+        segment = segment.with_ground(under)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
         expected = disturbance.predict(model.posterior, history, now, segment)
         poses.append(expected.pose)
         covariance.append(expected.covariance * student_at(model, seconds).inflation)
     dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
-    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof)
+    if isinstance(ground, ElevationMap):
+        ground.check(_in_frame(np.array(poses), at))
+    standing = None if under is None else under.standings(np.array(poses))
+    return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof, standing)
 
 
 def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) -> _core.SlipNow:
@@ -163,6 +184,18 @@ def student_at(model: Model, horizon: float) -> StudentT:
         for name in ("inflation", "dof")
     )
     return StudentT(inflation=float(inflation), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+
+
+def _finite_pose(pose: Pose) -> Pose:
+    if np.shape(pose) != (3,) or not np.isfinite(pose).all():
+        raise SettingsError("the pose on the ground must be finite", advice="such as at=(0.0, 0.0, 0.5)")
+    return pose
+
+
+def _in_frame(poses: Floats, at: Pose) -> Floats:
+    """Poses [N, 3] seen from `at`, in the frame of `at`."""
+    turn = np.exp(1j * at[2]) * (poses[:, 0] + 1j * poses[:, 1])
+    return np.column_stack((at[0] + turn.real, at[1] + turn.imag, at[2] + poses[:, 2]))
 
 
 def _check_speeds(name: str, *speeds: Floats) -> None:

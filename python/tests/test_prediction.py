@@ -16,6 +16,7 @@ from slipwise.calibration import calibrate, make_settings
 from slipwise.calibration.plain import baseline_predictor, vendor_predictor
 from slipwise.calibration.settings import Settings
 from slipwise.errors import SettingsError
+from slipwise.ground import ElevationMap, Grade
 from slipwise.logs.log import Inputs
 from slipwise.models import Model
 from slipwise.models.schema import StudentT
@@ -193,3 +194,63 @@ def test_speeds_of_no_robot_are_refused(model: Model) -> None:
         predict(model, [[0.0, 1e300, 1e300]], horizon=5.0)
     with pytest.raises(SettingsError, match="the initial speeds reach"):
         predict(model, [[0.0, 1.0, 0.0]], horizon=5.0, initial=(-1e12, 0.0))
+
+
+SLIDING = {"lon.V": -0.05, "lon.gx": 0.05, "lat.gy": 0.1, "ang.w": -0.2, "ang.gy": 0.05}
+
+
+def sliding() -> Model:
+    return make_model(replace(named("ipem-13"), values=SLIDING))
+
+
+def test_level_ground_is_predicted_as_no_ground() -> None:
+    inputs = held(np.arange(0.0, 6.0, 0.5), 1.0, 0.4)
+    level = predict(sliding(), inputs, horizon=3.0, ground=Grade(0.0), at=(3.0, 2.0, 1.0))
+    without = predict(sliding(), inputs, horizon=3.0)
+    assert level.poses == pytest.approx(without.poses, abs=1e-12)
+    assert level.covariance == pytest.approx(without.covariance, abs=1e-4)  # in shorter steps
+    assert without.standing is None
+    assert not without.poses_in_space[:, 2:5].any()
+
+
+def test_a_robot_across_a_slope_slides_downhill_and_turns_its_nose_down() -> None:
+    inputs = held(np.arange(0.0, 6.0, 0.5), 1.0, 0.0)
+    path = predict(sliding(), inputs, horizon=4.0, ground=Grade(0.15, downhill=-np.pi / 2))
+    assert path.poses[-1, 1] < -0.3  # downhill is to the right
+    assert path.poses[-1, 2] < -0.1
+    x, y, z, roll, pitch, yaw = path.poses_in_space[-1].tolist()
+    assert z == pytest.approx(np.tan(0.15) * y)
+    assert roll > 0.1
+    assert pitch > 0.0
+    assert (x, y, yaw) == tuple(path.poses[-1].tolist())
+    assert {"z", "roll", "pitch"} <= set(path.to_dataframe().columns)
+
+
+def test_gravity_turns_with_the_heading_on_a_grade_and_so_does_the_path_with_the_grade() -> None:
+    inputs = held(np.arange(0.0, 9.0, 0.5), 0.8, 0.6)
+    one = predict(sliding(), inputs, horizon=6.0, ground=Grade(0.2, downhill=0.4))
+    turned = predict(sliding(), inputs, horizon=6.0, ground=Grade(0.2, downhill=1.6), at=(0.0, 0.0, 1.2))
+    assert turned.poses == pytest.approx(one.poses, abs=1e-9)
+    assert turned.covariance == pytest.approx(one.covariance, rel=1e-6, abs=1e-12)
+
+
+def test_a_map_of_a_plane_predicts_what_its_grade_does() -> None:
+    grade = Grade(0.15, downhill=-0.7)
+    x, y = np.meshgrid(np.arange(-15.0, 15.5, 0.5), np.arange(-15.0, 15.5, 0.5))
+    rise = grade.rise(0.0)
+    made = ElevationMap(rise[0] * x + rise[1] * y, origin=(-15.0, -15.0), cell=0.5)
+    inputs = held(np.arange(0.0, 9.0, 0.5), 0.8, 0.6)
+    start = (1.0, -2.0, 0.9)
+    on_map = predict(sliding(), inputs, horizon=5.0, ground=made, at=start)
+    on_grade = predict(sliding(), inputs, horizon=5.0, ground=grade, at=start)
+    assert on_map.poses_in_space == pytest.approx(on_grade.poses_in_space, abs=1e-9)
+    assert on_map.covariance == pytest.approx(on_grade.covariance, rel=1e-6, abs=1e-12)
+
+
+def test_a_path_that_leaves_the_map_and_a_pose_that_is_none_are_refused() -> None:
+    made = ElevationMap(np.zeros((5, 5)), origin=(-1.0, -1.0), cell=0.5)
+    inputs = held(np.arange(0.0, 9.0, 0.5), 1.0, 0.0)
+    with pytest.raises(SettingsError, match="leads beside the map"):
+        predict(sliding(), inputs, horizon=5.0, ground=made)
+    with pytest.raises(SettingsError, match="must be finite"):
+        predict(sliding(), inputs, horizon=1.0, ground=made, at=(0.0, np.nan, 0.0))

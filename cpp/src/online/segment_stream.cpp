@@ -16,7 +16,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kGravity = 9.80665;   // [m/s^2]
 SLIPWISE_TUNING(kSlipLength, 1.0);     // [s] of segments behind wheel speeds
 SLIPWISE_TUNING(kWheelLength, 1.0);    // [s] wheel speeds tell a step's response from its start on
 constexpr double kLookBack = 20.0;     // [s] of inputs before a segment; an actuator remembers no more
@@ -119,7 +118,7 @@ void SegmentStream::push_wheels(const InputSample& sample) {
 
 void SegmentStream::push_attitude(double t, double roll, double pitch) {
   if (arrives(Stream::Attitude, t, std::array{roll, pitch})) {
-    tilts_.push_back({t, kGravity * std::sin(pitch), -kGravity * std::cos(pitch) * std::sin(roll)});
+    tilts_.push({t, roll, pitch});
   }
   advance(newest_ - settings_.latency);
 }
@@ -172,9 +171,10 @@ void SegmentStream::process_pose(const MeasuredPose& raw) {
 /// With what is known beside it: how the robot was tilted, and how exact its like were.
 MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const {
   MeasuredPose pose = raw;
-  const Tilt tilt = tilt_at(raw.t);
-  pose.gx = tilt.gx;
-  pose.gy = tilt.gy;
+  if (const auto tilt = tilts_.known_at(raw.t, settings_.unknown_after)) {
+    pose.gx = gravity_of(*tilt).gx;
+    pose.gy = gravity_of(*tilt).gy;
+  }
   pose.std_ratio = accuracy.ratio(raw.std);
   return pose;
 }
@@ -267,12 +267,12 @@ void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
 void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {
-      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_)});
+      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_, true)});
     }
   }
 }
 
-DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at) const {
+DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at, bool foreseen) const {
   Segment segment{.start = cut.first.t,
                   .end = cut.second.t,
                   .measured = cut.measured(),
@@ -280,6 +280,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gy = cut.first.gy,
                   .sensor = settings_.sensor,
                   .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
+  stand_on_ground(segment, foreseen);
   if (!by_wheels) {
     set_actuator_state(segment);
   }
@@ -300,10 +301,10 @@ void SegmentStream::set_actuator_state(Segment& segment) const {
   }
 }
 
-SegmentStream::Tilt SegmentStream::tilt_at(double t) const {
-  const auto after = std::ranges::upper_bound(tilts_, t, {}, &Tilt::t);
-  const bool known = after != tilts_.begin() && t - std::prev(after)->t <= settings_.unknown_after;
-  return known ? *std::prev(after) : Tilt{t, 0.0, 0.0};
+/// What tilts the robot: where it is `foreseen`, as far as is known at the start.
+void SegmentStream::stand_on_ground(Segment& segment, bool foreseen) const {
+  const double oldest = settings_.unknown_after;
+  segment.ground = foreseen ? tilts_.from(segment.start, oldest) : tilts_.along(segment.start, segment.end, oldest);
 }
 
 /// Inputs are kept for segments that have begun, unless poses do not come for long.
@@ -319,9 +320,7 @@ void SegmentStream::trim() {
   const double oldest = std::max(begun, newest_ - settings_.latency - kLongestGap) - keep_;
   commands_.drop_before(oldest);
   wheels_.drop_before(oldest);
-  while (tilts_.size() > 1 && tilts_[1].t < oldest) {
-    tilts_.pop_front();
-  }
+  tilts_.drop_before(oldest);
 }
 
 std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items_, {}); }
@@ -369,8 +368,8 @@ std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>&
 }
 
 DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
-  const Tilt tilt = tilt_at(newest_);
-  Segment segment{.start = newest_, .end = newest_ + horizon, .gx = tilt.gx, .gy = tilt.gy, .sensor = settings_.sensor};
+  Segment segment{.start = newest_, .end = newest_ + horizon, .sensor = settings_.sensor};
+  stand_on_ground(segment, true);
   const bool by_wheels = !settings_.from_commands;
   if (!by_wheels) {
     set_actuator_state(segment);
@@ -383,8 +382,8 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
 }
 
 DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
-  const Tilt tilt = tilt_at(start);
-  Segment segment{.start = start, .end = end, .gx = tilt.gx, .gy = tilt.gy, .sensor = settings_.sensor};
+  Segment segment{.start = start, .end = end, .sensor = settings_.sensor};
+  stand_on_ground(segment, false);
   if (settings_.from_commands) {
     set_actuator_state(segment);
   }

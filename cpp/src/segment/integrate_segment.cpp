@@ -2,9 +2,11 @@
 // One pass over the drive steps of a segment: poses, and sums that give the derivative of the last pose.
 #include "slipwise/segment/integrate_segment.hpp"
 
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/path_step.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
@@ -88,10 +90,13 @@ Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eige
 struct SensitivitySums {
   Eigen::Matrix<double, 3, Eigen::Dynamic> slip;
   ActuatorColumns actuator;
+  Eigen::Matrix<double, 1, Eigen::Dynamic> started;  ///< the stamp at which the next step on ground starts
 
-  explicit SensitivitySums(const MotionModel& model) : slip(3, model.slip_size()), actuator(3, model.actuator_size()) {
+  explicit SensitivitySums(const MotionModel& model)
+      : slip(3, model.slip_size()), actuator(3, model.actuator_size()), started(model.actuator_size()) {
     slip.setZero();
     actuator.setZero();
+    started.setZero();
   }
 
   /// d(tangent) / d(alpha) is the feature times the duration, in the term's own channel.
@@ -102,6 +107,18 @@ struct SensitivitySums {
       for (std::size_t i = basis.begin(channel); i < basis.end(channel); ++i) {
         slip.col(static_cast<Eigen::Index>(i)) += column * features[i];
       }
+    }
+  }
+
+  /// What follows from where and when the step is driven: `by_place` is the derivative of the path's start by what the
+  /// ground is evaluated at. `step` has a column for each actuator parameter.
+  void add_ground(const Eigen::Matrix3d& by_place, const GroundStepLinearization& at, const Pose2& before,
+                  const std::optional<LearnedColumns>& step) {
+    const Eigen::Matrix3d by_start = by_place * at.at_by_pose * transition(Pose2{}, before);
+    slip += (by_start * slip).eval();
+    if (step) {
+      actuator += (by_start * actuator + by_place * (at.at_by_step * *step + at.at_by_time * started)).eval();
+      started += step->row(0);
     }
   }
 
@@ -131,6 +148,31 @@ struct SensitivitySums {
   }
 };
 
+/// Derivative of a step's tangent, seen from above, by what the ground is evaluated at.
+Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
+                               const Eigen::Vector3d& body) {
+  const auto by_gravity = slip_rate_by_gravity(along.basis, along.alpha, slip_state(step, along.gravity));
+  return ground.above_by(body) + ground.step.level * by_gravity * ground.gravity_by * step.duration;
+}
+
+/// What a step is driven on, and how that follows from the parameters; nothing on level ground.
+struct GroundUnder {
+  GroundStep step;
+  std::optional<GroundStepLinearization> moved;  ///< a measured attitude depends on the actuator alone
+
+  static std::optional<GroundUnder> find(const Segment& segment, const ActuatorStep& step, const GrowingPath& path,
+                                         bool by_actuator) {
+    if (!segment.ground) {
+      return std::nullopt;
+    }
+    if (!by_actuator && std::holds_alternative<MeasuredTilts>(*segment.ground)) {
+      return GroundUnder{ground_step(*segment.ground, step, path.pose(), path.time()), std::nullopt};
+    }
+    auto moved = linearize_ground_step(*segment.ground, step, path.pose(), path.time());
+    return GroundUnder{moved.step, std::move(moved)};
+  }
+};
+
 /// By the slip parameters, and by the others too where `kAll`. After each step but the last, `see` is handed the path,
 /// the steps and the sums so far.
 template <bool kAll, class See>
@@ -142,22 +184,35 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
                                     : actuator_steps(inputs, actuator, window_of(segment));
-  const PathSlip along{.basis = model.basis(), .alpha = alpha, .gravity = gravity_of(segment)};
+  if (segment.ground) {
+    cut_for_ground(drive);
+  }
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
   std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
-    model.basis().features(slip_state(step, gravity_of(segment)), features);
+    const auto ground = GroundUnder::find(segment, step, path, by_actuator);
+    const PathSlip along{model.basis(), alpha, ground ? ground->step.gravity : gravity_of(segment)};
+    model.basis().features(slip_state(step, along.gravity), features);
     const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
-    const Eigen::Vector3d tangent = tangent_of(step, slip);
-    const Eigen::Matrix3d by_tangent = append_linearized(path, step.duration, tangent);
-    sums.add_slip(model.basis(), by_tangent, features, step.duration);
+    const Eigen::Vector3d body = tangent_of(step, slip);
+    const Pose2 before = path.pose();
+    Eigen::Matrix3d by_tangent =
+        append_linearized(path, step.duration, ground ? ground->step.seen_from_above(body) : body);
+    std::optional<LearnedColumns> learned;
     if (by_actuator) {
-      const LearnedColumns learned = drive.jacobians[k](Eigen::all, model.actuator_places());
-      if (!learned.isZero(0.0)) {
-        sums.actuator += by_tangent * tangent_by(step, learned, along, slip);
-      }
+      learned = drive.jacobians[k](Eigen::all, model.actuator_places());
+    }
+    if (ground && ground->moved) {
+      sums.add_ground(by_tangent * above_by_place(*ground->moved, step, along, body), *ground->moved, before, learned);
+    }
+    if (ground) {
+      by_tangent = (by_tangent * ground->step.level).eval();
+    }
+    sums.add_slip(model.basis(), by_tangent, features, step.duration);
+    if (learned && !learned->isZero(0.0)) {
+      sums.actuator += by_tangent * tangent_by(step, *learned, along, slip);
     }
     if (k + 1 < drive.steps.size()) {
       see(path, std::span(drive.steps).first(k + 1), sums);
@@ -185,11 +240,17 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   model.check(parameters);
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
+  if (segment.ground) {
+    cut_for_ground(drive);
+  }
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const ActuatorStep& step : drive.steps) {
-    model.basis().features(slip_state(step, gravity_of(segment)), features);
-    const Eigen::Vector3d tangent = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    const auto ground =
+        segment.ground ? std::optional(ground_step(*segment.ground, step, path.pose(), path.time())) : std::nullopt;
+    model.basis().features(slip_state(step, ground ? ground->gravity : gravity_of(segment)), features);
+    const Eigen::Vector3d body = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    const Eigen::Vector3d tangent = ground ? ground->seen_from_above(body) : body;
     const auto arc = arc_functions(tangent.z());
     const Eigen::Vector2d displacement = integrator == Integrator::Exact
                                              ? Eigen::Vector2d(arc_matrix(arc) * tangent.head<2>())

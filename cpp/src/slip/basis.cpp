@@ -25,6 +25,10 @@ const std::vector<NamedTerms>& shipped() {
       {"full-linear-6", {"V", "w"}, {"V", "w"}, {"V", "w"}},
       {"ipem-9", {"V", "abs(w)", "V*abs(w)"}, {"V", "w", "V*w"}, {"V", "w", "V*w"}},
       {"odd-even-10", {"V", "V*abs(w)", "sgn(V)*w^2"}, {"w", "V*w", "w*abs(w)"}, {"w", "V*w", "w*abs(w)", "V"}},
+      {"odd-even-13",
+       {"V", "V*abs(w)", "sgn(V)*w^2", "gx"},
+       {"w", "V*w", "w*abs(w)", "gy"},
+       {"w", "V*w", "w*abs(w)", "V", "gy"}},
       {"ipem-13", {"V", "abs(w)", "V*abs(w)", "gx"}, {"V", "w", "V*w", "gy"}, {"V", "w", "V*w", "gx", "gy"}},
       {"thesis-15", thesis, thesis, thesis},
   };

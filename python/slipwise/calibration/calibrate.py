@@ -26,6 +26,7 @@ from slipwise.calibration.prepared_run import (
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice
+from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import LogError, ModelError
@@ -61,7 +62,7 @@ def calibrate(
         LogError: the log has no such input, no poses or no window to learn from, or no model holds it.
         SettingsError: a basis or a term is unknown.
     """
-    settings = settings or Settings()
+    settings = for_the_ground_of(log, settings or Settings())
     input_name = input or choose_input(log)
     drive = prepare_run(log, input_name)
     windows = learning_windows(drive, input_name, settings)

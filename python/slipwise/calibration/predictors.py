@@ -90,14 +90,14 @@ def _draft(learned: WindowSet, targets: WindowSet) -> _Draft:
 def _predict(predictor: Predictor, posterior: Posterior, draft: _Draft, i: int) -> None:
     known = posterior.for_core(predictor.noise)
     disturbance = posterior.disturbance or _core.DisturbanceFilter(_core.DisturbanceModel([], np.empty(0)))
-    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i]
+    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i].foreseen()
     expected = disturbance.predict(known, history, disturbance.now(known, history, []), segment)
     draft.pose[i], draft.covariance[i] = expected.pose, expected.covariance
     draft.structure[i] = posterior.structure
 
 
 def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
-    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i]
+    history, segment = draft.targets.input_history(i, posterior.limits), draft.targets.segments[i].foreseen()
     path = _core.integrate_segment(posterior.motion, posterior.mean, history, segment, _core.Integrator.Exact)
     draft.in_sample[i] = path.sensor_poses[-1]
 

@@ -13,6 +13,7 @@ from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, choose_input, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.statistics import (
     coverage,
     held_out_half,
@@ -67,7 +68,7 @@ def evaluate(
         LogError: the log has no such input, no poses, or no window of any horizon.
         SettingsError: a method, a basis or a horizon is wrong.
     """
-    settings, options = settings or Settings(), options or EvaluationOptions()
+    settings, options = for_the_ground_of(log, settings or Settings()), options or EvaluationOptions()
     input_name, models = _input_name(log, input, options.models), options.models
     refuse_names_of_methods(models)
     contest, notes = _contest(log, input_name, settings, options)

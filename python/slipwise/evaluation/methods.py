@@ -14,6 +14,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predict_all
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.sloping_ground import SLOPE_BASES
 from slipwise.errors import SettingsError
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_predictor
@@ -46,7 +47,8 @@ def method_names(contest: Contest) -> tuple[str, ...]:
     names = ["none"]
     if contest.vendor_wheel_separation_multiplier is not None:
         names.append("vendor")
-    names += [*_core.basis_names(), "batch"]
+    left_out = set(SLOPE_BASES) - set(contest.settings.auto.bases)  # where the ground is level
+    names += [*(name for name in _core.basis_names() if name not in left_out), "batch"]
     names += contest.models
     if contest.settings.basis == "custom":
         names.append("custom")

@@ -101,7 +101,7 @@ def _segments(contents: Contents, run: Run) -> dict[int, _core.Segment]:
     from_commands = contents.evaluation.input == "command"
     windows = cut_windows([run], rules.stream_settings(horizon, from_commands=from_commands))
     stamps = (_stamp(start) for start in windows.start.tolist())
-    return dict(zip(stamps, windows.segments, strict=True))
+    return {stamp: segment.foreseen() for stamp, segment in zip(stamps, windows.segments, strict=True)}
 
 
 def _stamp(t: float) -> int:

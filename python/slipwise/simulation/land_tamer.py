@@ -73,8 +73,14 @@ def wheel_names(vehicle: LandTamer) -> tuple[str, ...]:
     return tuple(f"{side}{axle}" for axle in range(len(vehicle.axles)) for side in "lr")
 
 
-def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str:
-    """Return the vehicle on flat terrain as MuJoCo XML.
+def mjcf(
+    vehicle: LandTamer,
+    *,
+    time_step: float,
+    friction: float | None,
+    gravity: tuple[float, float, float] = (0.0, 0.0, -GRAVITY),
+) -> str:
+    """Return the vehicle on a plane as MuJoCo XML.
 
     Each wheel is an ellipsoid (one smooth contact) on a sprung slide, and turned by a velocity servo whose
     activation is the first-order lag of the side drive. Without a suspension three axles are hyperstatic, and
@@ -84,6 +90,7 @@ def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str
         vehicle: the constants.
         time_step: simulation step [s].
         friction: friction coefficient of the contacts, or None for frictionless ones.
+        gravity: in the frame of the plane [m/s^2]; it leans where the plane is a hillside.
     """
     contact, cone = 'condim="1"', "pyramidal"
     if friction is not None:
@@ -96,8 +103,9 @@ def mjcf(vehicle: LandTamer, *, time_step: float, friction: float | None) -> str
     loads = "".join(f'<touch name="load_{name}" site="patch_{name}"/>' for name in names)
     length, width, height = (size / 2 for size in vehicle.hull_size)
     hull_mass = vehicle.mass - len(names) * vehicle.wheel_mass
+    x, y, z = gravity
     return f"""<mujoco model="land_tamer">
-  <option timestep="{time_step!r}" gravity="0 0 {-GRAVITY}" integrator="implicitfast" cone="{cone}"
+  <option timestep="{time_step!r}" gravity="{x} {y} {z}" integrator="implicitfast" cone="{cone}"
           impratio="10" iterations="30"><flag autoreset="disable"/></option>
   <visual><global offwidth="1280" offheight="720"/></visual>
   <asset>

@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import SettingsError, SlipwiseError
+from slipwise.ground import Grade
 from slipwise.logs.log import Inputs
 from slipwise.simulation.engine import load_mujoco
+from slipwise.simulation.hillside import gravity_on, seen_from_above
 from slipwise.simulation.land_tamer import LandTamer, mjcf, wheel_names
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
@@ -44,6 +46,7 @@ class World:
     law: TyreLaw  # of it MuJoCo's own contact friction uses `friction` alone
     traction: TractionLaw = TractionLaw()
     change: TerrainChange | None = None
+    grade: Grade | None = None  # of a hillside; level where there is none
 
     @property
     def force_law(self) -> ForceLaw | None:
@@ -115,7 +118,7 @@ def start_physics(world: World, time_step: float) -> Physics:
     mujoco = load_mujoco()
     force_law = world.force_law
     friction = world.law.friction if force_law is None else None
-    xml = mjcf(world.vehicle, time_step=time_step, friction=friction)
+    xml = mjcf(world.vehicle, time_step=time_step, friction=friction, gravity=gravity_on(world.grade))
     try:
         model = mujoco.MjModel.from_xml_string(xml)
     except ValueError as error:
@@ -162,7 +165,8 @@ def run_physics(
         if progress is not None and (sample % 100 == 99 or sample == sampling.count - 1):
             progress((sample + 1) / sampling.count)
     spins = np.array([model.joint(f"spin_{name}").dofadr[0] for name in names])
-    return planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
+    truth = planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
+    return truth if world.grade is None else seen_from_above(truth, position, world.grade)
 
 
 def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceTerrain | None) -> Callable[[], None]:

@@ -6,9 +6,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.ground import Grade
 from slipwise.logs.log import Inputs, Log, Poses, Run
 from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
@@ -23,6 +25,7 @@ _RANGES = {  # of a scenario's numbers: least, most, unit; beyond them a simulat
     "pose_rate": (0.1, 1000.0, "Hz"),
     "std_xy": (0.0, 1000.0, "m"),
     "std_yaw": (0.0, 10.0, "rad"),
+    "std_tilt": (0.0, 1.0, "rad"),
     "pose_delay": (-1000.0, 1000.0, "s"),
 }
 
@@ -45,6 +48,8 @@ class Scenario:
     std_xy: float = 0.01  # [m] of a measured position, as of RTK
     std_yaw: float = 0.003  # [rad] of a measured heading
     pose_delay: float = 0.0  # [s] by which the stamps of poses are late, as seen on the clock of the commands
+    grade: Grade | None = None  # of a hillside, with poses in space; level where there is none
+    std_tilt: float = 0.003  # [rad] of a measured roll or pitch on a hillside
 
 
 @dataclass(frozen=True)
@@ -87,7 +92,14 @@ def simulate(scenario: Scenario, *, seed: int, progress: Progress | None = None)
 def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress | None) -> Truth:
     sampling = Sampling.over(scenario.duration, scenario.pose_rate)
     if scenario.perturbation is None:
-        world = World(scenario.vehicle, scenario.terrain, scenario.tyre, scenario.traction, scenario.change)
+        world = World(
+            scenario.vehicle,
+            scenario.terrain,
+            scenario.tyre,
+            scenario.traction,
+            scenario.change,
+            scenario.grade,
+        )
         return run_physics(world, commands, sampling, progress=progress)
     times = np.arange(sampling.count) / sampling.rate
     stream = _stream(seed, 1)
@@ -103,7 +115,7 @@ def _limited(commands: Inputs, limits: _core.CommandLimits | None) -> Inputs:
 
 
 def _stream(seed: int, number: int) -> np.random.Generator:
-    """Random numbers that are not those of the command script: 0 of the pose noise, 1 of the slip."""
+    """Random numbers that are not those of the command script: 0 of poses, 1 of slip, 2 of tilts."""
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed).spawn(number + 1)[number]))
 
 
@@ -124,7 +136,20 @@ def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
         frame=np.zeros(truth.t.size, dtype=np.int64),
         std_xy=np.full(truth.t.size, scenario.std_xy),
         std_yaw=np.full(truth.t.size, scenario.std_yaw),
+        **_tilts(scenario, truth, seed),
     )
+
+
+def _tilts(scenario: Scenario, truth: Truth, seed: int) -> dict[str, NDArray[np.float64]]:
+    """Measured height, roll and pitch of a hillside; nothing on level ground."""
+    if truth.z is None or truth.roll is None or truth.pitch is None:
+        return {}
+    noise = _stream(seed, 2).standard_normal((3, truth.t.size))
+    return {
+        "z": truth.z + scenario.std_xy * noise[0],
+        "roll": truth.roll + scenario.std_tilt * noise[1],
+        "pitch": truth.pitch + scenario.std_tilt * noise[2],
+    }
 
 
 def _check(scenario: Scenario, seed: int) -> None:
@@ -135,6 +160,9 @@ def _check(scenario: Scenario, seed: int) -> None:
         raise SettingsError(f"unknown terrain {scenario.terrain!r}", where="terrain", advice=advice)
     if scenario.change is not None:
         _check_change(scenario, scenario.change)
+    if scenario.perturbation is not None and scenario.grade is not None:
+        advice = "leave out one of the two"
+        raise SettingsError("slip surfaces lie on level ground", where="grade", advice=advice)
     if scenario.commands is not None and len(scenario.commands) == 0:
         raise SettingsError("there are no commands", where="commands", advice="give at least one")
     if scenario.commands is None and scenario.drive not in DRIVES:

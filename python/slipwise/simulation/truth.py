@@ -22,3 +22,6 @@ class Truth:
     omega: NDArray[np.float64]  # [rad/s]
     wheel_left: NDArray[np.float64]  # [rad/s] mean of the left wheels
     wheel_right: NDArray[np.float64]  # [rad/s] mean of the right wheels
+    z: NDArray[np.float64] | None = None  # [m] in the world; none on level ground
+    roll: NDArray[np.float64] | None = None  # [rad]
+    pitch: NDArray[np.float64] | None = None  # [rad], positive where the nose points down

@@ -30,6 +30,10 @@ def _segment() -> _core.Segment:
     return _core.Segment(1.0, 2.0, _core.Pose2(0.5, 0.1, 0.2), _core.BodyTwist(0.5, 0.0, 0.1), 0.0, 0.0)
 
 
+def _elevations() -> _core.ElevationMap:
+    return _core.ElevationMap(np.arange(12.0).reshape(3, 4) * 0.05, np.zeros(2), 1.0)
+
+
 def _estimate() -> _core.Estimate:
     return _core.Estimate(np.full(SIZE, 0.01), 0.01 * np.eye(SIZE))
 
@@ -194,6 +198,8 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "LearnerEvent": lambda: _learner().events()[0],
     "LearnerSettings": _learner_settings,
     "LimitSearch": lambda: None,
+    "ElevationMap": _elevations,
+    "Ground": lambda: _core.Ground.mapped(_elevations(), _core.Pose2(0.5, 0.5, 0.3)),
     "LogVarianceFit": lambda: _core.fit_log_variance(np.column_stack([T, np.sin(T)]), _fit()),
     "MotionPosterior": _posterior,
     "MotionLearner": _learner,
@@ -239,6 +245,11 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "NoiseGroup.__init__ times": lambda: [1.0, 2.0],
     "StartList.__init__ past": lambda: np.zeros((1, 1, 2)),
     "StartList.__init__ starts": lambda: np.zeros((1, 5)),
+    "ElevationMap.__init__ cell": lambda: 0.5,
+    "ElevationMap.__init__ elevation": lambda: np.zeros((3, 4)),
+    "ElevationMap.__init__ origin": lambda: np.zeros(2),
+    "Ground.measured rows": lambda: np.column_stack((T[:4], np.zeros((4, 2)))),
+    "Ground.standings poses": lambda: np.zeros((2, 3)),
     "Recording.__init__ attitudes": lambda: np.zeros((1, 3)),
     "Recording.__init__ commands": _rows,
     "Recording.__init__ poses": lambda: np.column_stack((_rows(), T * 0)),
@@ -377,7 +388,9 @@ def other_objects(kind: str) -> Iterator[tuple[str, Any]]:
         "MotionModel": [larger, _core.MotionModel(_core.Basis("none", [], [], []), False, False)],
         "Pose2": [_core.Pose2(nan, nan, nan), _core.Pose2(1e300, -1e300, 1e300)],
         "RegressionExample": [_core.RegressionExample(np.ones(5), nan, 1.0)],
-        "Segment": [wide, late, backward, long, _core.Segment(nan, nan, _core.Pose2(0, 0, 0), None, 0, 0)],
+        "Ground": [_core.Ground.measured(np.full((2, 3), nan)), _core.Ground.grade(1e300, nan)],
+        "Segment": [wide, late, backward, long, _core.Segment(nan, nan, _core.Pose2(0, 0, 0), None, 0, 0)]
+        + [each.with_ground(_core.Ground.grade(0.1, nan)) for each in (late, long)],
         "SegmentLinearization": [path],
         "SegmentPath": [path.path],
         "SteadySegment": [_core.SteadySegment(_core.BodyTwist(1, 0, 0), zero[:0], np.zeros((0, 3)))],

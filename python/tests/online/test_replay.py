@@ -16,6 +16,7 @@ from slipwise.calibration.calibrate import JUDGING_HORIZONS
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log, open_log
 from slipwise.models import schema
@@ -40,8 +41,9 @@ def cases(logs: Sequence[tuple[str, tuple[str, ...]]]) -> list[tuple[str, str]]:
     return [(name, input_name) for name, inputs in logs for input_name in inputs]
 
 
-def new_learner(input_name: str, horizons: Sequence[float]) -> _core.MotionLearner:
-    return _core.MotionLearner(core_settings(Settings(), input_name, horizons))
+def new_learner(log: Log, input_name: str, horizons: Sequence[float]) -> _core.MotionLearner:
+    settings = for_the_ground_of(log, Settings())
+    return _core.MotionLearner(core_settings(settings, input_name, horizons))
 
 
 class MovingLearner:
@@ -49,8 +51,8 @@ class MovingLearner:
 
     SAVES = 30  # of a log
 
-    def __init__(self, input_name: str, horizons: Sequence[float], path: Path) -> None:
-        self.now = new_learner(input_name, horizons)
+    def __init__(self, log: Log, input_name: str, horizons: Sequence[float], path: Path) -> None:
+        self.now = new_learner(log, input_name, horizons)
         rows = sum(len(run.items) for run in read_runs(path))
         self._after = set(np.random.default_rng(5).integers(rows, size=self.SAVES).tolist())
         self._pushed = 0
@@ -68,7 +70,7 @@ def replayed(
     """Push a file's rows, asking for what `evaluate` predicts; return the learner, and what differs."""
     options = EvaluationOptions(horizons=horizons, methods=("auto",))
     result = evaluate(log, input=input_name, options=options)
-    learner, compared, differing = MovingLearner(input_name, horizons, path), 0, list[str]()
+    learner, compared, differing = MovingLearner(log, input_name, horizons, path), 0, list[str]()
     names = {run.name: k for k, run in enumerate(log.runs)}
     for run in read_runs(path):
         learner.now.start_run()

@@ -17,6 +17,7 @@
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/online/sample_gate.hpp"
 #include "slipwise/online/segment_cutter.hpp"
+#include "slipwise/online/tilt_buffer.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -115,11 +116,6 @@ class SegmentStream {
   }
 
  private:
-  struct Tilt {
-    double t;
-    double gx;
-    double gy;
-  };
   bool arrives(Stream stream, double t, std::span<const double> numbers);
   void push_input(Stream stream, const InputSample& sample);
   void advance(double until);
@@ -135,10 +131,10 @@ class SegmentStream {
   void trim();
   const InputBuffer& gate_inputs(double t) const;
   std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
-  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at) const;
+  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at, bool foreseen = false) const;
   void set_actuator_state(Segment& segment) const;
   MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;
-  Tilt tilt_at(double t) const;
+  void stand_on_ground(Segment& segment, bool foreseen) const;
   void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
 
   StreamSettings settings_;
@@ -150,7 +146,7 @@ class SegmentStream {
   InputBuffer wheels_;
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
-  std::deque<Tilt> tilts_;
+  TiltBuffer tilts_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_;                       ///< stamp of the pose that is being used, or was last [s]

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/lie/se2.hpp"
+#include "slipwise/segment/ground.hpp"
 
 namespace slipwise {
 
@@ -22,11 +24,12 @@ struct Segment {
   double end;                                       ///< stamp of the second pose [s]
   Pose2 measured = {};                              ///< T_start_end, heading unwrapped
   std::optional<BodyTwist> initial = {};            ///< the drive's measured twist at the start, or where `known` ends
-  double gx = 0.0;                                  ///< body-frame gravity at the start [m/s^2]
+  double gx = 0.0;                                  ///< body-frame gravity [m/s^2] all along, where `ground` is unknown
   double gy = 0.0;                                  ///< [m/s^2]
   std::optional<MeasuredActuator> known = {};       ///< what was measured of the drive; `initial` is where it ends
   Pose2 sensor = {};                                ///< known pose in base_link of what `measured` is the motion of
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the first and the second pose
+  std::shared_ptr<const Ground> ground = {};        ///< what tilts the robot; nothing on level ground
 };
 
 }  // namespace slipwise
