@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from slipwise import _core, calibration, evaluation, prediction
 from slipwise.calibration import Settings
 from slipwise.evaluation import Evaluation, EvaluationOptions
+from slipwise.ground import Ground, Pose
 from slipwise.logs import Inputs, Log, open_log
 from slipwise.models import Model, load_model
 
@@ -108,6 +109,8 @@ def predict(  # noqa: PLR0913 - all but the first two are options
     start: float | None = None,
     initial: tuple[float, float] | None = None,
     slip_now: _core.SlipNow | None = None,
+    ground: Ground | None = None,
+    at: Pose = (0.0, 0.0, 0.0),
 ) -> prediction.Path:
     """Predict the path of base_link under `commands`; see `slipwise.prediction.predict`.
 
@@ -118,14 +121,23 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         start: when the prediction starts [s]; by default at the first command.
         initial: the measured (v [m/s], omega [rad/s]) at the start.
         slip_now: where slip is at the start, as `slipwise.prediction.slip_seen` says.
+        ground: a `Grade` or an `ElevationMap` of `slipwise.ground`; level by default.
+        at: the robot's pose (x, y [m], yaw [rad]) at the start in the frame of the ground.
 
     Raises:
         ModelError: the file is no model.
-        SettingsError: the horizon is not positive, the start lies before the first command, or the commands
-            are not such rows.
+        SettingsError: the horizon is not positive, the start lies before the first command, the commands are
+            not such rows, or the path leaves the map of elevations.
     """
     return prediction.predict(
-        _loaded(model), commands, horizon=horizon, start=start, initial=initial, slip_now=slip_now
+        _loaded(model),
+        commands,
+        horizon=horizon,
+        start=start,
+        initial=initial,
+        slip_now=slip_now,
+        ground=ground,
+        at=at,
     )
 
 

@@ -24,6 +24,7 @@ const std::vector<NamedTerms>& shipped() {
       {"inertial-5", {"V"}, {"abs(V)*V*w/g"}, {"abs(V)*V*w/g", "V", "w"}},
       {"full-linear-6", {"V", "w"}, {"V", "w"}, {"V", "w"}},
       {"ipem-9", {"V", "abs(w)", "V*abs(w)"}, {"V", "w", "V*w"}, {"V", "w", "V*w"}},
+      {"drive-9", {"V", "gx*abs(V)", "gx*abs(w)"}, {"V*w", "gy*abs(V)", "gy*abs(w)"}, {"V*w", "V", "w"}},
       {"odd-even-10", {"V", "V*abs(w)", "sgn(V)*w^2"}, {"w", "V*w", "w*abs(w)"}, {"w", "V*w", "w*abs(w)", "V"}},
       {"odd-even-13",
        {"V", "V*abs(w)", "sgn(V)*w^2", "gx"},

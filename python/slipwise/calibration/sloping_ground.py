@@ -11,7 +11,7 @@ from slipwise.calibration.settings import AUTO_BASES, Settings
 from slipwise.logs.log import Log
 
 #: Bases with terms of gravity that `auto` averages too where the ground slopes.
-SLOPE_BASES = ("odd-even-13",)
+SLOPE_BASES = ("odd-even-13", "drive-9")
 LEAST_SPREAD = math.radians(1.5)  # of roll and pitch together; a suspension alone moves a robot by less
 
 

@@ -9,10 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.ground import Grade
+from slipwise.logs.log import Inputs
 from slipwise.simulation.land_tamer import GRAVITY
 from slipwise.simulation.truth import Truth
 
 Floats = NDArray[np.float64]
+
+_PERIOD = 0.1  # s, of the commands of a drive
+_LEGS, _TURNS = (4.0, 8.0), (1.5, 3.5)  # s
 
 
 def axes_of(grade: Grade) -> Floats:
@@ -28,6 +32,22 @@ def gravity_on(grade: Grade | None) -> tuple[float, float, float]:
         return 0.0, 0.0, -GRAVITY
     x, y, z = (-GRAVITY * axes_of(grade)[2]).tolist()
     return x, y, z
+
+
+def traverse_drive(seed: int, duration: float) -> Inputs:
+    """Return a command script: straight legs of 4 s to 8 s, a turn of 1.5 s to 3.5 s after each."""
+    random = np.random.default_rng(seed)
+    t = np.arange(0.0, duration, _PERIOD)
+    v, omega = np.zeros_like(t), np.zeros_like(t)
+    row = 0
+    while row < len(t):
+        straight, turn = (int(random.uniform(*seconds) / _PERIOD) for seconds in (_LEGS, _TURNS))
+        v[row : row + straight] = random.uniform(0.5, 1.6)
+        row += straight
+        v[row : row + turn] = random.uniform(0.2, 1.2)
+        omega[row : row + turn] = random.choice((-1.0, 1.0)) * random.uniform(0.2, 0.6)
+        row += turn
+    return Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega)
 
 
 def seen_from_above(truth: Truth, position: Floats, grade: Grade) -> Truth:

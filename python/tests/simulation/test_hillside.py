@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from slipwise import _core
+from slipwise.calibration import calibrate
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade
+from slipwise.models import Model
 from slipwise.simulation import Perturbation, Scenario, simulate
 from slipwise.simulation.drive import hold
-from slipwise.simulation.hillside import axes_of, gravity_on
+from slipwise.simulation.hillside import axes_of, gravity_on, traverse_drive
 from slipwise.simulation.land_tamer import GRAVITY, LandTamer
 from slipwise.simulation.physics import Sampling, World, run_physics
 from slipwise.simulation.tyre_force import TyreLaw
@@ -54,3 +56,34 @@ def test_slip_surfaces_have_no_hillside() -> None:
     surface = LeastSquaresSurface(_core.named_basis("edd-2"))
     with pytest.raises(SettingsError, match="level ground"):
         simulate(Scenario(grade=ACROSS, perturbation=Perturbation(surface)), seed=1)
+
+
+def downhill_slip(model: Model, hill: Grade, seed: int) -> tuple[float, float]:
+    """Mean slip velocity downhill on a course, as it was and as the model says from the wheels [m/s]."""
+    scenario = Scenario(duration=200.0, grade=hill, commands=traverse_drive(seed, 200.0))
+    truth = simulate(scenario, seed=seed).truth
+    v, omega = LandTamer().odometry(truth.wheel_left, truth.wheel_right)
+    angle = hill.downhill - truth.yaw
+    downhill = np.stack((np.cos(angle), np.sin(angle)))
+    pull = GRAVITY * np.sin(hill.slope) * downhill
+    alpha, basis = model.mean[: model.motion.slip_size], model.motion.basis
+    states = [_core.SlipState(*row) for row in zip(v, omega, *pull, strict=True)]
+    predicted = np.array([_core.slip_rate(basis, alpha, state)[:2] for state in states]).T
+    moving = truth.t > 3.0
+    found = ((slip * downhill).sum(axis=0)[moving].mean() for slip in ((truth.vx - v, truth.vy), predicted))
+    was, said = (float(value) for value in found)
+    return was, said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("degrees", [6.0, 10.0])
+def test_side_slip_downhill_is_predicted_to_a_tenth_on_other_hills(degrees: float) -> None:
+    hill = Grade(np.radians(degrees), downhill=-1.2)
+    course = Scenario(duration=300.0, grade=hill, commands=traverse_drive(1, 300.0))
+    model = calibrate(simulate(course, seed=3).log, input="command").model
+    held_out = model.content.verdict.held_out
+    assert held_out is not None
+    assert held_out.position < 0.1 * held_out.baseline_position
+    for slope, downhill, seed in ((5.0, 0.4, 2), (8.0, 2.0, 4), (10.0, -2.0, 5)):
+        was, said = downhill_slip(model, Grade(np.radians(slope), downhill), seed)
+        assert said == pytest.approx(was, rel=0.1)
