@@ -13,7 +13,7 @@ from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
-from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_path
+from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_path, tilt_from_imu
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
@@ -149,7 +149,8 @@ def fix_stream(
 ) -> RawStream:
     """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
 
-    The heading is the IMU's where there is one, else the direction of the path while the robot moves.
+    Heading, roll and pitch are the IMU's where there is one; otherwise the heading is the direction of the
+    path while the robot moves.
     """
     values = samples.values
     position = np.isfinite(values[:, :2]).all(axis=1)
@@ -160,19 +161,22 @@ def fix_stream(
     if good.any():
         x[good], y[good], z[good] = east_north_up(values[good, 0], values[good, 1], altitude[good]).T
     yaw, known = np.full(len(values), np.nan), np.zeros(len(values), bool)
+    tilts: dict[str, Floats] = {}
     t = context.seconds(samples, "poses")
     if imu is not None and len(imu.values):
         q, upright = unit_quaternions(imu.values)
         if upright.any():
-            yaw, known = heading_from_imu(t, context.seconds(imu, "imu")[upright], angles_of(q[upright])[2])
+            imu_t, (roll, pitch, heading) = context.seconds(imu, "imu")[upright], angles_of(q[upright])
+            yaw, known = heading_from_imu(t, imu_t, heading)
+            tilts = {"roll": tilt_from_imu(t, imu_t, roll), "pitch": tilt_from_imu(t, imu_t, pitch)}
         _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
     if known.any():
-        context.notes.append("headings are those of the IMU")
+        context.notes.append("headings, roll and pitch are those of the IMU")
     else:
         yaw[good], known[good] = heading_from_path(t[good], x[good], y[good], inputs)
         context.notes.append(f"{samples.topic} has no headings: they are the direction of the path")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
-    columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": deviation_of(values[:, 4:6])}
+    columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": deviation_of(values[:, 4:6]), **tilts}
     return context.stream("poses", samples, columns, good & known)
 
 

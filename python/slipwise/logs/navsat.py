@@ -50,11 +50,20 @@ def heading_from_imu(t: Floats, imu_t: Floats, imu_yaw: Floats) -> tuple[Floats,
     """
     if len(imu_t) == 0:
         return np.full(len(t), np.nan), np.zeros(len(t), bool)
+    yaw = np.interp(t, imu_t, np.unwrap(imu_yaw))
+    return np.arctan2(np.sin(yaw), np.cos(yaw)), _near(t, imu_t)
+
+
+def tilt_from_imu(t: Floats, imu_t: Floats, angle: Floats) -> Floats:
+    """Interpolate the IMU's roll or pitch [M] at the fixes, [N]; NaN where no sample was near enough."""
+    return np.where(_near(t, imu_t), np.interp(t, imu_t, angle), np.nan)
+
+
+def _near(t: Floats, imu_t: Floats) -> Bools:
+    """Whether the IMU spoke near enough to each time, [N]."""
     after = np.clip(np.searchsorted(imu_t, t), 0, len(imu_t) - 1)
     before = np.maximum(after - 1, 0)
-    near = np.minimum(np.abs(imu_t[after] - t), np.abs(imu_t[before] - t)) <= _MAX_IMU_AGE
-    yaw = np.interp(t, imu_t, np.unwrap(imu_yaw))
-    return np.arctan2(np.sin(yaw), np.cos(yaw)), np.asarray(near)
+    return np.asarray(np.minimum(np.abs(imu_t[after] - t), np.abs(imu_t[before] - t)) <= _MAX_IMU_AGE)
 
 
 def heading_from_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> tuple[Floats, Bools]:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from slipwise.logs import Inputs
-from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_path
+from slipwise.logs.navsat import east_north_up, ecef, heading_from_imu, heading_from_path, tilt_from_imu
 
 
 def test_earth_centred_positions_on_the_axes() -> None:
@@ -61,3 +61,10 @@ def test_imu_headings_are_followed_through_half_a_turn_and_not_made_up_across_a_
     yaw, near = heading_from_imu(np.array([0.1, 2.5]), imu_t, imu_yaw)
     assert near.tolist() == [True, False]
     assert abs(abs(yaw[0]) - np.pi) < 1e-9
+
+
+def test_tilts_of_the_imu_are_interpolated_and_not_made_up_across_a_gap() -> None:
+    imu_t, pitch = np.array([0.0, 0.2, 5.0]), np.array([0.1, 0.3, 0.0])
+    found = tilt_from_imu(np.array([0.1, 2.5]), imu_t, pitch)
+    assert found[0] == pytest.approx(0.2)
+    assert np.isnan(found[1])
