@@ -2,6 +2,7 @@
 // Bindings of cpp/include/slipwise/planning.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string_view.h>
@@ -142,13 +143,17 @@ MppiReference reference_of(const Rows<3>& rows) {
   return reference;
 }
 
-using Motions = std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>>>;
+/// Model, parameters, limits, and the rise of the ground per metre along the axes of the poses' frame.
+using Motions =
+    std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>, std::array<double, 2>>>;
 
 std::vector<RolloutProgram> programs_of(const Motions& motions, double period) {
   std::vector<RolloutProgram> programs;
-  for (const auto& [model, parameters, limits] : motions) {
-    programs.emplace_back(model, parameters,
-                          RolloutSetting{.period = period, .limits = limits.value_or(CommandLimits{})});
+  for (const auto& [model, parameters, limits, rise] : motions) {
+    programs.emplace_back(
+        model, parameters,
+        RolloutSetting{
+            .period = period, .limits = limits.value_or(CommandLimits{}), .rise_x = rise[0], .rise_y = rise[1]});
   }
   return programs;
 }

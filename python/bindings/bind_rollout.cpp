@@ -2,6 +2,7 @@
 // Bindings of cpp/include/slipwise/rollout.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -79,9 +80,14 @@ InstructionLevel level_named(const std::string& name) {
   throw std::invalid_argument("unknown instruction level '" + name + "'; known are portable, avx2, avx512");
 }
 
-/// Without limits the commands pass as they are.
-RolloutSetting setting(double period, double gx, double gy, const CommandLimits* limits) {
-  return {.period = period, .gx = gx, .gy = gy, .limits = limits == nullptr ? CommandLimits{} : *limits};
+/// Without limits the commands pass as they are. `ground` is (gx, gy, rise_x, rise_y).
+RolloutSetting setting(double period, const std::array<double, 4>& ground, const CommandLimits* limits) {
+  return {.period = period,
+          .gx = ground[0],
+          .gy = ground[1],
+          .limits = limits == nullptr ? CommandLimits{} : *limits,
+          .rise_x = ground[2],
+          .rise_y = ground[3]};
 }
 
 template <typename Scalar>
@@ -122,17 +128,17 @@ void bind_uncertain(nb::module_& m) {
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale,
              double inflation, const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period,
-             double gx, double gy, const CommandLimits* limits) {
+             const std::array<double, 4>& ground, const CommandLimits* limits) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
             check_size(prior_std, model.size(), "the prior of a model");
             new (self) UncertainModel{model,
                                       parameters,
                                       {covariance, noise, scale, inflation, disturbance, prior_std},
-                                      setting(period, gx, gy, limits)};
+                                      setting(period, ground, limits)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "inflation"_a, "disturbance"_a,
-          "prior_std"_a, "period"_a, "gx"_a, "gy"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
+          "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
@@ -163,10 +169,13 @@ void bind_rollout(nb::module_& m) {
       .def(
           "__init__",
           [](RolloutProgram* self, const MotionModel& model, const Eigen::VectorXd& parameters, double period,
-             double gx, double gy, const CommandLimits* limits) {
-            new (self) RolloutProgram(model, parameters, setting(period, gx, gy, limits));
+             const std::array<double, 4>& ground, const CommandLimits* limits) {
+            new (self) RolloutProgram(model, parameters, setting(period, ground, limits));
           },
-          "model"_a, "parameters"_a, "period"_a, "gx"_a, "gy"_a, "limits"_a.none())
+          "model"_a, "parameters"_a, "period"_a, "ground"_a, "limits"_a.none(),
+          "`ground` is gravity along the robot's x and y axes [m/s^2], and the rise of a plane per metre along the "
+          "axes "
+          "of the starts' frame: one of the two pairs is zero.")
       .def_prop_ro("period", [](const RolloutProgram& program) { return program.setting().period; });
   nb::class_<StartList>(m, "StartList", "Where rollouts start.")
       .def(

@@ -11,14 +11,25 @@
 namespace slipwise {
 namespace {
 
+constexpr double kSteepest = 1.7320509;  // rise per metre at 60 degrees
+
 SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                     const RolloutSetting& setting) {
   model.check(parameters);
   if (!std::isfinite(setting.gx) || !std::isfinite(setting.gy)) {
     throw std::invalid_argument("the gravity along the robot's axes must be finite");
   }
+  const double steepness = std::hypot(setting.rise_x, setting.rise_y);
+  if (!(steepness <= kSteepest)) {
+    throw std::invalid_argument("the ground must not be steeper than 60 degrees");
+  }
+  if (steepness > 0.0 && (setting.gx != 0.0 || setting.gy != 0.0)) {
+    throw std::invalid_argument("give the gravity along the robot's axes or the ground's grade, not both");
+  }
   const Eigen::VectorXd alpha = parameters.head(model.slip_size());
-  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, setting.gx, setting.gy);
+  const std::optional<std::array<double, 2>> gravity =
+      steepness > 0.0 ? std::nullopt : std::optional(std::array{setting.gx, setting.gy});
+  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, gravity);
 }
 
 std::vector<LaneProduct> lane_products(const SlipProgram& program) {

@@ -19,17 +19,20 @@ class Compiler {
                          {kProductOne, SlipFactor::V, {}}};
   }
 
-  void add(const Term& term, std::size_t channel, double alpha, const std::array<double, 2>& gravity) {
+  void add(const Term& term, std::size_t channel, double alpha, const std::optional<std::array<double, 2>>& gravity) {
     double fraction = alpha * term.coefficient();
     std::vector<SlipFactor> factors;
     for (const Quantity quantity : term.factors()) {
-      if (quantity == Quantity::GravityX || quantity == Quantity::GravityY) {
-        fraction *= gravity[quantity == Quantity::GravityX ? 0 : 1];
+      const bool along_x = quantity == Quantity::GravityX;
+      if (!along_x && quantity != Quantity::GravityY) {
+        factors.push_back(static_cast<SlipFactor>(quantity));
+      } else if (!gravity) {
+        factors.push_back(along_x ? SlipFactor::GravityX : SlipFactor::GravityY);
+      } else {
+        fraction *= (*gravity)[along_x ? 0 : 1];
         if (std::ranges::find(factors, SlipFactor::Moving) == factors.end()) {
           factors.push_back(SlipFactor::Moving);
         }
-      } else {
-        factors.push_back(static_cast<SlipFactor>(quantity));
       }
     }
     std::ranges::sort(factors);  // terms with the same beginning share it
@@ -97,10 +100,11 @@ std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program) {
   return found;
 }
 
-SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha, double gx, double gy) {
+SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha,
+                         const std::optional<std::array<double, 2>>& gravity) {
   Compiler compiler;
   for (std::size_t i = 0; i < basis.size(); ++i) {
-    compiler.add(basis.terms()[i], static_cast<std::size_t>(basis.channel(i)), alpha[i], {gx, gy});
+    compiler.add(basis.terms()[i], static_cast<std::size_t>(basis.channel(i)), alpha[i], gravity);
   }
   return std::move(compiler).finish();
 }

@@ -40,7 +40,7 @@ Eigen::Vector3d evaluate(const SlipProgram& program, const SlipState& state) {
 
 SlipProgram compiled(const Basis& basis, double gx = 0.0, double gy = 0.0) {
   const Eigen::VectorXd alpha = tests::sample_slip(basis, 9);
-  return compile_slip(basis, {alpha.data(), basis.size()}, gx, gy);
+  return compile_slip(basis, {alpha.data(), basis.size()}, std::array{gx, gy});
 }
 
 TEST_CASE("for all bases the products are the drive and its slip, on derivatives and parked too") {

@@ -15,6 +15,7 @@ from slipwise.excitation.knowledge import Knowledge
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, of the rollouts
+LEVEL = [0.0] * 4  # no gravity along the robot's axes, no rise of the ground
 THREE_SIGMA = 2.782  # normal quantile of 99.73 %, which three standard deviations hold in one dimension
 
 
@@ -95,7 +96,7 @@ def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     parameters = knowledge.mean + drawn @ root.T
     motion, limits = knowledge.motion, knowledge.limits
-    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, 0.0, 0.0, limits) for row in parameters))
+    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, LEVEL, limits) for row in parameters))
 
 
 def _rolled(program: _core.RolloutProgram, commands: Floats) -> Floats:

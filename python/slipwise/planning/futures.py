@@ -51,7 +51,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     rollouts, periods = numbers.shape[:2]
     result = np.empty((3, samples, periods, rollouts))
     try:
-        widened = uncertain(model, dt, begin.gravity, dt * periods)
+        widened = uncertain(model, dt, begin.ground, dt * periods)
         _core.sample_futures(widened, numbers, begin.in_core(rollouts), seed, result, threads)
     except (ValueError, TypeError) as problem:
         raise SettingsError(str(problem)) from problem

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import Grade
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
@@ -29,6 +30,7 @@ class Motion:
     model: _core.MotionModel
     parameters: Floats
     limits: _core.CommandLimits | None = None  # of the drive, in front of its delay and lag
+    grade: Grade | None = None  # of the ground in the frame of the reference; level where there is none
 
 
 def baseline_motion() -> Motion:
@@ -42,15 +44,17 @@ def vendor_motion(multiplier: float) -> Motion:
     return Motion(model, np.array([0.0, 1.0 / multiplier - 1.0]))
 
 
-def learned_motions(model: Model, *, samples: int = 0, seed: int = 1, seconds: float = 2.8) -> list[Motion]:
+def learned_motions(
+    model: Model, *, samples: int = 0, seed: int = 1, seconds: float = 2.8, grade: Grade | None = None
+) -> list[Motion]:
     """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
 
     The slip disturbance is drawn as its mean over `seconds`, by default the controller's horizon. All have
-    the limits of the drive that were learned.
+    the limits of the drive that were learned, and drive on the `grade`.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
     drawn = rng.multivariate_normal(model.mean, model.covariance_over(seconds), size=samples, method="eigh")
-    return [Motion(model.motion, parameters, model.limits) for parameters in (model.mean, *drawn)]
+    return [Motion(model.motion, parameters, model.limits, grade) for parameters in (model.mean, *drawn)]
 
 
 @dataclass(frozen=True)
@@ -113,8 +117,15 @@ def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap
     return Costmap(cells, grid.resolution, grid.origin, LETHAL)
 
 
-def _as_core(motions: list[Motion]) -> list[tuple[_core.MotionModel, Floats, _core.CommandLimits | None]]:
-    return [(motion.model, motion.parameters, motion.limits) for motion in motions]
+_InCore = tuple[_core.MotionModel, Floats, _core.CommandLimits | None, tuple[float, float]]
+
+
+def _as_core(motions: list[Motion]) -> list[_InCore]:
+    return [(motion.model, motion.parameters, motion.limits, _rise(motion.grade)) for motion in motions]
+
+
+def _rise(grade: Grade | None) -> tuple[float, float]:
+    return (0.0, 0.0) if grade is None else grade.rise(0.0)
 
 
 def _sent(command: tuple[float, float]) -> Floats:

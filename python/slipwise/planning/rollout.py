@@ -15,7 +15,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
-from slipwise.planning.start import Start
+from slipwise.planning.start import GroundOfRollouts, Start
 from slipwise.prediction import student_at
 
 Numbers = NDArray[Any]  # float32 or float64
@@ -93,7 +93,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     starts = begin.in_core(rollouts)
     gpu = gpu_of(device)
     try:
-        program = _core.RolloutProgram(model.motion, model.mean, dt, *begin.gravity, model.limits)
+        program = _core.RolloutProgram(model.motion, model.mean, dt, begin.ground, model.limits)
         _core.rollout_batch(
             program,
             numbers,
@@ -144,12 +144,12 @@ def check_threads(threads: int) -> None:
         raise SettingsError(f"{threads} threads cannot work", advice="use threads=1 or more")
 
 
-def uncertain(model: Model, dt: float, gravity: tuple[float, float], horizon: float) -> _core.UncertainModel:
+def uncertain(model: Model, dt: float, ground: GroundOfRollouts, horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
     scale = np.array(model.content.noise.variance_scale)
     inflation = student_at(model, horizon).inflation
     spread = (model.covariance, model.noise, scale, inflation, model.disturbance, model.prior_std)
-    return _core.UncertainModel(model.motion, model.mean, *spread, dt, *gravity, model.limits)
+    return _core.UncertainModel(model.motion, model.mean, *spread, dt, ground, model.limits)
 
 
 def _covariance(
@@ -157,7 +157,7 @@ def _covariance(
 ) -> NDArray[np.float64]:
     rollouts, periods = commands.shape[:2]
     result = np.empty((6, periods, rollouts))
-    unit = uncertain(model, dt, start.gravity, dt)
+    unit = uncertain(model, dt, start.ground, dt)
     _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
     at_one_period = student_at(model, dt).inflation
     inflation = np.array([student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)])

@@ -10,8 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
+from slipwise.ground import Grade
 
 Floats = NDArray[np.float64]
+
+
+GroundOfRollouts = tuple[float, float, float, float]  # gx, gy [m/s^2], rise along x and along y [m/m]
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +26,12 @@ class Start:
     drive: ArrayLike = (0.0, 0.0)  # [2] or [N, 2]: v [m/s], omega [rad/s] now; they matter behind lag, ramps
     past: ArrayLike | None = None  # [P, 2] or [N, P, 2]: commands sent before, one period apart, oldest first
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2 along the robot's x and y axes, positive downhill
+    grade: Grade | None = None  # of the ground in the frame of `pose`, in place of `gravity`
+
+    @property
+    def ground(self) -> GroundOfRollouts:
+        """Gravity, and how much the ground rises per metre along the axes of the frame of `pose`."""
+        return (*self.gravity, *((0.0, 0.0) if self.grade is None else self.grade.rise(0.0)))
 
     def in_core(self, rollouts: int) -> _core.StartList:
         """Check the start against the number of rollouts and hand it to the core.

@@ -12,6 +12,7 @@ from sample_models import LIMITS, Made, make_model
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import Grade
 from slipwise.planning import (
     Controller,
     GridMap,
@@ -125,3 +126,15 @@ def test_what_makes_no_sense_is_refused() -> None:
         controller.command((math.nan, 0.0, 0.0), (0.0, 0.0))
     with pytest.raises(SettingsError):
         controller.command((0.0, 0.0, 0.0), (math.nan, 0.0))
+
+
+def test_on_a_slope_across_its_track_the_controller_steers_uphill() -> None:
+    """The robot slides to the right, downhill; who does not know it steers straight on."""
+    values = {"lat.gy": 0.1}
+    model = make_model(Made(basis=_core.named_basis("ipem-13"), values=values, std=1e-3, commands=True))
+    reference = ReferencePath(np.column_stack((np.linspace(0.0, 20.0, 201), np.zeros(201))), speed=1.0)
+    turned = []
+    for grade in (None, Grade(0.25, downhill=-math.pi / 2)):
+        controller = Controller(learned_motions(model, grade=grade), reference)
+        turned.append(np.mean([controller.command((2.0, 0.0, 0.0), (1.0, 0.0))[1] for _ in range(10)]))
+    assert turned[1] > turned[0] + 0.05

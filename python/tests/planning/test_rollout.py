@@ -14,6 +14,7 @@ from sample_models import LIMITS, Made, make_model
 from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.errors import ModelError, SettingsError
+from slipwise.ground import Grade
 from slipwise.models import Model, load_model
 from slipwise.planning import Costmap, Start, command_buffer, rollout, sample_futures
 from slipwise.prediction import predict
@@ -248,3 +249,37 @@ def test_a_model_of_another_schema_is_refused_before_it_can_be_rolled_out(
     path.write_text(path.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
     with pytest.raises(ModelError, match="schema version 99"):
         load_model(path)
+
+
+def sliding() -> Model:
+    """A model of a robot that slides downhill and turns its nose down, behind a lag and a delay."""
+    values = {"lon.V": -0.05, "lon.gx": 0.05, "lat.gy": 0.1, "ang.w": -0.2, "ang.gy": 0.05}
+    return make_model(Made(basis=_core.named_basis("ipem-13"), values=values, commands=True))
+
+
+def test_rollouts_on_a_grade_are_those_of_predict_from_every_heading() -> None:
+    model, grade = sliding(), Grade(0.2, downhill=0.7)
+    commands = np.zeros((3, K, 2))
+    commands[:, :, 0], commands[:, :, 1] = 0.8, np.array([[-0.5], [0.0], [0.7]])
+    yaws = (0.0, 1.0, -2.5)
+    start = Start(pose=[(1.0, 2.0, yaw) for yaw in yaws], grade=grade)
+    rolled = rollout(model, commands, DT, start=start, covariance=True)
+    assert rolled.path is not None
+    assert rolled.covariance is not None
+    for n, yaw in enumerate(yaws):
+        rows = np.column_stack((np.arange(K) * DT, commands[n]))
+        path = predict(model, rows, horizon=K * DT, ground=grade, at=(1.0, 2.0, yaw))
+        c, s = np.cos(yaw), np.sin(yaw)
+        x, y, turned = path.poses[1:].T
+        seen = np.array([1.0 + c * x - s * y, 2.0 + s * x + c * y, yaw + turned])
+        assert rolled.path[:, :, n] == pytest.approx(seen, abs=1e-4)
+        variances = rolled.covariance[(0, 2, 5), -1, n]
+        turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        stated = turn @ (path.covariance[-1] - path.covariance[0]) @ turn.T
+        assert variances == pytest.approx(np.diag(stated), rel=0.1)
+
+
+def test_a_grade_and_a_gravity_at_once_are_refused() -> None:
+    start = Start(gravity=(0.1, 0.0), grade=Grade(0.1))
+    with pytest.raises(SettingsError, match="not both"):
+        rollout(sliding(), np.zeros((1, K, 2)), DT, start=start)

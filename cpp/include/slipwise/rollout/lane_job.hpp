@@ -84,6 +84,9 @@ struct LaneJob {
   LaneQuadratic quadratic;
   unsigned factors;  ///< bits of the slip factors in use
   Scalar squared_curvature_speed;
+  bool on_grade;          ///< the ground is a plane that is not level
+  Scalar rise_x, rise_y;  ///< of it per metre along the axes of the starts' frame
+  Scalar minus_gravity;   ///< [m/s^2]
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
   bool responds;  ///< some channel has a gain or a slow mode

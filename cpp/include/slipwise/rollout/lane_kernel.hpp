@@ -2,7 +2,10 @@
 // The rollout of one block of lanes: command actuator, slip, exact steps, outputs. Compiled once per instruction level.
 #pragma once
 
+#include <cstdint>
+
 #include "slipwise/rollout/lane_actuator.hpp"
+#include "slipwise/rollout/lane_grade.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
 #include "slipwise/rollout/lane_path.hpp"
@@ -12,6 +15,10 @@
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
+
+/// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products
+/// among which gravity is, on a plane that is not level.
+enum class Slip : std::uint8_t { Products, Quadratic, OnGrade };
 
 /// A robot in every lane: its drive and where it is.
 template <class L, Actuator kActuator>
@@ -35,24 +42,30 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
 }
 
 /// The tangent of one part: the drive moves on, and slips.
-template <class L, Actuator kActuator, bool kQuadratic, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
 SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
                                RobotLanes<L, kActuator>& robot, TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
   typename L::Vector mean_omega;
   advance<L, kActuator, true>(part.v, robot.v, mean_v);
   advance<L, kActuator, false>(part.omega, robot.omega, mean_omega);
-  if constexpr (kQuadratic) {
-    quadratic_tangent<L>(job, job.coefficients + part.first_coefficient, mean_v, mean_omega, tangent);
+  const Scalar* coefficients = job.coefficients + part.first_coefficient;
+  if constexpr (kSlip == Slip::Quadratic) {
+    quadratic_tangent<L>(job, coefficients, mean_v, mean_omega, tangent);
+  } else if constexpr (kSlip == Slip::Products) {
+    slip_tangent<L>(job, coefficients, nullptr, mean_v, mean_omega, tangent);
   } else {
-    slip_tangent<L>(job, job.coefficients + part.first_coefficient, mean_v, mean_omega, tangent);
+    GradeLanes<L> grade;
+    find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
+    slip_tangent<L>(job, coefficients, &grade, mean_v, mean_omega, tangent);
+    see_from_above<L>(grade, tangent);
   }
 }
 
 /// Rolls the block out. `kWide` also takes steps that turn by more than kLaneTurn. One loop over the parts of all
 /// periods, so that the robot stays in the processor's registers: at the branch the robot is put aside, the tail leads
 /// it to the period's end, and it goes on from where it was put aside.
-template <class L, Actuator kActuator, bool kQuadratic, bool kWide, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, Slip kSlip, bool kWide, typename Scalar = L::Scalar>
 SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
@@ -74,7 +87,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
       tell(job, block, source_omega, robot.omega);
     }
     TangentLanes<L> tangent;
-    drive_part<L, kActuator, kQuadratic>(job, part, robot, tangent);
+    drive_part<L, kActuator, kSlip>(job, part, robot, tangent);
     step<L, kWide>(tangent, robot.path);
     if constexpr (kActuator == Actuator::None) {
       output.write_period(robot.path, period);
@@ -107,10 +120,13 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   return find_faults<L, kWide>(robot.path, block) | (output.all_finite(robot.path) ? kNoFault : kNotFinite);
 }
 
-template <class L, Actuator kActuator, bool kQuadratic, typename Scalar = L::Scalar>
+template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  const unsigned fault = roll_block_as<L, kActuator, kQuadratic, false>(job, block);
-  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kActuator, kQuadratic, true>(job, block);
+  if constexpr (kSlip == Slip::OnGrade) {  // rarer, and not worth kernels for both kinds of turns
+    return roll_block_as<L, kActuator, kSlip, true>(job, block);
+  }
+  const unsigned fault = roll_block_as<L, kActuator, kSlip, false>(job, block);
+  return (fault & kTurnsTooFar) == 0 ? fault : roll_block_as<L, kActuator, kSlip, true>(job, block);
 }
 
 /// What the job needs a kernel for.
@@ -125,28 +141,32 @@ SLIPWISE_LANES Actuator actuator_of(const LaneJob<Scalar>& job) {
   return job.part_end == 1 && job.pieces == 1 ? Actuator::None : Actuator::Delays;
 }
 
-template <class Level, bool kQuadratic, typename Scalar>
+template <class Level, Slip kSlip, typename Scalar>
 unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
   using L = Lanes<Level, Scalar>;
   switch (actuator_of(job)) {
     case Actuator::Response:
-      return roll_block_with<L, Actuator::Response, kQuadratic>(job, block);
+      return roll_block_with<L, Actuator::Response, kSlip>(job, block);
     case Actuator::Lags:
-      return roll_block_with<L, Actuator::Lags, kQuadratic>(job, block);
+      return roll_block_with<L, Actuator::Lags, kSlip>(job, block);
     case Actuator::None:
       if constexpr (Level::kSingleLoop) {
-        return roll_block_with<L, Actuator::None, kQuadratic>(job, block);
+        return roll_block_with<L, Actuator::None, kSlip>(job, block);
       }
       break;
     case Actuator::Delays:
       break;
   }
-  return roll_block_with<L, Actuator::Delays, kQuadratic>(job, block);
+  return roll_block_with<L, Actuator::Delays, kSlip>(job, block);
 }
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  return job.is_quadratic ? roll_block_of<Level, true>(job, block) : roll_block_of<Level, false>(job, block);
+  if (job.on_grade) {
+    return roll_block_of<Level, Slip::OnGrade>(job, block);
+  }
+  return job.is_quadratic ? roll_block_of<Level, Slip::Quadratic>(job, block)
+                          : roll_block_of<Level, Slip::Products>(job, block);
 }
 
 }  // namespace slipwise

@@ -23,8 +23,16 @@ struct FactorLanes {
   L::Vector value[kSlipFactors];
 };
 
+/// How a robot stands on a plane amid a step.
+template <class L>
+struct GradeLanes {
+  L::Vector gx, gy;                               ///< [m/s^2]
+  L::Vector cos_pitch, across, cos_roll, upward;  ///< of the rows of A: (cos p, sin p sin r), cos r, cos r / cos p
+};
+
+/// Without a `grade` no product has gravity for a factor.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::Vector& v,
+SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const GradeLanes<L>* grade, const typename L::Vector& v,
                                  const typename L::Vector& omega, FactorLanes<L>& factors) {
   using Vector = L::Vector;
   const unsigned used = job.factors;
@@ -47,6 +55,11 @@ SLIPWISE_LANES void find_factors(const LaneJob<Scalar>& job, const typename L::V
   }
   if ((used & bit(SlipFactor::Moving)) != 0) {
     copy(any_nonzero(v, omega, one), at(SlipFactor::Moving));
+  }
+  if (grade != nullptr) {
+    const Vector moving = any_nonzero(v, omega, one);
+    copy(moving * grade->gx, at(SlipFactor::GravityX));
+    copy(moving * grade->gy, at(SlipFactor::GravityY));
   }
 }
 
@@ -107,10 +120,11 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
 
 /// Runs the program: each product is an earlier one times a factor, and has its coefficients in the tangent.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients, const typename L::Vector& v,
-                                 const typename L::Vector& omega, TangentLanes<L>& tangent) {
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients, const GradeLanes<L>* grade,
+                                 const typename L::Vector& v, const typename L::Vector& omega,
+                                 TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
-  find_factors<L>(job, v, omega, factors);
+  find_factors<L>(job, grade, v, omega, factors);
   typename L::Vector products[kMostProducts];
   copy(v, products[kProductV]);
   copy(omega, products[kProductOmega]);

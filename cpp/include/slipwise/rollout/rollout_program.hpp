@@ -20,6 +20,8 @@ struct RolloutSetting {
   double gx = 0.0;            ///< gravity along the robot's x axis, positive downhill [m/s^2]
   double gy = 0.0;            ///< along its y axis [m/s^2]
   CommandLimits limits = {};  ///< of the drive, in front of its delay and lag
+  double rise_x = 0.0;        ///< of a plane per metre along the axes of the starts' frame; excludes gx and gy
+  double rise_y = 0.0;        ///< [m/m]
 };
 
 /// The program in the numbers of a kernel.
@@ -33,7 +35,8 @@ struct LaneConstants {
 class RolloutProgram {
  public:
   /// \throws std::invalid_argument when the parameters do not fit the model, the period is not positive, the gravity
-  /// not finite, a limit is none, or the basis too large.
+  /// not finite, a limit is none, the plane steeper than 60
+  /// degrees, or the basis too large.
   RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                  const RolloutSetting& setting);
 

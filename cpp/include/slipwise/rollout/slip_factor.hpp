@@ -9,10 +9,10 @@
 
 namespace slipwise {
 
-/// `Moving` is 1, and 0 where a robot is parked: gravity is constant over a rollout and goes into a product's
-/// fractions, but must not move a parked robot.
-enum class SlipFactor : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, Moving };
-inline constexpr std::size_t kSlipFactors = 7;
+/// `Moving` is 1, and 0 where a robot is parked: gravity that is constant over a rollout goes into a product's
+/// fractions, but must not move a parked robot. On a grade gravity turns with the heading and is a factor.
+enum class SlipFactor : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, Moving, GravityX, GravityY };
+inline constexpr std::size_t kSlipFactors = 9;
 
 SLIPWISE_LANES constexpr unsigned bit(SlipFactor factor) { return 1U << static_cast<unsigned>(factor); }
 

@@ -33,8 +33,10 @@ struct SlipProgram {
 std::optional<LaneQuadratic> find_quadratic(const SlipProgram& program);
 
 /// Products that several terms fraction are computed once.
-/// \param alpha the slip parameters in basis order. \param gx, gy body-frame gravity [m/s^2].
+/// \param alpha the slip parameters in basis order. \param gravity along the body's x and y axes [m/s^2]; without one
+/// it turns with the heading and is a factor.
 /// \throws std::invalid_argument when the basis needs more products than a kernel has room for.
-SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha, double gx, double gy);
+SlipProgram compile_slip(const Basis& basis, std::span<const double> alpha,
+                         const std::optional<std::array<double, 2>>& gravity);
 
 }  // namespace slipwise

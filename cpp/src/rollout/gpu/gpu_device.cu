@@ -18,13 +18,13 @@ void check(cudaError_t error, const char* doing) {
   }
 }
 
-template <typename Scalar, Actuator kActuator, bool kQuadratic, bool kWide>
+template <typename Scalar, Actuator kActuator, Slip kSlip, bool kWide>
 __global__ void __launch_bounds__(kThreads) roll(const __grid_constant__ ThreadJob<Scalar> job, unsigned* faults) {
   const std::size_t rollout = static_cast<std::size_t>(blockIdx.x) * kThreads + threadIdx.x;
   if (rollout >= job.job.rollouts) {
     return;
   }
-  const unsigned found = roll_thread<kActuator, kQuadratic, kWide>(job, rollout);
+  const unsigned found = roll_thread<kActuator, kSlip, kWide>(job, rollout);
   if (found != kNoFault) {
     atomicOr(faults, found);
   }
@@ -36,10 +36,10 @@ struct Launch {
   const ThreadJob<Scalar>& job;
   unsigned* faults;
 
-  template <Actuator kActuator, bool kQuadratic, bool kWide>
+  template <Actuator kActuator, Slip kSlip, bool kWide>
   void call() const {
     const auto blocks = static_cast<unsigned>((job.job.rollouts + kThreads - 1) / kThreads);
-    roll<Scalar, kActuator, kQuadratic, kWide><<<blocks, kThreads>>>(job, faults);
+    roll<Scalar, kActuator, kSlip, kWide><<<blocks, kThreads>>>(job, faults);
   }
 };
 

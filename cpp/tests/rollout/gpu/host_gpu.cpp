@@ -28,10 +28,10 @@ struct RunHere {
   const ThreadJob<Scalar>& job;
   unsigned* faults;
 
-  template <Actuator kActuator, bool kQuadratic, bool kWide>
+  template <Actuator kActuator, Slip kSlip, bool kWide>
   void call() const {
     for (std::size_t rollout = 0; rollout < job.job.rollouts; ++rollout) {
-      *faults |= roll_thread<kActuator, kQuadratic, kWide>(job, rollout);
+      *faults |= roll_thread<kActuator, kSlip, kWide>(job, rollout);
     }
   }
 };

@@ -72,6 +72,22 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
   }
 }
 
+TEST_CASE("rollouts on a grade are the processor's on a GPU too") {
+  if (skipped()) {
+    return;
+  }
+  Gpu gpu;
+  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  for (const tests::SampleChain& actuator : tests::sample_chains()) {
+    CAPTURE(std::string(actuator.name));
+    const MotionModel model(named_basis("drive-9"), actuator.learned);
+    const RolloutProgram program(model, tests::sample_parameters(model, actuator),
+                                 {.period = kPeriod, .rise_x = 0.12, .rise_y = -0.2});
+    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
+    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+  }
+}
+
 TEST_CASE("a GPU takes commands as they lie, and starts of every rollout's own") {
   if (skipped()) {
     return;

@@ -51,7 +51,7 @@ SLIPWISE_LANES unsigned find_unused_faults(const ThreadJob<Scalar>& given, std::
 }
 
 /// Drives one rollout and says what went wrong, as bits.
-template <Actuator kActuator, bool kQuadratic, bool kWide, typename Scalar>
+template <Actuator kActuator, Slip kSlip, bool kWide, typename Scalar>
 SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t rollout) {
   LaneJob<Scalar> job = given.job;
   job.parts = given.parts;
@@ -69,29 +69,33 @@ SLIPWISE_LANES unsigned roll_thread(const ThreadJob<Scalar>& given, std::size_t 
   block.first = rollout;
   block.count = 1;
   block.side_by_side = true;
-  return roll_block_as<OneLane<Scalar>, kActuator, kQuadratic, kWide>(job, block) | find_unused_faults(given, rollout);
+  return roll_block_as<OneLane<Scalar>, kActuator, kSlip, kWide>(job, block) | find_unused_faults(given, rollout);
 }
 
-/// Calls `work.call<kActuator, kQuadratic, kWide>()` with what the job needs.
-template <bool kQuadratic, bool kWide, typename Scalar, class Work>
+/// Calls `work.call<kActuator, kSlip, kWide>()` with what the job needs.
+template <Slip kSlip, bool kWide, typename Scalar, class Work>
 void with_thread_actuator(const LaneJob<Scalar>& job, const Work& work) {
   switch (actuator_of(job)) {
     case Actuator::None:
-      return work.template call<Actuator::None, kQuadratic, kWide>();
+      return work.template call<Actuator::None, kSlip, kWide>();
     case Actuator::Delays:
-      return work.template call<Actuator::Delays, kQuadratic, kWide>();
+      return work.template call<Actuator::Delays, kSlip, kWide>();
     case Actuator::Lags:
-      return work.template call<Actuator::Lags, kQuadratic, kWide>();
+      return work.template call<Actuator::Lags, kSlip, kWide>();
     case Actuator::Response:
-      return work.template call<Actuator::Response, kQuadratic, kWide>();
+      return work.template call<Actuator::Response, kSlip, kWide>();
   }
 }
 template <typename Scalar, class Work>
 void with_thread_kernel(const LaneJob<Scalar>& job, bool wide, const Work& work) {
-  if (job.is_quadratic) {
-    wide ? with_thread_actuator<true, true>(job, work) : with_thread_actuator<true, false>(job, work);
+  if (job.on_grade) {
+    with_thread_actuator<Slip::OnGrade, true>(job, work);
+  } else if (job.is_quadratic) {
+    wide ? with_thread_actuator<Slip::Quadratic, true>(job, work)
+         : with_thread_actuator<Slip::Quadratic, false>(job, work);
   } else {
-    wide ? with_thread_actuator<false, true>(job, work) : with_thread_actuator<false, false>(job, work);
+    wide ? with_thread_actuator<Slip::Products, true>(job, work)
+         : with_thread_actuator<Slip::Products, false>(job, work);
   }
 }
 
