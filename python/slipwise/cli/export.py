@@ -26,6 +26,9 @@ class TargetName(StrEnum):
     mppi = "mppi"
     amcl = "amcl"
     robot_localization = "robot-localization"
+    autoware = "autoware"
+    px4 = "px4"
+    ardupilot = "ardupilot"
     c_header = "c-header"
     all = "all"
 
@@ -39,7 +42,9 @@ class Nav2(StrEnum):
 
 def export(
     model: ModelFile,
-    to: Annotated[TargetName, typer.Option("--to", show_default=False, help="The tool to write for.")],
+    to: Annotated[
+        TargetName | None, typer.Option("--to", show_default=False, help="The tool to write for.")
+    ] = None,
     output: Annotated[
         Path,
         typer.Option("-o", "--output", metavar="PATH", help="The file, or the folder to put files into."),
@@ -58,11 +63,20 @@ def export(
         float | None, optional("METRES", "Of an Ackermann vehicle, by its geometry.")
     ] = None,
     nav2: Annotated[Nav2, typer.Option("--nav2", help="Whose parameter names MPPI gets.")] = Nav2.rolling,
+    px4: Annotated[str | None, optional("VERSION", "Write for this PX4, such as 1.17.")] = None,
+    ardupilot: Annotated[
+        str | None, optional("VERSION", "Write for this ArduPilot Rover, such as 4.6.")
+    ] = None,
+    wheel_base: Annotated[float | None, optional("METRES", "Of a vehicle that steers.")] = None,
+    logged: Annotated[
+        list[str] | None,
+        optional("NAME=VALUE", "The autopilot's parameter while the log was recorded; repeatable."),
+    ] = None,
     surface: Annotated[str | None, optional("NAME", "One of the surfaces that the model remembers.")] = None,
     force: Annotated[bool, typer.Option("--force", help="Export a model with a bad verdict, too.")] = False,
     json: Json = None,
 ) -> int:
-    """Write a learned model into files for other tools: ros2_control, Nav2, robot_localization, C.
+    """Write a learned model into files for other tools: ros2_control, Nav2, PX4, C.
 
     `all` writes every file that the model has something to say for, and says what it left out and why. A
     model with a bad verdict is refused with exit code 1 unless --force is given.
@@ -72,6 +86,8 @@ def export(
       slipwise export model.yaml --to diff-drive -o diff_drive_controller.yaml
       slipwise export model.yaml --to all -o config/ --wheel-separation 0.57
       slipwise export commands.yaml --to mppi --nav2 kilted
+      slipwise export model.yaml --px4 1.17 -o rover.params
+      slipwise export commands.yaml --ardupilot 4.6 --logged ATC_STR_RAT_FF=0.2
       slipwise export model.yaml --to c-header -o model.h --json -
     """  # noqa: D301
     from slipwise.cli.bad_verdict import say_refused
@@ -90,18 +106,50 @@ def export(
         logged_radius_multiplier=logged_radius_multiplier,
         min_turning_radius=min_turning_radius,
         nav2="kilted" if nav2 is Nav2.kilted else "rolling",
+        wheel_base=wheel_base,
+        px4=px4,
+        ardupilot=ardupilot,
+        logged=_logged(logged or []),
     )
+    target = to or _of_firmware(px4, ardupilot)
     learned = load_model(model) if surface is None else on_surface(load_model(model), surface)
     if not learned.content.verdict.good and not force:
         say_refused(out, learned, "export")
         return 1
-    made = _make(learned, model.name, to, options)
-    paths = _paths(made, output, to)
+    made = _make(learned, model.name, target, options)
+    paths = _paths(made, output, target)
     refuse_unwritable(*paths.values(), out.written_file, inputs=[model])
-    for target, exported in made.files:
-        write_text_whole(paths[target.name], exported.text)
+    for written, exported in made.files:
+        write_text_whole(paths[written.name], exported.text)
     _report(out, made, paths)
     return 0
+
+
+def _logged(given: Sequence[str]) -> dict[str, float]:
+    """Return parameters of an autopilot by their names."""
+    from slipwise.errors import SettingsError
+
+    found = {}
+    for text in given:
+        name, _, value = text.partition("=")
+        try:
+            found[name.strip()] = float(value)
+        except ValueError:
+            raise SettingsError(
+                f"{text!r} is no parameter", where="--logged", advice="give NAME=VALUE"
+            ) from None
+    return found
+
+
+def _of_firmware(px4: str | None, ardupilot: str | None) -> TargetName:
+    """Return the target that a named version asks for."""
+    from slipwise.errors import SettingsError
+
+    if (px4 is None) == (ardupilot is None):
+        raise SettingsError(
+            "Missing option '--to'", advice="name one tool, or a version with --px4 or --ardupilot"
+        )
+    return TargetName.px4 if ardupilot is None else TargetName.ardupilot
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Files for other tools from a learned model: ros2_control, Nav2, AMCL, robot_localization and a C header."""
+"""Files for other tools from a learned model: ros2_control, Nav2, Autoware, PX4, ArduPilot, a C header."""
 
 from slipwise.export.options import ExportOptions
 from slipwise.export.targets import TARGETS, Exported, Target, export_model, find_target, refuse_bad_verdict

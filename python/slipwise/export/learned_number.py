@@ -16,6 +16,8 @@ from slipwise.number_text import estimate_texts
 
 Floats = NDArray[np.float64]
 
+_ROUNDING = 1e-9  # of a derivative; what is smaller is left of an inversion
+
 
 @dataclass(frozen=True, eq=False)
 class LearnedNumber:
@@ -60,6 +62,7 @@ class LearnedNumbers:
         unlearned = np.where(guessed[:, None] | guessed, 0.0, model.covariance)
         self._unlearned = unlearned + np.diag(np.where(guessed, self._prior, 0.0))
         self._windows = model.content.provenance.learned_segments
+        self._names = [parameter.name for parameter in model.content.parameters]
 
     def exactly(self, value: float) -> LearnedNumber:
         """Return a number that is not learned."""
@@ -116,6 +119,14 @@ class LearnedNumbers:
     def text(self, number: LearnedNumber) -> str:
         """Return the number with its standard deviation, such as `1.68 +- 0.02`."""
         return " +- ".join(estimate_texts(number.value, self.std(number)))
+
+    def parameters_of(self, number: LearnedNumber) -> list[str]:
+        """Return the names of the model's parameters that the number depends on."""
+        return [
+            name
+            for name, by in zip(self._names, number.by_parameter.tolist(), strict=True)
+            if abs(by) > _ROUNDING
+        ]
 
     def _guessed_fraction(self, number: LearnedNumber) -> float:
         """What the log left of the variance before it: all that is of parameters it does not determine."""

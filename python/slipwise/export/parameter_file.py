@@ -58,7 +58,8 @@ class ParameterFile:
         lines = _comment("\n".join(origin))
         for note in self.notes:
             lines += ["#", *_comment(note)]
-        lines += [f"{self.node}:", "  ros__parameters:"]
+        nothing = "" if any(isinstance(entry, Entry) for entry in self.entries) else " {}"
+        lines += [f"{self.node}:", f"  ros__parameters:{nothing}"]
         open_parts: tuple[str, ...] = ()
         for entry in self.entries:
             *parents, last = entry.key

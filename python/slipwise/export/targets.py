@@ -8,8 +8,10 @@ from dataclasses import dataclass, field
 
 from slipwise.errors import ModelError, SettingsError
 from slipwise.export.amcl import amcl
+from slipwise.export.autoware import autoware
 from slipwise.export.c_header import c_header
 from slipwise.export.diff_drive import diff_drive
+from slipwise.export.firmware import FirmwareFile, ardupilot, px4
 from slipwise.export.mppi import mppi
 from slipwise.export.options import ExportOptions
 from slipwise.export.origin import origin_lines
@@ -44,6 +46,14 @@ def _parameters(make: Callable[[Model, ExportOptions], ParameterFile]) -> Callab
     return write
 
 
+def _firmware(make: Callable[[Model, ExportOptions, list[str]], FirmwareFile]) -> Callable[..., Exported]:
+    def write(model: Model, options: ExportOptions, origin: list[str]) -> Exported:
+        file = make(model, options, origin)
+        return Exported(file.text, file.values, file.kept)
+
+    return write
+
+
 def _c_header(model: Model, _: ExportOptions, origin: list[str]) -> Exported:
     return Exported(c_header(model, origin), {p.name: p.value for p in model.content.parameters})
 
@@ -53,6 +63,9 @@ TARGETS = (
     Target("mppi", "nav2_mppi.yaml", _parameters(mppi)),
     Target("amcl", "nav2_amcl.yaml", _parameters(amcl)),
     Target("robot-localization", "robot_localization.yaml", _parameters(robot_localization)),
+    Target("autoware", "autoware.param.yaml", _parameters(autoware)),
+    Target("px4", "px4.params", _firmware(px4)),
+    Target("ardupilot", "ardupilot.param", _firmware(ardupilot)),
     Target("c-header", "model.h", _c_header),
 )
 

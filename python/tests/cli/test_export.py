@@ -16,7 +16,13 @@ from sample_models import make_model, named
 Slipwise = Callable[..., Result]
 
 WHEEL = named("edd-2", lon__V=-0.1, ang__w=-0.3)
-ALL_OF_WHEEL = {"diff_drive_controller.yaml", "nav2_amcl.yaml", "robot_localization.yaml", "model.h"}
+ALL_OF_WHEEL = {
+    "diff_drive_controller.yaml",
+    "nav2_amcl.yaml",
+    "robot_localization.yaml",
+    "autoware.param.yaml",
+    "model.h",
+}
 
 
 @pytest.fixture
@@ -45,6 +51,13 @@ def test_one_target_is_written_to_the_file_that_is_named(slipwise: Slipwise, whe
     assert "robot/dd.yaml" in result.out
 
 
+def test_a_version_of_a_firmware_chooses_its_file(slipwise: Slipwise, command: Path) -> None:
+    assert slipwise("export", command, "--px4", "1.17", "--logged", "RO_MAX_THR_SPEED=2").code == 0
+    assert "RO_MAX_THR_SPEED\t1.8" in Path("px4.params").read_text()
+    assert slipwise("export", command, "--ardupilot", "4.6").code == 0
+    assert "ATC_STR_RAT_MAX," in Path("ardupilot.param").read_text()
+
+
 def test_without_an_output_the_file_has_its_usual_name(slipwise: Slipwise, wheel: Path) -> None:
     assert slipwise("export", wheel, "--to", "c-header").code == 0
     assert left_in(Path()) == {"wheel.yaml", "model.h"}
@@ -62,7 +75,7 @@ def test_json_holds_files_parameters_and_what_was_left_out(slipwise: Slipwise, c
     document = slipwise("export", command, "--to", "all", "-o", "config", "--json", "-").json
     assert (document["command"], document["exit_code"]) == ("export", 0)
     assert set(document["files"]) == {"mppi", "robot-localization", "c-header"}
-    assert set(document["left_out"]) == {"diff-drive", "amcl"}
+    assert set(document["left_out"]) == {"diff-drive", "amcl", "autoware", "px4", "ardupilot"}
     assert document["parameters"]["mppi"]["FollowPath.model_delay_vx"] == pytest.approx(0.5)
     assert all(Path(path).is_file() for path in document["files"].values())
 
@@ -91,6 +104,13 @@ REFUSED = {
         "smallest turning radius has no diff_drive_controller",
     ),
     "no target": (("wheel.yaml",), "Missing option '--to'"),
+    "two firmwares": (("command.yaml", "--px4", "1.17", "--ardupilot", "4.6"), "Missing option '--to'"),
+    "no firmware": (("command.yaml", "--to", "px4"), "which version of PX4 is it?"),
+    "unknown firmware": (
+        ("command.yaml", "--px4", "1.2"),
+        "no table of parameters for PX4 1.2 (--px4): one of",
+    ),
+    "no value": (("command.yaml", "--px4", "1.17", "--logged", "RO_YAW_RATE_CORR"), "give NAME=VALUE"),
     "unknown target": (("wheel.yaml", "--to", "spot"), "'spot' is not one of"),
     "no model": (("none.yaml", "--to", "all"), "cannot read"),
     "other schema": (("other.yaml", "--to", "all"), "schema version 99, this slipwise reads"),

@@ -24,8 +24,19 @@ FITTING = {
     "mppi": replace(named("edd-2", ang__w=-0.3), commands=True),
     "amcl": named("edd-2", ang__w=-0.3),
     "robot-localization": replace(named("edd-2", ang__w=-0.3), commands=True),
+    "autoware": named("edd-2", ang__w=-0.3),
+    "px4": replace(named("edd-2", ang__w=-0.3), commands=True),
+    "ardupilot": replace(named("edd-2", ang__w=-0.3), commands=True),
     "c-header": named("edd-2", ang__w=-0.3),
 }
+VERSIONS = ExportOptions(px4="1.17", ardupilot="4.6")
+
+
+def content(target: Target, text: str) -> object:
+    """Return what the target's own reader sees."""
+    if target.name in ("px4", "ardupilot"):
+        return [line for line in text.splitlines() if line and not line.startswith("#")]
+    return yaml.safe_load(text)
 
 
 def fitting(target: Target) -> Made:
@@ -37,7 +48,7 @@ def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> No
     made = replace(
         fitting(target), log="drives/monday.mcap", sentence="It misses by 3 cm.", identifiable=False
     )
-    head = export_model(make_model(made), target.name, name="mine.yaml").text[:1200]
+    head = export_model(make_model(made), target.name, name="mine.yaml", options=VERSIONS).text[:1200]
     for words in (
         f"slipwise {version('slipwise')}, model mine.yaml",
         "learned by slipwise 0.2.0",
@@ -54,19 +65,19 @@ def test_a_file_names_the_log_the_versions_and_the_verdict(target: Target) -> No
 def test_a_bad_verdict_is_refused_unless_forced(target: Target) -> None:
     model = make_model(replace(fitting(target), good=False, sentence="It does not beat doing nothing."))
     with pytest.raises(ModelError, match="verdict is bad: It does not beat doing nothing") as caught:
-        export_model(model, target.name, name="m.yaml")
+        export_model(model, target.name, name="m.yaml", options=VERSIONS)
     assert "--force" in caught.value.advice
-    text = export_model(model, target.name, name="m.yaml", force=True).text
+    text = export_model(model, target.name, name="m.yaml", options=VERSIONS, force=True).text
     assert "verdict: NOT GOOD ENOUGH. It does not beat doing nothing." in text
 
 
-FROM_COMMANDS = ("mppi", "robot-localization", "c-header")
+FROM_COMMANDS = ("mppi", "robot-localization", "px4", "ardupilot", "c-header")
 
 
 @pytest.mark.parametrize("target", FROM_COMMANDS)
 def test_a_model_without_an_actuator_model_is_exported(target: str) -> None:
     model = make_model(replace(named("edd-2", ang__w=-0.3), delays=(0.1, 0.0)))
-    assert "learned by slipwise" in export_model(model, target, name="m.yaml").text
+    assert "learned by slipwise" in export_model(model, target, name="m.yaml", options=VERSIONS).text
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
@@ -75,7 +86,8 @@ def test_the_kinematic_baseline_is_exported(target: Target) -> None:
     name = "command" if target.name in FROM_COMMANDS else "wheel"
     baseline = Model(model.content.model_copy(update={"input": name}))
     assert baseline.motion.size == 0
-    assert "learned by slipwise" in export_model(baseline, target.name, name="m.yaml").text
+    made = export_model(baseline, target.name, name="m.yaml", options=VERSIONS)
+    assert "learned by slipwise" in made.text
 
 
 HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"
@@ -84,15 +96,15 @@ HOSTILE = "evil */ int x; /* \n#define V 2\n??/\nnode: {a: 1} \u2028 end"
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_text_of_a_model_file_cannot_leave_the_comment(target: Target) -> None:
     made = fitting(target)
-    plain = export_model(make_model(made), target.name, name="m.yaml").text
-    hostile = export_model(
-        make_model(replace(made, log=HOSTILE, sentence=HOSTILE)), target.name, name="m.yaml"
-    ).text
+    plain, hostile = (
+        export_model(make_model(each), target.name, name="m.yaml", options=VERSIONS).text
+        for each in (made, replace(made, log=HOSTILE, sentence=HOSTILE))
+    )
     if target.name == "c-header":
         assert hostile.split("*/", 1)[1] == plain.split("*/", 1)[1]
         assert "??" not in hostile.split("*/", 1)[0]
     else:
-        assert yaml.safe_load(hostile) == yaml.safe_load(plain)
+        assert content(target, hostile) == content(target, plain)
 
 
 def test_the_same_model_gives_the_same_bytes() -> None:
@@ -110,12 +122,12 @@ def test_every_file_of_a_husky_on_tile_is_written(real_log_dir: Path) -> None:
     log = open_log(real_log_dir / "husky/tile_deflated_tyres.csv.gz")
     settings = make_settings({"basis": "full-linear-6"})
     learned = {name: calibrate(log, input=name, settings=settings).model for name in ("wheel", "command")}
-    options = ExportOptions(wheel_separation=0.481)
+    options = replace(VERSIONS, wheel_separation=0.481)
     for target in TARGETS:
         model = learned["command" if fitting(target).commands else "wheel"]
         exported = export_model(model, target.name, name="husky.yaml", options=options)
         assert "tile_deflated_tyres.csv.gz" in exported.text
-        if target.name != "c-header":
+        if target.file_name.endswith(".yaml"):
             (node,) = yaml.safe_load(exported.text).values()
             assert node["ros__parameters"]
     found = wheel_multipliers(learned["wheel"], options)
