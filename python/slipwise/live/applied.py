@@ -12,6 +12,8 @@ from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.outputs import Floats, Validity
 from slipwise.models import Model
 
+LONGEST_STEP = 5.0  # s that one step counts; judgements are no farther apart while the robot drives
+
 
 class AppliedModel:
     """Where the applied parameters are, on their way from the start to what was learned.
@@ -35,12 +37,14 @@ class AppliedModel:
     def step(self, t: float, model: Model | None, validity: Callable[[str], Validity]) -> None:
         """Move towards a valid model for the time since the last step; `t` is a stamp [s].
 
+        Hours at a standstill, in which nothing is judged, count as 5 s: they are no reason for a jump.
+
         Args:
             t: now.
             model: what was learned; None while that is not valid: nothing moves then.
             validity: of each parameter by its name.
         """
-        seconds = max(0.0, t - self._then) if math.isfinite(self._then) else 0.0
+        seconds = min(max(0.0, t - self._then), LONGEST_STEP) if math.isfinite(self._then) else 0.0
         self._then = t
         for name, wanted, prior in self._wanted(model, validity):
             most = self._rules.rate * prior * seconds

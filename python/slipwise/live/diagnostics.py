@@ -80,6 +80,8 @@ def _state_values(status: Status) -> tuple[tuple[str, str], ...]:
 
 def _model_values(status: Status) -> tuple[tuple[str, str], ...]:
     values = [("segments", str(status.segments))]
+    if status.given:
+        values.append(("others have", status.given))
     if status.nis is not None:
         values.append(("NIS (3 expected)", _number(status.nis)))
     if status.held_out is not None:

@@ -27,6 +27,7 @@ from slipwise.live.samples import Override, Pose, Request, RunStart, Sample
 from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
+from slipwise.models import Model
 
 MOST_WAITING = 20_000  # samples; a transport waits beyond them
 AT_ONCE = 256  # samples between two looks at the clock
@@ -67,7 +68,7 @@ class LiveNode:
         self._stuck = False
         self._parameters: tuple[ParameterNow, ...] = ()
         self._next = dict.fromkeys(("status", "notices", "save"), 0.0)  # s of the wall clock
-        self._given: object = self  # the model that others have; none yet
+        self._given: tuple[Model, str] | None = None  # the model that others have, and which it is
 
     def stop(self) -> None:
         """End the loop; may be called from any thread, or a signal."""
@@ -147,7 +148,7 @@ class LiveNode:
         self._stuck = monitor.stuck
 
     def _publish_model(self, t: float) -> None:
-        """Others get the newest valid model, the last valid one, or the start; the text says which."""
+        """Others get the newest valid model, the last valid one, or the start, whenever it is another."""
         parts = self._parts
         model, which = parts.learning.given()
         if parts.applied is not None:
@@ -155,9 +156,9 @@ class LiveNode:
             parts.applied.step(t, valid, parts.learning.validity.of)
             if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
                 self._hand_on(t)
-        if model is None or (model is self._given and which == "valid"):
+        if model is None or (model, which) == self._given:
             return
-        self._given = model
+        self._given = (model, which)
         text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
         self._publish(ModelText(t, text))
 

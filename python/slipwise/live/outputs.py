@@ -74,6 +74,7 @@ class Status:
     counts: dict[str, int]  # what was rejected, by reason
     log: tuple[tuple[float, str], ...]  # the last things said: stamp [s], text
     apply: str  # "off", "manual" or "auto"
+    given: str = ""  # which model others have, such as "valid" or "the start model; ..."
 
 
 @dataclass(frozen=True)

@@ -94,6 +94,7 @@ def status_of(
         counts=dict(said.counts),
         log=said.log(),
         apply=who.apply,
+        given=learning.given()[1],
     )
 
 

@@ -10,7 +10,7 @@ import pytest
 from sample_models import make_model, named
 
 from slipwise.calibration.live_table import ApplyTable
-from slipwise.live.applied import AppliedModel, physical
+from slipwise.live.applied import LONGEST_STEP, AppliedModel, physical
 from slipwise.live.outputs import Validity
 from slipwise.models import Model
 
@@ -71,6 +71,18 @@ def test_time_without_a_valid_model_is_not_made_up_for() -> None:
     applied.step(1001.0, goal, estimated)
     prior = {p.name: p.prior_std for p in goal.content.parameters}
     assert all(abs(applied.values[name]) <= 0.01 * prior[name] + 1e-12 for name in NAMES)
+
+
+def test_a_long_standstill_is_not_made_up_for_in_one_step() -> None:
+    applied, goal = AppliedModel(ApplyTable(rate=0.01, within=5.0), START), learned(0.9)
+    prior = {p.name: p.prior_std for p in goal.content.parameters}
+    for k in range(3):  # judgements at the usual distance move it
+        applied.step(2.0 * k, goal, estimated)
+    before = dict(applied.values)
+    assert all(before[name] == pytest.approx(0.01 * prior[name] * 4.0) for name in NAMES)
+    applied.step(4.0 + 3600.0, goal, estimated)  # the robot stood for an hour
+    for name in NAMES:
+        assert 0.0 < applied.values[name] - before[name] <= 0.01 * prior[name] * LONGEST_STEP + 1e-12
 
 
 def test_others_are_told_after_the_interval_and_only_of_a_change() -> None:

@@ -61,6 +61,12 @@ def test_the_worst_parameter_gives_the_level_of_all() -> None:
     assert (values["b"], values["b std"]) == ("nan", "inf")
 
 
+def test_it_is_said_which_model_others_have() -> None:
+    said = "the last valid one; the model is invalid now"
+    model = diagnostics_of(waiting_status(validity="invalid", given=said), "slipwise")[1]
+    assert dict(model.values)["others have"] == said
+
+
 def test_a_note_is_a_line_of_its_own() -> None:
     one = note_diagnostic(Note(1.0, "nothing comes on /odom"), "husky")
     assert (one.level, one.name, one.message) == (Level.OK, "husky: note", "nothing comes on /odom")

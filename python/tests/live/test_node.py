@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the loop gives to others, and when."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from sample_models import make_model, named
+from scripted_node import SLIP, driven, run_node
+
+from slipwise.calibration.judgement import Judgement
+from slipwise.calibration.live_table import LiveTable
+from slipwise.live.outputs import ModelText, Output, Validity
+from slipwise.live.validity import judged
+from slipwise.models import Model
+
+
+def models(outputs: list[Output]) -> list[tuple[str, str]]:
+    """Which model was published each time, and the model."""
+    texts = [output.text.split("\n", 1) for output in outputs if isinstance(output, ModelText)]
+    return [(head.split("s: ", 1)[1], body) for head, body in texts]
+
+
+def test_the_start_model_is_published_once_however_often_nothing_valid_is_found(tmp_path: Path) -> None:
+    start = tmp_path / "start.yaml"
+    make_model(named("edd-2")).save(start)
+    no_slip = replace(SLIP, seconds=60.0, alpha=(0.0, 0.0), lag=0.0, delay=0.0)
+    built, transport = run_node(driven(no_slip), LiveTable(model=str(start)))
+    assert built.learning.segments > 20
+    assert [which for which, _ in models(transport.outputs)] == [
+        "the start model; what was learned is unestimated"
+    ]
+
+
+def test_the_last_valid_model_is_published_once_while_nothing_newer_is_valid(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    judgements = []
+
+    def soon_invalid(model: Model, judgement: Judgement) -> tuple[Validity, str]:
+        judgements.append(judgement)
+        found = judged(model, judgement)
+        return found if len(judgements) < 20 else ("invalid", "its errors have become larger")
+
+    monkeypatch.setattr("slipwise.live.validity.judged", soon_invalid)
+    _, transport = run_node(driven())
+    assert len(judgements) > 25
+    published = models(transport.outputs)
+    assert published[0][0] == "valid"
+    assert published[-1][0] == "the last valid one; the model is invalid now"
+    assert [which for which, _ in published].count(published[-1][0]) == 1
+    assert published[-1][1] == published[-2][1]
+    assert all(before != after for before, after in itertools.pairwise(published))
+    assert transport.statuses[-1].given == "the last valid one; the model is invalid now"
