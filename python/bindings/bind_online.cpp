@@ -214,6 +214,7 @@ void bind_events(nb::module_& m) {
       .def_prop_ro("reason_text", [](const LearnerEvent& event) { return reason_text(event.reason); })
       .def_ro("updates", &LearnerEvent::updates)
       .def_ro("weights", &LearnerEvent::weights)
+      .def_ro("surfaces", &LearnerEvent::surfaces)
       .def(
           "posterior",
           [](const LearnerEvent& event, std::size_t structure) -> std::optional<MotionPosterior> {
@@ -246,6 +247,17 @@ void bind_odometry(nb::module_& m) {
       .def_ro("since", &MotionState::since);
 }
 
+void bind_surface_events(nb::module_& m) {
+  nb::class_<DatedSurfaceEvent>(m, "DatedSurfaceEvent", "Something that happened to the surfaces, and when.")
+      .def_prop_ro("kind", [](const DatedSurfaceEvent& dated) { return dated.event.kind; })
+      .def_prop_ro("name", [](const DatedSurfaceEvent& dated) { return dated.event.name; })
+      .def_prop_ro("other", [](const DatedSurfaceEvent& dated) { return dated.event.other; })
+      .def_prop_ro("probability", [](const DatedSurfaceEvent& dated) { return dated.event.probability; })
+      .def_prop_ro("segments", [](const DatedSurfaceEvent& dated) { return dated.event.segments; })
+      .def_ro("run", &DatedSurfaceEvent::run)
+      .def_ro("t", &DatedSurfaceEvent::t);
+}
+
 }  // namespace
 
 void bind_online(nb::module_& m) {
@@ -261,6 +273,7 @@ void bind_online(nb::module_& m) {
   bind_results(m);
   bind_events(m);
   bind_odometry(m);
+  bind_surface_events(m);
   nb::class_<MotionLearner>(m, "MotionLearner", "Learns a motion model from one measurement at a time.")
       .def(nb::init<const LearnerSettings&>(), "settings"_a)
       .def("start_run", &MotionLearner::start_run)

@@ -9,6 +9,7 @@
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/hypotheses/surface_probability.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -125,12 +126,9 @@ void bind_surfaces(nb::module_& m) {
       .value("Kept", SurfaceEvent::Kind::Kept)
       .value("Merged", SurfaceEvent::Kind::Merged)
       .value("Dropped", SurfaceEvent::Kind::Dropped);
-  nb::class_<SurfaceEvent>(m, "SurfaceEvent", "Something that happened to a surface.")
-      .def_ro("kind", &SurfaceEvent::kind)
-      .def_ro("name", &SurfaceEvent::name)
-      .def_ro("other", &SurfaceEvent::other)
-      .def_ro("probability", &SurfaceEvent::probability)
-      .def_ro("segments", &SurfaceEvent::segments);
+  nb::class_<SurfaceProbability>(m, "SurfaceProbability", "How probable a surface is to be under the robot.")
+      .def_ro("name", &SurfaceProbability::name, "Empty: one that has no name yet.")
+      .def_ro("probability", &SurfaceProbability::probability);
 }
 
 }  // namespace slipwise::bindings

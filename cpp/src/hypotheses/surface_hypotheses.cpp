@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The structures and the surfaces that they share.
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 namespace {
@@ -47,6 +48,14 @@ SurfaceBank MotionHypotheses::surfaces_now(const DisturbanceModel& law) const {
   MotionHypotheses now = *this;
   now.bank_.keep_present(now.averages(), law);
   return now.bank_;
+}
+
+std::vector<SurfaceProbability> MotionHypotheses::probable_surfaces() const {
+  if (!settings_.average.surfaces.remember) {
+    return {};
+  }
+  const ModelAverage& first = leader() == kCascaded ? present(cascaded_).slip() : joint_;
+  return surface_probabilities(bank_, first.trial());
 }
 
 }  // namespace slipwise

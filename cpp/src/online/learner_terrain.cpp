@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a learner does about terrain when it is told: it forgets a part, begins a drive, or recalls a surface.
+#include <iterator>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "slipwise/online/motion_learner.hpp"
 
 namespace slipwise {
+namespace {
+
+constexpr std::size_t kMostEvents = 1000;  // that wait for somebody to ask
+
+}  // namespace
 
 void MotionLearner::forget(double fraction) {
   if (!(fraction >= 0.0) || !(fraction <= 1.0)) {
@@ -18,14 +25,19 @@ void MotionLearner::forget(double fraction) {
 }
 
 void MotionLearner::start_drive(const DriveStart& start) {
+  end_run();
+  const std::size_t run = runs_;
+  const double ended = newest();
   start_run();
   hypotheses_.start_drive(disturbance_.law(), start);
+  note_surfaces(run, ended);
   known_.back() = now_known(known_.back().until);
 }
 
 void MotionLearner::cue_surface(const std::string& label) {
   work_through();  // what waits was driven on the surface before
   hypotheses_.cue_surface(disturbance_.law(), label);
+  note_surfaces(runs_, newest());
   known_.back() = now_known(known_.back().until);
 }
 
@@ -41,7 +53,26 @@ std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
   return hypotheses_.add_surfaces(disturbance_.law(), other);
 }
 
-void MotionLearner::consider_surfaces() { hypotheses_.consider_surfaces(disturbance_.law()); }
+void MotionLearner::consider_surfaces(double t) {
+  hypotheses_.consider_surfaces(disturbance_.law());
+  note_surfaces(runs_, t);
+}
+
+void MotionLearner::note_surfaces(std::size_t run, double t) {
+  for (SurfaceEvent& event : hypotheses_.take_surface_events()) {
+    surface_events_.push_back({.event = std::move(event), .run = run, .t = t});
+  }
+  while (surface_events_.size() > kMostEvents) {
+    surface_events_.pop_front();
+  }
+}
+
+std::vector<DatedSurfaceEvent> MotionLearner::surface_events() {
+  std::vector<DatedSurfaceEvent> events(std::make_move_iterator(surface_events_.begin()),
+                                        std::make_move_iterator(surface_events_.end()));
+  surface_events_.clear();
+  return events;
+}
 
 SurfaceBank MotionLearner::surfaces() const {
   MotionLearner complete = *this;

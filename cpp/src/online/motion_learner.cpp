@@ -180,7 +180,7 @@ bool MotionLearner::work() {
     }
     more = !started_ || hypotheses_.advance_slip();
     if (!more) {
-      consider_surfaces();
+      consider_surfaces(slip->driven.segment.end);
     }
   } else if (const auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
     judge(*target);
@@ -189,7 +189,7 @@ bool MotionLearner::work() {
     if (started_) {
       more = hypotheses_.advance();
       if (!more) {
-        consider_surfaces();
+        consider_surfaces(segment.segment.end);
         publish(segment);
       }
     } else {
@@ -277,6 +277,7 @@ void MotionLearner::publish(const DrivenSegment& segment) {
   LearnerEvent event{.kind = LearnerEvent::Kind::SegmentLearned, .run = runs_, .t = segment.segment.end};
   event.updates = hypotheses_.updates();
   event.weights = hypotheses_.weights();
+  event.surfaces = hypotheses_.probable_surfaces();
   for (std::size_t i = 0; i < kStructures; ++i) {
     event.posteriors[i] =
         supported(hypotheses_.of(static_cast<Structure>(i)), stream_.wheel_interval(), hypotheses_.count());

@@ -47,6 +47,41 @@ TEST_CASE("a change within a drive recalls the surface that it is a change to") 
   CHECK(bank.surfaces().size() == 2);
 }
 
+TEST_CASE("each window says how probable the surfaces are, and each recall when it was decided") {
+  MotionLearner learner(settings(true));
+  visit(learner, {0.1, 0.5});
+  learner.events();
+  learner.surface_events();
+  visit(learner, {0.1});
+  double sure_since = 0.0;
+  for (const LearnerEvent& event : learner.events()) {
+    if (event.kind == LearnerEvent::Kind::SegmentLearned) {
+      double sum = 0.0;
+      for (const SurfaceProbability& each : event.surfaces) {
+        sum += each.probability;
+        sure_since = sure_since == 0.0 && each.name == "surface 1" && each.probability == 1.0 ? event.t : sure_since;
+      }
+      CHECK(sum == doctest::Approx(1.0));
+    }
+  }
+  const auto happened = learner.surface_events();
+  const auto recalled = std::ranges::find(happened, SurfaceEvent::Kind::Recalled,
+                                          [](const DatedSurfaceEvent& each) { return each.event.kind; });
+  REQUIRE(recalled != happened.end());
+  CHECK(recalled->event.name == "surface 1");
+  CHECK(recalled->t == doctest::Approx(sure_since));
+  CHECK(learner.surface_events().empty());
+}
+
+TEST_CASE("without a memory no window speaks of surfaces") {
+  MotionLearner learner(settings(false));
+  push(learner, drive(0.3, 5, 20.0, 0.0));
+  learner.end_run();
+  for (const LearnerEvent& event : learner.events()) {
+    CHECK(event.surfaces.empty());
+  }
+}
+
 TEST_CASE("surfaces that cannot be told apart become one") {
   MotionLearner learner(surface_settings(true));
   visit(learner, {0.3, 0.3, 0.3});

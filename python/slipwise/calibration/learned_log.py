@@ -16,6 +16,7 @@ from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.surface_course import course_of
 from slipwise.segments import recording_of
 
 Floats = NDArray[np.float64]
@@ -251,8 +252,9 @@ def _history(
             std[i] = np.sqrt(np.diag(posterior.estimate.covariance))
             basis_weight[i] = posterior.basis_weights
     updates = [event.updates[kept] for event in events]
+    run, alarm = [drive[event.run].index for event in events], [update.change.alarm for update in updates]
     return History(
-        run=np.array([drive[event.run].index for event in events], dtype=np.int64),
+        run=np.array(run, dtype=np.int64),
         t=np.array([event.t for event in events]),
         names=names,
         mean=mean,
@@ -262,7 +264,8 @@ def _history(
         bases=bases,
         basis_weight=basis_weight,
         change=np.array([update.change.log_odds for update in updates]),
-        alarm=np.array([update.change.alarm for update in updates], dtype=np.bool_),
+        alarm=np.array(alarm, dtype=np.bool_),
         structures=STRUCTURES if several else (),
         structure_weight=np.array([event.weights for event in events]) if several else None,
+        surfaces=course_of(events, run, alarm),
     )

@@ -21,6 +21,7 @@ from slipwise.calibration.learner import Progress
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import PreparedRun, has_wheels
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
 from slipwise.models.model import Model
@@ -56,6 +57,8 @@ class SurfaceChange:
     other: str  # what was merged into it
     probability: float  # of the surface, when it was taken
     segments: int  # that spoke before
+    run: int = 0  # index in its log
+    t: float = float("nan")  # s, when it was decided; not a number before anything was measured
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +68,7 @@ class VisitedLog:
     predictions: tuple[Predictions, ...]  # one for each horizon
     surface: str  # on which it ended; empty where that was open
     changes: tuple[SurfaceChange, ...]
+    course: SurfaceCourse | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,15 +124,17 @@ def learn_sequence(
         cues = _begin_drive(learner, drive, options.labels[place] if options.labels else None)
         runs += drive
         held_out: list[list[_core.HeldOutPrediction]] = [[] for _ in horizons]
+        windows: list[_core.LearnerEvent] = []
         for done in pushed(learner, drive, cues):
             for event in learner.events():
                 if event.prediction is not None:
                     held_out[event.prediction.horizon].append(event.prediction)
-                elif options.keep is not None and event.kind == LEARNED:
-                    learned.append(event)
+                elif event.kind == LEARNED:
+                    windows.append(event)
             if progress is not None:
                 progress((place + done) / len(drives))
-        visited.append(_visited(learner, predictions_of(held_out, horizons, runs)[0]))
+        visited.append(_visited(learner, predictions_of(held_out, horizons, runs)[0], windows, runs))
+        learned += windows if options.keep is not None else []
     bank = learner.surfaces()
     judged, right = bank.labels
     return LearnedSequence(
@@ -162,12 +168,18 @@ def _begin_drive(
     return cues
 
 
-def _visited(learner: _core.MotionLearner, predictions: tuple[Predictions, ...]) -> VisitedLog:
+def _visited(
+    learner: _core.MotionLearner,
+    predictions: tuple[Predictions, ...],
+    windows: list[_core.LearnerEvent],
+    runs: tuple[PreparedRun, ...],
+) -> VisitedLog:
     bank = learner.surfaces()
     return VisitedLog(
         predictions,
         "" if bank.present is None else bank.surfaces[bank.present].name,
-        tuple(_change(event) for event in learner.surface_events()),
+        tuple(_change(event, runs) for event in learner.surface_events()),
+        course_of(windows, [runs[each.run].index for each in windows], [_alarm(each) for each in windows]),
     )
 
 
@@ -179,5 +191,19 @@ def summary_of(surface: _core.Surface) -> SurfaceSummary:
     )
 
 
-def _change(event: _core.SurfaceEvent) -> SurfaceChange:
-    return SurfaceChange(_WORDS[event.kind], event.name, event.other, event.probability, event.segments)
+def _change(event: _core.DatedSurfaceEvent, runs: tuple[PreparedRun, ...]) -> SurfaceChange:
+    return SurfaceChange(
+        _WORDS[event.kind],
+        event.name,
+        event.other,
+        event.probability,
+        event.segments,
+        runs[event.run].index,
+        event.t,
+    )
+
+
+def _alarm(event: _core.LearnerEvent) -> bool:
+    """Whether the way to learn that weighs most found a change of terrain."""
+    heaviest = max(range(len(event.weights)), key=lambda place: event.weights[place])
+    return bool(event.updates[heaviest].change.alarm)

@@ -13,6 +13,7 @@ from slipwise.calibration.identifiability import Confounded
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.smoothing import SmoothedCourse
+from slipwise.calibration.surface_course import SurfaceCourse
 from slipwise.frames import data_frame
 from slipwise.logs.log import LeftOut
 from slipwise.models.model import Model
@@ -59,6 +60,7 @@ class History:
     alarm: NDArray[np.bool_]  # [W] whether that was taken for a change of terrain
     structures: tuple[str, ...] = ()  # [S] ways to learn from commands, where more than one was tried
     structure_weight: Floats | None = None  # [W, S] their weights after the window
+    surfaces: SurfaceCourse | None = None  # where surfaces are remembered
 
     def __repr__(self) -> str:
         return f"<History: {len(self.t)} windows of {len(self.names)} parameters, {self.alarm.sum()} alarms>"

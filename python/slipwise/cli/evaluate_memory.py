@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from slipwise.calibration import Settings
     from slipwise.calibration.learned_sequence import SequenceOptions
     from slipwise.evaluation import EvaluationOptions, SequenceEvaluation
-    from slipwise.logs import LogOptions
+    from slipwise.logs import Log, LogOptions
 
 
 @dataclass(frozen=True)
@@ -33,20 +33,14 @@ class MemoryQuestion:
 def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs: Path) -> int:
     """Evaluate logs one after the other with what is remembered of surfaces; 0 where that beats the baseline.
 
-    Raises:
-        SettingsError: a report is asked for, which is of one log.
+    With `report` it writes a page too.
     """
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
-    from slipwise.errors import SettingsError
     from slipwise.evaluation import evaluate_sequence, write_sequence
     from slipwise.files import write_text_whole
     from slipwise.logs import open_log
 
-    if asked.report is not None:
-        raise SettingsError(
-            "a report is of one log", where="--report", advice="leave --report or --memory away"
-        )
     with progress_bar("reading") as update, run_folder(runs, "evaluate") as folder:
         logs = [(path.name, open_log(path, options=asked.log_options)) for path in asked.logs]
         sequence = evaluate_sequence(
@@ -60,6 +54,8 @@ def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs
         if asked.predictions is not None:
             write_sequence(asked.predictions, sequence.evaluations)
             files["predictions"] = asked.predictions
+        if asked.report is not None:
+            files["report"] = _write_page(asked.report, [log for _, log in logs], sequence)
         from slipwise.cli.output import to_json
 
         document = _document(sequence, files)
@@ -70,6 +66,14 @@ def evaluate_memory(out: Output, asked: MemoryQuestion, settings: Settings, runs
 
     show_files(out, files | {"run folder": folder})
     return 0 if sequence.good else 1
+
+
+def _write_page(path: Path, logs: list[Log], sequence: SequenceEvaluation) -> Path:
+    from slipwise.cli.command_line import command_line
+    from slipwise.reporting.sequence_page import write_sequence_page
+
+    title = f"{len(logs)} drives in turn"
+    return write_sequence_page(path, logs, sequence, title=title, command=command_line())
 
 
 def _show(out: Output, sequence: SequenceEvaluation) -> None:

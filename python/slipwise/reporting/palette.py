@@ -41,6 +41,18 @@ _STROKES = {
 LEARNED_STROKE = _STROKES[LEARNED]
 _OTHERS = ("#cc79a7", "#56b4e9", "#7a4fa3", "#8c6d31", "#d1a800", "#4d4d4d", "#a63603", "#66a61e", "#3f5fa8")
 
+_SURFACES = (
+    "#0072b2",
+    "#009e73",
+    "#cc79a7",
+    "#d1a800",
+    "#56b4e9",
+    "#7a4fa3",
+    "#a63603",
+    "#66a61e",
+    "#8c6d31",
+)
+
 
 def stroke_of(method: str, methods: Sequence[str]) -> Stroke:
     """Return how `method` is drawn; the others' colours follow the order in `methods`."""
@@ -49,6 +61,11 @@ def stroke_of(method: str, methods: Sequence[str]) -> Stroke:
     others = [name for name in methods if name not in MAIN_METHODS]
     place = others.index(method) if method in others else len(others)
     return Stroke(_OTHERS[place % len(_OTHERS)], "solid", "circle")
+
+
+def surface_colour(place: int) -> str:
+    """Return the colour of the surface that was driven on in this place, counted from 0."""
+    return _SURFACES[place % len(_SURFACES)]
 
 
 def transparent(colour: str, opacity: float) -> str:

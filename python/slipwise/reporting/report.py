@@ -15,6 +15,7 @@ from slipwise.reporting.page import page
 from slipwise.reporting.section import Section
 from slipwise.reporting.sections.convergence import ConvergenceSection
 from slipwise.reporting.sections.errors import ErrorsSection
+from slipwise.reporting.sections.ground import GroundSection
 from slipwise.reporting.sections.left_out import LeftOutSection
 from slipwise.reporting.sections.nis import NisSection
 from slipwise.reporting.sections.paths import PathsSection
@@ -30,6 +31,7 @@ SECTIONS: tuple[Section, ...] = (
     ErrorsSection(),
     NisSection(),
     ConvergenceSection(),
+    GroundSection(),
     SurfacesSection(),
     LeftOutSection(),
     ProvenanceSection(),

@@ -48,8 +48,13 @@ def test_people_see_a_table_of_visits_and_one_of_surfaces(slipwise: Slipwise, lo
     assert "Surfaces" in result.out
 
 
-def test_a_report_of_a_sequence_is_refused(slipwise: Slipwise, folder: Path, logs: list[Path]) -> None:
-    result = slipwise("evaluate", "--memory", *logs, "--report", folder / "r.html")
-    assert result.code != 0
-    assert "a report is of one log" in result.err
-    assert not (folder / "r.html").exists()
+def test_a_report_of_a_sequence_shows_its_surfaces(
+    slipwise: Slipwise, folder: Path, logs: list[Path]
+) -> None:
+    page = folder / "r.html"
+    result = slipwise(
+        *("evaluate", "--memory", *logs, "--input", "wheel", "--horizons", "1", "--report", page)
+    )
+    assert result.code == 0
+    assert "surface 1" in page.read_text(encoding="utf-8")
+    assert str(page) in result.out.replace("\n", "")

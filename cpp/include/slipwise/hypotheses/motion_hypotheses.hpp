@@ -15,6 +15,7 @@
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
 #include "slipwise/hypotheses/surface_bank.hpp"
+#include "slipwise/hypotheses/surface_probability.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
 namespace slipwise {
@@ -99,6 +100,8 @@ class MotionHypotheses {
   SurfaceBank surfaces_now(const DisturbanceModel& law) const;
   const SurfaceBank& bank() const { return bank_; }
   std::vector<SurfaceEvent> take_surface_events() { return bank_.take_events(); }
+  /// How probable each surface is to be the one under the robot; nothing where none is remembered.
+  std::vector<SurfaceProbability> probable_surfaces() const;
   /// What is known of a surface in the terms of a structure; nothing where it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
   /// Begins with what another learner knew, before anything is learned. `wheels_known` says whether wheel speeds come

@@ -48,6 +48,15 @@ struct LearnerEvent {
   /// What each structure knows after the segment; nothing where it is not tried.
   std::array<std::shared_ptr<const MotionPosterior>, kStructures> posteriors = {};
   std::shared_ptr<const HeldOutPrediction> prediction = {};
+  /// After a segment that was learned, where surfaces are remembered: how probable each is.
+  std::vector<SurfaceProbability> surfaces = {};
+};
+
+/// Something that happened to the surfaces, and when.
+struct DatedSurfaceEvent {
+  SurfaceEvent event;
+  std::size_t run;  ///< in the order in which runs were started
+  double t;         ///< [s] end of the last segment that spoke, or of the run before a drive
 };
 
 /// A path that is predicted from now on.
@@ -133,8 +142,8 @@ class MotionLearner {
   void cue_surface(const std::string& label);
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
-  /// What happened to them since the last call.
-  std::vector<SurfaceEvent> surface_events() { return hypotheses_.take_surface_events(); }
+  /// What happened to them since the last call; the oldest are dropped where nobody asks for long.
+  std::vector<DatedSurfaceEvent> surface_events();
   /// Slip on a surface of `surfaces()` in the terms of a structure; nothing where it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const {
     return hypotheses_.on_surface(surface, structure);
@@ -164,7 +173,7 @@ class MotionLearner {
     a(self.recent_, self.wheel_segments_, self.twist_segments_, self.command_segments_, self.errors_, self.held_out_,
       self.events_);
     a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
-    a(self.seconds_);
+    a(self.seconds_, self.surface_events_);
   }
 
  private:
@@ -187,7 +196,8 @@ class MotionLearner {
   Eigen::Matrix3d unknown_motion(double start, double end) const;
   void say(LearnerEvent event);
   void see_stamp(double t);
-  void consider_surfaces();
+  void consider_surfaces(double t);
+  void note_surfaces(std::size_t run, double t);
   void check_loaded() const;
 
   LearnerSettings settings_;
@@ -214,6 +224,7 @@ class MotionLearner {
   double before_run_;       ///< newest stamp of the runs before [s]
   double steepest_ = 0.0;
   double seconds_ = 0.0;
+  std::deque<DatedSurfaceEvent> surface_events_;
 };
 
 }  // namespace slipwise

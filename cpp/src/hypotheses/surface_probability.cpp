@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The candidates of a trial by their names.
+#include "slipwise/hypotheses/surface_probability.hpp"
+
+#include <algorithm>
+
+namespace slipwise {
+namespace {
+
+using Kind = SurfaceCandidate::Kind;
+
+/// A surface that changed becomes another when it is taken.
+std::string name_of(const SurfaceBank& bank, const SurfaceCandidate& candidate) {
+  if (candidate.kind == Kind::Known) {
+    return bank.surfaces()[candidate.place].name;
+  }
+  return candidate.kind == Kind::Present && bank.present() ? bank.surfaces()[*bank.present()].name : "";
+}
+
+}  // namespace
+
+std::vector<SurfaceProbability> surface_probabilities(const SurfaceBank& bank,
+                                                      const std::optional<SurfaceTrial>& trial) {
+  if (!trial) {
+    return {{.name = bank.present() ? bank.surfaces()[*bank.present()].name : "", .probability = 1.0}};
+  }
+  std::vector<SurfaceProbability> found;
+  const Eigen::VectorXd probabilities = trial->probabilities();
+  for (std::size_t i = 0; i < trial->candidates.size(); ++i) {
+    const std::string name = name_of(bank, trial->candidates[i]);
+    auto place = std::ranges::find(found, name, &SurfaceProbability::name);
+    if (place == found.end()) {
+      place = found.insert(place, {.name = name, .probability = 0.0});
+    }
+    place->probability += probabilities[static_cast<Eigen::Index>(i)];
+  }
+  return found;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The ground along the drive: surfaces and changes found, slip by place, and the surfaces remembered."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from slipwise.calibration.result import History
+from slipwise.reporting.contents import Contents
+from slipwise.reporting.ground_strip import UNNAMED, GroundStrip, strip_html
+from slipwise.reporting.markup import missing, paragraph, table
+from slipwise.reporting.named_surfaces import named_surfaces
+from slipwise.reporting.slip_place_map import place_maps
+from slipwise.reporting.timeline import Timeline
+
+PLACES = (
+    "Slip by place: where the way was longer (blue) or shorter (red) than predicted, as a part of what was "
+    "driven; the larger a square, the surer."
+)
+
+
+class GroundSection:
+    """Did the ground change, and where?"""
+
+    title = "The ground along the drive"
+    explanation = (
+        "Which stretches the model took for which ground, where it found a change, and what it did not "
+        "expect at each place."
+    )
+
+    def html(self, contents: Contents) -> str:
+        """Return the strip, the maps of slip by place and the table of surfaces, each where there is one."""
+        history = contents.calibration.history
+        horizon = min((part.horizon for part in contents.evaluation.predictions), default=None)
+        part = contents.predictions(contents.learned_method, horizon)
+        maps = place_maps(contents.log, part, key="place")
+        surfaces = contents.calibration.model.content.surfaces
+        rows = bank_table(surfaces) if surfaces else ""
+        return _strip(contents, history) + maps_html([figure.html() for figure in maps]) + rows
+
+
+def maps_html(figures: list[str]) -> str:
+    """Return maps side by side, or why there is none."""
+    if not figures:
+        return missing(
+            "The path does not run over the same ground again, so there is no map of slip by place."
+        )
+    return paragraph(PLACES, kind="explanation") + f'<div class="grid">{"".join(figures)}</div>'
+
+
+class RememberedSurface(Protocol):
+    """What the table says of a surface."""
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def seconds(self) -> float: ...  # noqa: D102
+    @property
+    def segments(self) -> int: ...  # noqa: D102
+    @property
+    def visits(self) -> int: ...  # noqa: D102
+    @property
+    def last_seen(self) -> str: ...  # noqa: D102
+    @property
+    def speed(self) -> float: ...  # noqa: D102
+    @property
+    def yaw_rate(self) -> float: ...  # noqa: D102
+
+
+def bank_table(surfaces: Iterable[RememberedSurface]) -> str:
+    """Return the table of surfaces that are remembered."""
+    rows = [
+        (
+            each.name,
+            f"{each.seconds / 60.0:.1f}",
+            str(each.segments),
+            str(each.visits),
+            each.last_seen or "not said",
+            f"{each.speed:.2f}",
+            f"{each.yaw_rate:.2f}",
+        )
+        for each in surfaces
+    ]
+    head = ("surface", "driven [min]", "windows", "visits", "last", "speeds to [m/s]", "yaw rates to [rad/s]")
+    return paragraph("Surfaces remembered:") + table(head, rows)
+
+
+@dataclass(frozen=True)
+class _Stretches:
+    """Columns of a strip where no surface is remembered: from one alarm to the next."""
+
+    names: tuple[str, ...]
+    of_window: np.ndarray
+
+
+def _stretches(history: History) -> _Stretches:
+    of_window = np.cumsum(history.alarm)
+    return _Stretches(tuple(f"stretch {k + 1}" for k in range(int(of_window[-1]) + 1)), of_window)
+
+
+def _strip(contents: Contents, history: History | None) -> str:
+    """The strip of one log, by surfaces or else by the alarms."""
+    if history is None or not len(history.t):
+        return missing("The model was not learned window by window, so no change of terrain was looked for.")
+    timeline, course = Timeline.of(contents.log), history.surfaces
+    if course is not None:
+        names, probability = named_surfaces(course.names, course.probability, (), last="")
+        names = tuple("the surface of this drive" if n == UNNAMED and len(names) == 1 else n for n in names)
+    elif history.alarm.any():
+        stretches = _stretches(history)
+        names, probability = stretches.names, np.eye(len(stretches.names))[stretches.of_window]
+    else:
+        return missing("No change of terrain was found: the whole drive seems to be on one ground.")
+    x = timeline.at(history.run, history.t)
+    alarms = tuple(x[np.flatnonzero(history.alarm)].tolist())
+    strip = GroundStrip(x, names, probability, alarms, (), tuple(timeline.offset[1:].tolist()))
+    return strip_html(strip, title=timeline.title)
