@@ -2,14 +2,11 @@
 """Surfaces that come back: real sequences of a Warthog on three grounds, and simulated ones.
 
 The Warthog's window sets (SLIPWISE_DATA) are driven in every order of the three, twice over: the second
-time the same logs, or others of the same ground where there are some. Errors of the first ten windows of
-a visit are divided by those of a learner that starts from nothing on the log ("restart"), by the mean
-error of its second half ("late"), and by that late error times how much harder the kinematic baseline
-finds the first ten windows ("as hard").
-
-In the simulation a robot with wheel input visits five surfaces at random, two of which are alike. Which
-surface is right is told by names: one means the surface that most visits of that name were to, and a
-surface has one name.
+time the same logs, or others of the same ground where there are some; with their column `terrain` as
+labels, and without. Errors of the first ten windows of a visit are divided by those of a learner that
+starts from nothing on the log ("restart"), by the mean error of its second half ("late"), and by that late
+error times how much harder the kinematic baseline finds the first ten windows ("as hard"). The oracle
+beside them is the model of the whole log, which has seen the windows that it predicts.
 """
 
 from __future__ import annotations
@@ -17,46 +14,34 @@ from __future__ import annotations
 import argparse
 import itertools
 import json
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from data_sets import FEW, SHORT_HORIZON, data_folder, data_sets, input_names
 from numpy.typing import NDArray
-from simulated_log import SLIP, simulated_log
-from terrain_change import coloured, white
+from surface_visits import FIRST, NOISES, coverage, labelled_visits, oracle_right, simulated_visits
 
 import slipwise
+from slipwise.calibration import calibrate
 from slipwise.calibration.learned_log import learn_log
-from slipwise.calibration.learned_sequence import LearnedSequence, learn_sequence
+from slipwise.calibration.learned_sequence import learn_sequence
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import PreparedRun, prepare_run
 from slipwise.calibration.settings import Settings
+from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log
 
 Floats = NDArray[np.float64]
 Drive = tuple[PreparedRun, ...]
 
-FIRST = 10  # windows of a visit
 GROUNDS = {  # first visit, second visit to another log
     "asphalt": ("asphalt_8_7_11h30s30", "asphalt_9_20_9h9s5"),
     "gravel": ("gravel_8_6_11h37s32", "gravel_8_6_11h37s32"),
     "sand": ("sand_9_25_14h13s47", "sand_9_25_14h32s32"),
 }
-LEVELS = (0.5, 0.9, 0.95)
-NOISES = {"white": white, "coloured": coloured}
-SIMULATED_HORIZON = 2.0  # s
-#: lon V, lat w and ang w of each surface; the last is like the first.
-SIMULATED = (
-    (-0.05, 0.06, -0.35),
-    (-0.15, 0.03, -0.20),
-    (-0.02, 0.0, -0.50),
-    (-0.25, 0.10, -0.42),
-    (-0.051, 0.06, -0.352),
-)
 
 
 @dataclass(frozen=True)
@@ -70,6 +55,8 @@ class Visit:
     first: tuple[float, float]
     to_restart: tuple[float, float]  # first ten windows, over those of a learner that starts from nothing
     to_late: tuple[float, float]  # over that learner's mean error of the second half
+    oracle_to_restart: tuple[float, float]  # the same two of the model of the whole log, in hindsight
+    oracle_to_late: tuple[float, float]
     to_late_as_hard: tuple[float, float]  # the same, were the baseline's errors as large there
     all_to_restart: tuple[float, float]  # all windows
     inside: tuple[float, float, float]  # of the first ten windows, within the 50, 90 and 95 % ellipsoids
@@ -85,25 +72,33 @@ def pair(values: Floats) -> tuple[float, float]:
     return float(values[0]), float(values[1])
 
 
-def coverage(inside: Floats) -> tuple[float, float, float]:
-    """Return the fractions within the ellipsoids of each level."""
-    low, middle, high = ((inside < level).mean() for level in LEVELS)
-    return float(low), float(middle), float(high)
+def hindsight(log: Log, input_name: str) -> Floats:
+    """Return the errors of the model of the whole log, on that log."""
+    model = calibrate(log, input=input_name).model
+    options = EvaluationOptions((SHORT_HORIZON,), ("none", "model"), model=model)
+    made = evaluate(log, input=input_name, options=options).predictions
+    return errors(next(each for each in made if each.method == "model"))
 
 
 class Warthog:
     """Window sets with one input: drives by name, and what a learner without a memory makes of them."""
 
-    def __init__(self, folder: Path, input_name: str) -> None:
-        """Read and learn all logs."""
+    def __init__(self, folder: Path, input_name: str, *, labels: bool = True) -> None:
+        """Read and learn all logs; their column `terrain` counts where `labels` are wanted."""
         names = sorted({name for pair in GROUNDS.values() for name in pair})
         logs = {name: slipwise.open_log(folder / "warthog_windows" / f"{name}.csv.gz") for name in names}
+        if not labels:
+            logs = {
+                name: replace(log, runs=tuple(replace(run, extra={}) for run in log.runs))
+                for name, log in logs.items()
+            }
         self.drives: dict[str, Drive] = {name: prepare_run(log, input_name) for name, log in logs.items()}
         learned = {
             name: learn_log(drive, Settings(), (SHORT_HORIZON,)) for name, drive in self.drives.items()
         }
         self.restart = {name: errors(each.predictions[0]) for name, each in learned.items()}
         self.baseline = {name: errors(each.baseline[0]) for name, each in learned.items()}
+        self.oracle = {name: hindsight(log, input_name) for name, log in logs.items()}
 
     def visits(self, order: Sequence[str], *, same: bool) -> list[Visit]:
         """Drive the grounds in an order, twice."""
@@ -129,86 +124,12 @@ class Warthog:
             first=pair(first),
             to_restart=pair(first / restart[:FIRST].mean(axis=0)),
             to_late=pair(first / late),
+            oracle_to_restart=pair(self.oracle[name][:FIRST].mean(axis=0) / restart[:FIRST].mean(axis=0)),
+            oracle_to_late=pair(self.oracle[name][:FIRST].mean(axis=0) / late),
             to_late_as_hard=pair(first / (late * harder)),
             all_to_restart=pair(own.mean(axis=0) / restart.mean(axis=0)),
             inside=coverage(made.inside[:FIRST]),
         )
-
-
-@dataclass(frozen=True)
-class SimulatedVisits:
-    """What became of random visits to simulated surfaces."""
-
-    noise: str
-    visits: int
-    right: float  # fraction of visits that ended on the right surface
-    right_known: float  # the same of visits to surfaces that were driven before
-    surfaces: int  # that are remembered in the end; 4, where the two that are alike are one
-    inside: tuple[float, float, float]  # of all windows
-    inside_first: tuple[float, float, float]  # of the first ten of each visit but the first
-
-
-def slip_of(surface: tuple[float, float, float]) -> Floats:
-    """Return the parameters of a surface."""
-    slip = SLIP.copy()
-    slip[0], slip[3], slip[6] = surface
-    return slip
-
-
-def simulated_visits(noise: str, visits: int, minutes: float, seed: int) -> SimulatedVisits:
-    """Drive on random surfaces in turn."""
-    rng = np.random.default_rng(seed)
-    truth = rng.integers(len(SIMULATED), size=visits)
-    logs = [
-        simulated_log(minutes, seed=1000 * seed + i, slips=(slip_of(SIMULATED[k]),), slip_noise=NOISES[noise])
-        for i, k in enumerate(truth)
-    ]
-    learned = learn_sequence([prepare_run(log, "wheel") for log in logs], Settings(), (SIMULATED_HORIZON,))
-    _, right = right_surfaces(learned, truth)
-    seen = np.array([k in set(truth[:i]) for i, k in enumerate(alike(truth))])
-    inside = [log.predictions[0].inside for log in learned.logs]
-    return SimulatedVisits(
-        noise=noise,
-        visits=visits,
-        right=float(right.mean()),
-        right_known=float(right[seen].mean()),
-        surfaces=len(learned.surfaces),
-        inside=coverage(np.concatenate(inside)),
-        inside_first=coverage(np.concatenate([each[:FIRST] for each in inside[1:]])),
-    )
-
-
-def alike(truth: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the surfaces, the two that are alike as one."""
-    return np.where(truth == len(SIMULATED) - 1, 0, truth)
-
-
-def right_surfaces(
-    learned: LearnedSequence, truth: NDArray[np.int64]
-) -> tuple[dict[int, str], NDArray[np.bool_]]:
-    """Return the name of each surface, what was merged under its last name, and which visits ended on it."""
-    renamed: dict[str, str] = {}
-    for log in learned.logs:
-        renamed |= {change.other: change.name for change in log.changes if change.what == "merged"}
-
-    def last(name: str) -> str:
-        while name in renamed:
-            name = renamed[name]
-        return name
-
-    called = [last(log.surface) for log in learned.logs]
-    same = alike(truth)
-    meant = {
-        name: Counter(same[np.array(called) == name].tolist()).most_common(1)[0][0] for name in set(called)
-    }
-    visits = Counter(called)
-    names = {}
-    for name in sorted(
-        meant, key=lambda each: -visits[each]
-    ):  # of two names for one surface, the rarer is wrong
-        names.setdefault(meant[name], name)
-    right = np.array([names.get(int(k)) == name for name, k in zip(called, same, strict=True)])
-    return names, right
 
 
 def one_surface(log: Log, input_name: str, horizon: float) -> float:
@@ -223,10 +144,10 @@ def print_visits(visits: Sequence[Visit], title: str) -> None:
     """Print means and extremes of a group of visits."""
     print(f"\n{title}\n")
     print(
-        "| log | visits | first ten [m, rad] | to restart, most | to late, most | as hard, most "
-        "| all to restart |"
+        "| log | visits | first ten [m, rad] | to restart, most | oracle | to late, most | oracle "
+        "| as hard, most | all to restart |"
     )
-    print("|---|---|---|---|---|---|---|")
+    print("|---|---|---|---|---|---|---|---|---|")
     for name in sorted({visit.log for visit in visits}):
         own = [visit for visit in visits if visit.log == name]
 
@@ -235,7 +156,8 @@ def print_visits(visits: Sequence[Visit], title: str) -> None:
 
         mean = " ".join(f"{value:.3f}" for value in np.mean([v.first for v in own], axis=0))
         whole = " ".join(f"{value:.3f}" for value in np.mean([v.all_to_restart for v in own], axis=0))
-        ratios = " | ".join(most(field) for field in ("to_restart", "to_late", "to_late_as_hard"))
+        fields = ("to_restart", "oracle_to_restart", "to_late", "oracle_to_late", "to_late_as_hard")
+        ratios = " | ".join(map(most, fields))
         print(f"| {name} | {len(own)} | {mean} | {ratios} | {whole} |")
     logs = np.log([(*v.to_restart, *v.to_late, *v.to_late_as_hard) for v in visits])
     print(f"geometric means: {' '.join(f'{value:.3f}' for value in np.exp(logs.mean(axis=0)))}")
@@ -249,21 +171,24 @@ def main() -> int:
         "--quick", action="store_true", help="two orders, and a fifth of the simulated visits"
     )
     arguments = parser.parse_args()
-    content: dict[str, Any] = {"real": {}, "alone": {}, "simulated": []}
+    content: dict[str, Any] = {"real": {}, "alone": {}, "simulated": [], "labels": []}
     folder = data_folder()
-    for input_name in ("wheel", "command") if folder else ():
-        robot = Warthog(folder or Path(), input_name)
+    for input_name, labels in itertools.product(("wheel", "command"), (True, False)) if folder else ():
+        robot = Warthog(folder or Path(), input_name, labels=labels)
         orders = list(itertools.permutations(GROUNDS))[: 2 if arguments.quick else None]
         visits = [v for same in (False, True) for order in orders for v in robot.visits(order, same=same)]
         first = [v for v in visits if not v.second and v.order.split()[0] not in v.log]
-        print_visits(first, f"{input_name}: first visits, other surfaces being known")
+        told = "with labels" if labels else "without labels"
+        print_visits(first, f"{input_name}, {told}: first visits, other surfaces being known")
         print_visits(
-            [v for v in visits if v.second and "other" in v.order], f"{input_name}: second visits, other logs"
+            [v for v in visits if v.second and "other" in v.order],
+            f"{input_name}, {told}: second visits, other logs",
         )
         print_visits(
-            [v for v in visits if v.second and "same" in v.order], f"{input_name}: second visits, same logs"
+            [v for v in visits if v.second and "same" in v.order],
+            f"{input_name}, {told}: second visits, same logs",
         )
-        content["real"][input_name] = [asdict(v) for v in visits]
+        content["real"][f"{input_name}, {told}"] = [asdict(v) for v in visits]
     for data in data_sets(folder) if folder else []:
         if data.name in FEW:
             log = slipwise.open_log(data.path)
@@ -273,8 +198,13 @@ def main() -> int:
                 content["alone"][f"{data.name} {name}"] = ratio
     for noise in NOISES:
         result = simulated_visits(noise, 20 if arguments.quick else 100, 1.0, seed=0)
-        print(f"\nsimulated, {noise} slip: {result}")
-        content["simulated"].append(asdict(result))
+        oracle = oracle_right(noise, 20 if arguments.quick else 100, 1.0, seed=0)
+        print(f"\nsimulated, {noise} slip: {result}; the oracle is right in {oracle:.0%}")
+        content["simulated"].append(asdict(result) | {"oracle_right": oracle})
+        for wrong in (0.0, 0.3):
+            labelled = labelled_visits(noise, 20 if arguments.quick else 60, wrong, seed=3)
+            print(f"labels, {noise} slip: {labelled}")
+            content["labels"].append(asdict(labelled))
     if arguments.json:
         arguments.json.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     return 0

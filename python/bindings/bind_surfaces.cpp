@@ -29,6 +29,7 @@ void bind_surfaces(nb::module_& m) {
       .def_rw("changed", &SurfaceSettings::changed)
       .def_rw("unknown", &SurfaceSettings::unknown)
       .def_rw("merge", &SurfaceSettings::merge)
+      .def_rw("alike", &SurfaceSettings::alike)
       .def_rw("most", &SurfaceSettings::most);
   nb::class_<SurfaceSlip>(m, "SurfaceSlip", "Slip of a surface under one basis, given the robot.")
       .def(

@@ -106,7 +106,8 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& own = surfaces_[place];
     const Surface& other = surfaces_[i];
-    if (i != place && known(own) && known(other) &&
+    const bool named_apart = !numbered(own.name) && !numbered(other.name);  // somebody says that they are two
+    if (i != place && !named_apart && known(own) && known(other) &&
         leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
             told_apart) {
       merge(std::min(i, place), std::max(i, place));
@@ -313,9 +314,9 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
     return false;
   }
   const bool at_start = trial.candidates.front().kind != Kind::Present;
-  if (!sure && !at_start) {
-    likeliest = 0;  // a suspicion that was not confirmed
-    probability = trial.probabilities()[0];
+  if (!sure) {  // a suspicion that was not confirmed; or what is driven on is kept apart until it is known better
+    likeliest = at_start ? std::ssize(trial.candidates) - 1 : 0;
+    probability = trial.probabilities()[likeliest];
   }
   const auto taken = static_cast<std::size_t>(likeliest);
   const SurfaceCandidate candidate = trial.candidates[taken];

@@ -241,17 +241,23 @@ void ModelAverage::settle(std::size_t candidate) {
   observed_ = trial.observed[candidate];
 }
 
-/// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open. A
-/// trial has as many times more segments as it is longer.
+/// Both predict the probes with their parameters, noise and disturbance; what differs is held against what is open. Of
+/// many segments, noise averages out; what remains is the mean of the disturbance over all of them, what is not known
+/// of both surfaces, and that surfaces drift.
 double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const {
   const AverageState of_a = state_on(a);
   const AverageState of_b = state_on(b);
   const auto count = std::ssize(probes_);
+  if (count == 0) {
+    return 0.0;
+  }
   const Eigen::Index slip = model_.slip_size();
   const DisturbedTerms terms = disturbed_terms(model_, of_a.prior_std);
+  const double each = settings_.surfaces.alike / static_cast<double>(count);  // segments that are like one probe
   Eigen::MatrixXd by_slip(3 * count, slip);
   Eigen::VectorXd difference(3 * count);
   Eigen::MatrixXd open = Eigen::MatrixXd::Zero(3 * count, 3 * count);
+  double seconds = 0.0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const Recent& probe = probes_[static_cast<std::size_t>(i)];
     const auto at = linearize_segment(model_, of_a.estimate.mean, probe.inputs, probe.segment);
@@ -259,20 +265,16 @@ double ModelAverage::apart(const SurfaceMemory& a, const SurfaceMemory& b, const
     by_slip.middleRows<3>(3 * i) = at.by_parameter.leftCols(slip);
     difference.segment<3>(3 * i) = other.predicted.vector() - at.predicted.vector();
     const Eigen::Vector3d scale = (of_a.noise_scale + of_b.noise_scale) / 2.0;
-    const Eigen::MatrixXd disturbed = at.by_parameter(Eigen::all, terms.places);
     open.block<3, 3>(3 * i, 3 * i) =
-        segment_noise(at.path, probe.segment.measured, filters_.front().noise().shape, scale) +
-        disturbed * nominal_variances(law, terms, probe.segment.end - probe.segment.start).asDiagonal() *
-            disturbed.transpose();
+        segment_noise(at.path, probe.segment.measured, filters_.front().noise().shape, scale) / each;
+    seconds += each * (probe.segment.end - probe.segment.start);
   }
-  open += by_slip *
-          (of_a.estimate.covariance.topLeftCorner(slip, slip) + of_b.estimate.covariance.topLeftCorner(slip, slip)) *
-          by_slip.transpose();
-  if (count == 0) {
-    return 0.0;
-  }
-  const double segments = settings_.surfaces.trial;
-  return segments / static_cast<double>(count) * difference.dot(Cholesky(open).solve(difference)) / 2.0;
+  Eigen::MatrixXd common =
+      of_a.estimate.covariance.topLeftCorner(slip, slip) + of_b.estimate.covariance.topLeftCorner(slip, slip);
+  common.diagonal() += settings_.surfaces.drift * of_a.prior_std.head(slip).cwiseAbs2();
+  common.diagonal()(terms.places) += nominal_variances(law, terms, seconds);
+  open += by_slip * common * by_slip.transpose();
+  return difference.dot(Cholesky(open).solve(difference)) / 2.0;
 }
 
 }  // namespace slipwise

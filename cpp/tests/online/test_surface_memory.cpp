@@ -150,6 +150,37 @@ TEST_CASE("surfaces are saved with the learner, in the middle of a trial too") {
   CHECK(loaded.surfaces().surfaces().size() == learner.surfaces().surfaces().size());
 }
 
+TEST_CASE("an entry says how long, how often, when and how fast its surface was driven") {
+  MotionLearner learner(surface_settings(true));
+  for (const std::string date : {"2026-01-01", "2026-02-01"}) {
+    learner.start_drive({.label = "hall", .date = date});
+    push(learner, drive_on(0.1, date.size(), kVisit, date == "2026-01-01" ? 1000.0 : 2000.0));
+    learner.end_run();
+  }
+  const SurfaceBank bank = learner.surfaces();
+  REQUIRE(bank.surfaces().size() == 1);
+  const Surface& hall = bank.surfaces().front();
+  CHECK(hall.last_seen == "2026-02-01");
+  CHECK(hall.visits == 2);
+  CHECK(hall.seconds > 1.8 * kVisit);
+  CHECK(hall.seconds <= 2.0 * kVisit);
+  CHECK(hall.speeds.v == doctest::Approx(1.15).epsilon(0.1));
+  CHECK(hall.speeds.omega == doctest::Approx(0.7).epsilon(0.15));
+}
+
+TEST_CASE("surfaces that somebody names apart stay two") {
+  MotionLearner learner(surface_settings(true));
+  for (const std::string label : {"hall", "corridor"}) {
+    learner.start_drive({.label = label, .date = ""});
+    push(learner, drive_on(label == "hall" ? 0.3 : 0.34, label.size(), kVisit, label == "hall" ? 1000.0 : 2000.0));
+    learner.end_run();
+  }
+  const SurfaceBank bank = learner.surfaces();
+  REQUIRE(bank.surfaces().size() == 2);
+  CHECK(bank.surfaces()[0].name == "hall");
+  CHECK(bank.surfaces()[1].name == "corridor");
+}
+
 TEST_CASE("of more surfaces than are kept, the least used goes") {
   LearnerSettings few = surface_settings(true);
   few.hypotheses.average.surfaces.most = 2;
