@@ -106,7 +106,8 @@ void SurfaceBank::merge_confounded(const Averages& averages, const DisturbanceMo
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     const Surface& own = surfaces_[place];
     const Surface& other = surfaces_[i];
-    const bool named_apart = !numbered(own.name) && !numbered(other.name);  // somebody says that they are two
+    // While driving, somebody says that they are two; names in two files are of nobody's comparison.
+    const bool named_apart = present_ && !numbered(own.name) && !numbered(other.name);
     if (i != place && !named_apart && known(own) && known(other) &&
         leader.apart(slipwise::present(own.memories[leader_]), slipwise::present(other.memories[leader_]), law) <=
             told_apart) {

@@ -4,10 +4,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from sample_logs import Drive, simulated_log
+from sample_surfaces import floor_log
 
 from slipwise import _core
-from slipwise.calibration.learned_sequence import learn_sequence
+from slipwise.calibration.learned_sequence import SequenceOptions, learn_sequence
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.settings import Settings
@@ -45,3 +47,17 @@ def test_the_learner_of_a_robot_puts_its_surfaces_into_the_model() -> None:
     (section,) = learner.model(limits=False).content.surfaces
     assert section.name == "hall"
     assert MotionLearner.load(learner.save()).surfaces() == (hall,)
+
+
+def visited(slips: list[tuple[float, float]], labels: tuple[str, ...] = ()) -> list[str]:
+    """Return the names of the surfaces that are remembered after drives on these."""
+    drives = [prepare_run(floor_log(slip, seed), "wheel") for seed, slip in enumerate(slips)]
+    learned = learn_sequence(drives, Settings(), (1.0,), options=SequenceOptions(labels=labels))
+    return [surface.name for surface in learned.surfaces]
+
+
+@pytest.mark.slow
+def test_surfaces_that_are_alike_become_one_under_their_name() -> None:
+    alike = [(-0.05, -0.3), (-0.05, -0.301), (-0.05, -0.3)]
+    assert visited(alike) == ["surface 1"]
+    assert visited(alike[:2], ("hall", "hall")) == ["hall"]
