@@ -315,7 +315,9 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
     return false;
   }
   const bool at_start = trial.candidates.front().kind != Kind::Present;
-  if (!sure) {  // a suspicion that was not confirmed; or what is driven on is kept apart until it is known better
+  const SurfaceCandidate& most = trial.candidates[static_cast<std::size_t>(likeliest)];
+  const bool named = most.kind == Kind::Known && surfaces_[most.place].name == label_;
+  if (!sure && !(at_start && named)) {  // a suspicion that was not confirmed; or kept apart until it is known better
     likeliest = at_start ? std::ssize(trial.candidates) - 1 : 0;
     probability = trial.probabilities()[likeliest];
   }
@@ -331,7 +333,7 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
   if (candidate.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
   }
-  take(candidate, judge_label(candidate, recalled), probability, segments);
+  take(candidate, judge_label(candidate, recalled, sure), probability, segments);
   return true;
 }
 

@@ -26,7 +26,7 @@ bool SurfaceBank::taken(const std::string& name) const {
 }
 
 std::string SurfaceBank::new_name() {
-  const std::string wanted = std::exchange(wanted_, {});
+  std::string wanted = std::exchange(wanted_, {});
   if (!wanted.empty() && !taken(wanted)) {
     return wanted;
   }
@@ -70,7 +70,7 @@ void SurfaceBank::weigh_by_label(std::vector<SurfaceCandidate>& candidates) cons
 
 /// Counts whether the label was right, as far as the surface that was taken tells; returns the name of the one that was
 /// recalled. One that had a number for a name gets the label for its name.
-std::string SurfaceBank::judge_label(const SurfaceCandidate& candidate, const std::string& recalled) {
+std::string SurfaceBank::judge_label(const SurfaceCandidate& candidate, const std::string& recalled, bool sure) {
   if (candidate.kind != Kind::Present) {
     wanted_.clear();
   }
@@ -83,8 +83,10 @@ std::string SurfaceBank::judge_label(const SurfaceCandidate& candidate, const st
   const bool entry = here != surfaces_.end();
   const bool nameless = entry && numbered(here->name) && !taken(label_);
   const bool right = entry ? nameless || here->name == label_ : !taken(label_);
-  labels_.all += 1.0;
-  labels_.right += right ? 1.0 : 0.0;
+  if (sure) {  // else nothing but the label may have decided
+    labels_.all += 1.0;
+    labels_.right += right ? 1.0 : 0.0;
+  }
   if (nameless) {
     here->name = label_;
   } else if (right && !entry) {

@@ -102,7 +102,7 @@ class SurfaceBank {
   std::vector<SurfaceCandidate> candidates_of_change() const;
   Eigen::ArrayXd label_factors(const std::vector<SurfaceCandidate>& candidates) const;
   void weigh_by_label(std::vector<SurfaceCandidate>& candidates) const;
-  std::string judge_label(const SurfaceCandidate& candidate, const std::string& recalled);
+  std::string judge_label(const SurfaceCandidate& candidate, const std::string& recalled, bool sure);
   bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
   void leave_present(const Averages& averages, const DisturbanceModel& law);
   void take(const SurfaceCandidate& candidate, const std::string& recalled, double probability, int segments);
