@@ -19,7 +19,7 @@ export VIRTUAL_ENV := $(CURDIR)/$(VENV)
 unexport PYTHONPATH PYTHONHOME CONDA_PREFIX
 
 CPP_SOURCES := $(shell find cpp/include cpp/src python/bindings -type f 2>/dev/null)
-CPP_FORMATTED = $$(find cpp python/bindings -name '*.hpp' -o -name '*.cpp' -o -name '*.cu')
+CPP_FORMATTED = $$(find cpp python/bindings python/tests/integrations integrations -name '*.hpp' -o -name '*.cpp' -o -name '*.cu')
 PYTHON_CHECKED := python/slipwise tools
 
 .NOTPARALLEL:
