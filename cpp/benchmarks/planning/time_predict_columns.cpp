@@ -35,8 +35,8 @@ void time(const Case& chosen, const std::vector<float>& v, const std::vector<flo
   std::vector<double> times;
   for (int run = 0; run < 301; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    planning::predict_columns(program, {v.data(), omega.data(), kRollouts, kPeriods}, {.v = 0.5}, in_flight,
-                              {vx.data(), vy.data(), wz.data()});
+    planning::predict_columns(program, {v.data(), omega.data(), kRollouts, kPeriods},
+                              {.drive = {.v = 0.5}, .in_flight = in_flight}, {vx.data(), vy.data(), wz.data()});
     times.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
   }
   std::ranges::sort(times);

@@ -66,7 +66,7 @@ SLIPWISE_LANES void convert(ChunkPoses& poses, std::size_t at, std::size_t lane,
 /// Whether some rollout turns within a period by more than the plain series takes.
 bool turns_wide(const ChunkPoses& poses) {
   const std::size_t rows = poses.theta.size() / kChunk;
-  Vector widest = Vector{};
+  auto widest = Vector{};
   for (std::size_t k = 0; k < rows; ++k) {
     for (std::size_t n = 0; n < kChunk; n += kLanes) {
       const Vector now = read(&poses.theta[k * kChunk + n]);
@@ -149,20 +149,19 @@ struct ColumnWork {
 
 }  // namespace
 
-void predict_columns(const RolloutProgram& program, const CommandColumns& commands, const DriveCommand& drive,
-                     std::span<const DriveCommand> in_flight, const VelocityColumns& velocities,
-                     const RolloutOptions& options) {
+void predict_columns(const RolloutProgram& program, const CommandColumns& commands, const ColumnStart& start,
+                     const VelocityColumns& velocities, const RolloutOptions& options) {
   if (velocities.vx == nullptr || velocities.vy == nullptr || velocities.wz == nullptr) {
     throw std::invalid_argument("there is no place for the velocities; point to three columns");
   }
   if (commands.rollouts == 0 || commands.periods == 0 || commands.v == nullptr || commands.omega == nullptr) {
     throw std::invalid_argument("there are no commands; point to at least one sequence of one period");
   }
-  const RolloutStart start{.pose = {}, .drive = drive};
+  const RolloutStart at_origin{.pose = {}, .drive = start.drive};
   RolloutOptions on_one_thread = options;
   on_one_thread.threads = 1;
   share_out((commands.rollouts + kChunk - 1) / kChunk, options.threads, [&](std::size_t first, std::size_t last) {
-    ColumnWork work{program, commands, start, in_flight, velocities, on_one_thread};
+    ColumnWork work{program, commands, at_origin, start.in_flight, velocities, on_one_thread};
     for (std::size_t chunk = first; chunk < last; ++chunk) {
       work.at(chunk * kChunk);
     }

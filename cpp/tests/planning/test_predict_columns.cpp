@@ -28,7 +28,8 @@ Velocities predicted(const RolloutProgram& program, const tests::SampleCommands<
   const std::size_t size = commands.rollouts * commands.periods;
   Velocities made{std::vector<float>(size), std::vector<float>(size), std::vector<float>(size)};
   planning::predict_columns(program, {commands.v.data(), commands.omega.data(), commands.rollouts, commands.periods},
-                            drive, in_flight, {made.vx.data(), made.vy.data(), made.wz.data()}, options);
+                            {.drive = drive, .in_flight = in_flight}, {made.vx.data(), made.vy.data(), made.wz.data()},
+                            options);
   return made;
 }
 
@@ -130,9 +131,9 @@ TEST_CASE("what cannot be driven is refused, and said where it is") {
   }
   CHECK(said == "counted from rollout 128: the command of rollout 22 over period 2 is not finite");
   float number = 0.0F;
-  CHECK_THROWS_AS(planning::predict_columns(program, {&number, &number, 1, 1}, {}, {}, {&number, nullptr, &number}),
+  CHECK_THROWS_AS(planning::predict_columns(program, {&number, &number, 1, 1}, {}, {&number, nullptr, &number}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(planning::predict_columns(program, {&number, &number, 0, 1}, {}, {}, {&number, &number, &number}),
+  CHECK_THROWS_AS(planning::predict_columns(program, {&number, &number, 0, 1}, {}, {&number, &number, &number}),
                   std::invalid_argument);
 }
 

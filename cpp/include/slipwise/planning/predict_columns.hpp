@@ -18,6 +18,13 @@ struct CommandColumns {
   std::size_t periods;
 };
 
+/// What the drive is about to do.
+struct ColumnStart {
+  DriveCommand drive;  ///< what it does now
+  /// Commands sent before, one period apart, the oldest first; those still in the delay act first.
+  std::span<const DriveCommand> in_flight = {};
+};
+
 /// What the robot does over the periods, in the same places. Velocities are of the robot's frame at a period's start,
 /// such that the sum of `vx, vy` turned by the heading before the period, and of `wz`, times the period, is the path:
 /// x_k = x_(k-1) + (vx_k cos(yaw_(k-1)) - vy_k sin(yaw_(k-1))) dt and yaw_k = yaw_(k-1) + wz_k dt, exactly.
@@ -28,11 +35,8 @@ struct VelocityColumns {
 };
 
 /// Drives the commands through delay, limits, lags and slip of `program` and writes the velocities.
-/// \param drive what the drive does now.
-/// \param in_flight commands sent before, one period apart, the oldest first; those still in the delay act first.
 /// \throws std::invalid_argument when there is nothing to drive, or a number is not finite; as `rollout_batch`.
-void predict_columns(const RolloutProgram& program, const CommandColumns& commands, const DriveCommand& drive,
-                     std::span<const DriveCommand> in_flight, const VelocityColumns& velocities,
-                     const RolloutOptions& options = {});
+void predict_columns(const RolloutProgram& program, const CommandColumns& commands, const ColumnStart& start,
+                     const VelocityColumns& velocities, const RolloutOptions& options = {});
 
 }  // namespace slipwise::planning

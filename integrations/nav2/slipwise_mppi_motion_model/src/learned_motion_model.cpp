@@ -29,10 +29,11 @@ class LearnedMotionModel : public mppi::MotionModel {
     if (!program_ || program_->setting().period != static_cast<double>(model_dt_)) {
       program_.emplace(compiled(static_cast<double>(model_dt_)));
     }
+    const std::vector<slipwise::DriveCommand> sent = in_flight();
     slipwise::planning::predict_columns(*program_,
                                         {state.cvx.data(), state.cwz.data(), static_cast<std::size_t>(state.cvx.rows()),
                                          static_cast<std::size_t>(state.cvx.cols())},
-                                        {state.speed.linear.x, state.speed.angular.z}, in_flight(),
+                                        {.drive = {state.speed.linear.x, state.speed.angular.z}, .in_flight = sent},
                                         {state.vx.data(), state.vy.data(), state.wz.data()},
                                         {.threads = static_cast<unsigned>(std::max(threads_, 1))});
   }
