@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 
 namespace slipwise {
 namespace {
 
-constexpr double kSteepest = 1.7320509;  // rise per metre at 60 degrees
+constexpr double kSteepest = std::numbers::sqrt3 + 1e-9;  // rise per metre at 60 degrees
 
 SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                     const RolloutSetting& setting) {

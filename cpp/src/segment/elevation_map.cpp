@@ -22,8 +22,8 @@ Eigen::MatrixXd difference_of_rows(const Eigen::MatrixXd& nodes, double cell) {
 
 }  // namespace
 
-ElevationMap::ElevationMap(Eigen::MatrixXd elevation, const Eigen::Vector2d& origin, double cell)
-    : elevation_(std::move(elevation)), origin_(origin), cell_(cell) {
+ElevationMap::ElevationMap(Eigen::MatrixXd elevation, Eigen::Vector2d origin, double cell)
+    : elevation_(std::move(elevation)), origin_(std::move(origin)), cell_(cell) {
   if (elevation_.rows() < 2 || elevation_.cols() < 2) {
     throw std::invalid_argument("an elevation map has two rows and two columns of nodes at least");
   }

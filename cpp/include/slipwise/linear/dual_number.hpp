@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <utility>
 
 namespace slipwise {
 
@@ -14,7 +15,7 @@ struct Dual3 {
 
   Dual3() = default;
   Dual3(double constant) : value(constant) {}  // NOLINT(google-explicit-constructor, hicpp-explicit-conversions)
-  Dual3(double v, const Eigen::RowVector3d& derivative) : value(v), by(derivative) {}
+  Dual3(double v, Eigen::RowVector3d derivative) : value(v), by(std::move(derivative)) {}
   /// The variable number `place`.
   static Dual3 variable(double v, Eigen::Index place) { return {v, Eigen::RowVector3d::Unit(place)}; }
 };

@@ -7,6 +7,8 @@
 #include "slipwise/rollout/lane_path.hpp"
 #include "slipwise/rollout/lanes.hpp"
 
+// Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
+// NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
 /// One over the root of 1 + u, u from 0 to 3, by Newton's method.
@@ -31,8 +33,8 @@ SLIPWISE_LANES void find_grade(const LaneJob<Scalar>& job, const PathLanes<L>& p
   using Vector = L::Vector;
   const Scalar numbers[] = {static_cast<Scalar>(1), static_cast<Scalar>(1.5), static_cast<Scalar>(0.5),
                             static_cast<Scalar>(0.25), static_cast<Scalar>(0.75)};
-  const Scalar minus_third = static_cast<Scalar>(-1.0 / 6.0);
-  const Scalar minus_half = static_cast<Scalar>(-0.5);
+  const auto minus_third = static_cast<Scalar>(-1.0 / 6.0);
+  const auto minus_half = static_cast<Scalar>(-0.5);
   const Vector squared = half * half;
   const Vector sine_half = half * (squared * minus_third + numbers[0]);
   const Vector cosine_half = squared * (squared * static_cast<Scalar>(1.0 / 24.0) + minus_half) + numbers[0];
@@ -60,3 +62,4 @@ SLIPWISE_LANES void see_from_above(const GradeLanes<L>& grade, TangentLanes<L>& 
 }
 
 }  // namespace slipwise
+// NOLINTEND(modernize-avoid-c-arrays)

@@ -53,11 +53,11 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
   if constexpr (kSlip == Slip::Quadratic) {
     quadratic_tangent<L>(job, coefficients, mean_v, mean_omega, tangent);
   } else if constexpr (kSlip == Slip::Products) {
-    slip_tangent<L>(job, coefficients, nullptr, mean_v, mean_omega, tangent);
+    slip_tangent<L>(job, {coefficients, nullptr}, mean_v, mean_omega, tangent);
   } else {
     GradeLanes<L> grade;
     find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
-    slip_tangent<L>(job, coefficients, &grade, mean_v, mean_omega, tangent);
+    slip_tangent<L>(job, {coefficients, &grade}, mean_v, mean_omega, tangent);
     see_from_above<L>(grade, tangent);
   }
 }

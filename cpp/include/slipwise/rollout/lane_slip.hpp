@@ -118,13 +118,20 @@ SLIPWISE_LANES void quadratic_tangent(const LaneJob<Scalar>& job, const Scalar* 
                  (v * (v * d[2] + e[2]) + omega * coefficients[3 * kProductOmega + 2]);
 }
 
+/// What slip over a part follows from beside the drive.
+template <class L>
+struct PartSlip {
+  const L::Scalar* coefficients;
+  const GradeLanes<L>* grade;  ///< null on level ground
+};
+
 /// Runs the program: each product is an earlier one times a factor, and has its coefficients in the tangent.
 template <class L, typename Scalar = L::Scalar>
-SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const Scalar* coefficients, const GradeLanes<L>* grade,
-                                 const typename L::Vector& v, const typename L::Vector& omega,
-                                 TangentLanes<L>& tangent) {
+SLIPWISE_LANES void slip_tangent(const LaneJob<Scalar>& job, const PartSlip<L>& slip, const typename L::Vector& v,
+                                 const typename L::Vector& omega, TangentLanes<L>& tangent) {
   FactorLanes<L> factors;
-  find_factors<L>(job, grade, v, omega, factors);
+  find_factors<L>(job, slip.grade, v, omega, factors);
+  const Scalar* coefficients = slip.coefficients;
   typename L::Vector products[kMostProducts];
   copy(v, products[kProductV]);
   copy(omega, products[kProductOmega]);

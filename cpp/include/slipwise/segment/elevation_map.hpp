@@ -27,7 +27,7 @@ class ElevationMap {
   /// \param cell distance between nodes [m].
   /// \throws std::invalid_argument when there are less than two rows or columns, a number is not finite, or the cell
   /// is not positive.
-  ElevationMap(Eigen::MatrixXd elevation, const Eigen::Vector2d& origin, double cell);
+  ElevationMap(Eigen::MatrixXd elevation, Eigen::Vector2d origin, double cell);
 
   template <class Scalar>
   GroundRise<Scalar> rise(const Scalar& x, const Scalar& y) const {
@@ -58,7 +58,7 @@ class ElevationMap {
   template <class Scalar>
   Cell<Scalar> cell_of(const Scalar& metres, double origin, Eigen::Index nodes) const {
     const Scalar place = (metres - Scalar(origin)) / Scalar(cell_);
-    const double last = static_cast<double>(nodes - 1);
+    const auto last = static_cast<double>(nodes - 1);
     if (!(value_of(place) > 0.0)) {
       return {0, Scalar(0.0), 0.0};
     }
