@@ -130,18 +130,19 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
 
 
 class FixPoses:
-    """Poses of satellite fixes with the heading of an IMU, in the tangent plane at the first fix."""
+    """Poses of satellite fixes with the orientation of an IMU, in the tangent plane at the first fix."""
 
     def __init__(self, options: LogOptions) -> None:
         self._offset = options.pose_yaw_offset
         self._origin: tuple[float, float, float] | None = None
-        self._heading: tuple[float, float] | None = None  # stamp [s], yaw [rad]
+        self._imu: tuple[float, float, float, float] | None = None  # stamp [s], roll, pitch, yaw [rad]
 
     def take_imu(self, message: Any, t: float) -> None:
         """Take an orientation."""
         q, good = unit_quaternions(np.array([_values(IMU_VALUES, message)]))
         if good[0]:
-            self._heading = (t, float(angles_of(q)[2][0]))
+            roll, pitch, yaw = (float(angle[0]) for angle in angles_of(q))
+            self._imu = (t, roll, pitch, yaw)
 
     def take_fix(self, message: Any, t: float) -> Pose | None:
         """Return the pose of a fix; None without a fix, or without a heading of the same time."""
@@ -150,11 +151,13 @@ class FixPoses:
             return None
         fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
         self._origin = self._origin or fix
-        if self._heading is None or abs(t - self._heading[0]) > OLDEST_IMU:
+        if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
             return None
+        _, roll, pitch, yaw = self._imu
         x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
         std_xy = _known(deviation_of(np.array([variances])))
-        return Pose(t, x, y, self._heading[1] + self._offset, std_xy, frame=message.header.frame_id)
+        frame = message.header.frame_id
+        return Pose(t, x, y, yaw + self._offset, std_xy, frame=frame, roll=roll, pitch=pitch)
 
 
 def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -61,3 +61,20 @@ def test_on_flat_ground_terms_of_gravity_are_called_not_identifiable() -> None:
         learned = calibrate(log, settings=make_settings({"basis": "odd-even-13"})).model.content.parameters
         claimed += any(p.identifiable for p in learned if p.name in GRAVITY_TERMS)
     assert claimed <= 5
+
+
+def test_no_prediction_depends_on_an_attitude_that_is_measured_after_its_start() -> None:
+    run = hilly_log(5, Hills(seconds=60.0)).runs[0]
+    later = run.poses.t > 40.0
+    roll, pitch = run.poses.roll, run.poses.pitch
+    assert roll is not None
+    assert pitch is not None
+    tipped = replace(run.poses, roll=np.where(later, -roll, roll), pitch=np.where(later, 0.3, pitch))
+    made = [calibrate(Log((each,))).predictions for each in (run, replace(run, poses=tipped))]
+    for one, other in zip(*made, strict=True):
+        before = one.t_start < 40.0
+        assert before.any()
+        assert not before.all()
+        assert one.pose[before].tobytes() == other.pose[before].tobytes()
+        assert one.covariance[before].tobytes() == other.covariance[before].tobytes()
+        assert (one.pose[~before] != other.pose[~before]).any()
