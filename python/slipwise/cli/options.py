@@ -94,7 +94,11 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
         "TOPIC",
         "Wheel odometry: Odometry (its twist) or JointState; none: do not read any.",
     ),
-    "imu_topic": (str, "TOPIC", "Imu that gives the heading beside a NavSatFix."),
+    "imu_topic": (
+        str,
+        "TOPIC",
+        "Imu: orientation beside a NavSatFix, roll and pitch beside planar poses.",
+    ),
     "pose_frame": (str, "FRAME", "TF: the fixed frame, such as map."),
     "child_frame": (str, "FRAME", "TF: the robot's frame, such as base_link."),
     "left_joints": (str, "NAMES", "JointState: left wheels, separated by commas."),

@@ -19,6 +19,7 @@ from slipwise.logs.bag_streams import (
     needs_receipt,
     pose_stream,
     wheel_stream,
+    with_tilts,
 )
 from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.joints import SideMotion, sides_text
@@ -199,7 +200,7 @@ def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) 
         )
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
     elif roles.pose is not None:
-        poses = pose_stream(context, samples["pose"])
+        poses = with_tilts(context, pose_stream(context, samples["pose"]), samples.get("imu"))
     return _split(path, collected.runs, (commands, wheels, poses), context.tally)
 
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -142,6 +142,20 @@ def pose_stream(context: BagContext, samples: Samples) -> RawStream:
     finite = np.isfinite(values[:, 3:7]).all(axis=1)
     _count(context, samples, finite & ~good, "bad-quaternion", "poses whose quaternion is not a rotation")
     return context.stream("poses", samples, columns, good | ~finite)
+
+
+def with_tilts(context: BagContext, poses: RawStream, imu: Samples | None) -> RawStream:
+    """Give planar poses the roll and the pitch of an IMU, where one was named; poses in space keep theirs."""
+    if imu is None or not len(imu.values) or "roll" in poses.columns or "pitch" in poses.columns:
+        return poses
+    q, upright = unit_quaternions(imu.values)
+    _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
+    if not upright.any():
+        return poses
+    imu_t, (roll, pitch, _) = context.seconds(imu, "imu")[upright], angles_of(q[upright])
+    context.notes.append(f"roll and pitch are those of {imu.topic}")
+    tilts = {"roll": tilt_from_imu(poses.t, imu_t, roll), "pitch": tilt_from_imu(poses.t, imu_t, pitch)}
+    return replace(poses, columns={**poses.columns, **tilts})
 
 
 def fix_stream(

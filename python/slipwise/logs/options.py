@@ -26,7 +26,7 @@ class LogOptions:
     command_topic: str | None = None  # Twist[Stamped] or AckermannDriveStamped
     pose_topic: str | None = None  # Odometry, Pose[WithCovariance]Stamped, NavSatFix or TFMessage
     wheel_topic: str | None = None  # Odometry (its twist) or JointState
-    imu_topic: str | None = None  # Imu: the heading beside a NavSatFix
+    imu_topic: str | None = None  # Imu: orientation beside a NavSatFix, tilt beside planar poses
     pose_frame: str | None = None  # TF: the fixed frame, such as "map"
     child_frame: str | None = None  # TF: the robot, such as "base_link"
     left_joints: tuple[str, ...] = ()  # JointState: wheels of the left side, by name

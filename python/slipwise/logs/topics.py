@@ -110,7 +110,8 @@ def weigh_topics(
         wheel = _without_wheels(wheel, "it is the pose, and its name does not say that it is wheel odometry")
         shared = False
     satellites = pose.topic is not None and pose.topic.type == NAV_SAT_FIX
-    imu = choose(live, _IMU, options.imu_topic) if satellites else RoleChoice()
+    asked = satellites or options.imu_topic is not None
+    imu = choose(live, _IMU, options.imu_topic) if asked else RoleChoice()
     if imu.problem is not None and options.imu_topic is None:  # any of several orientations will do
         first = next(t for t in live.values() if t.type == IMU and t.name in imu.rejected)
         imu = RoleChoice(first, "the first of several", imu.rejected)

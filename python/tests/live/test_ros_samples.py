@@ -106,6 +106,7 @@ def test_fixes_are_poses_with_the_heading_of_an_imu_of_the_same_time() -> None:
     assert found is not None
     assert (found.x, found.y) == (pytest.approx(0.0, abs=1e-6), pytest.approx(1.112, abs=1e-2))
     assert found.yaw == pytest.approx(0.8)
+    assert (found.roll, found.pitch) == (pytest.approx(0.0), pytest.approx(0.0))
     assert found.std_xy == pytest.approx(0.1)
     assert fixes.take_fix(fix(48.0, status=-1), 2.0) is None
     assert fixes.take_fix(fix(48.0), 9.0) is None  # the heading is old

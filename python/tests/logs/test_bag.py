@@ -14,6 +14,7 @@ from sample_bags import EPOCH, ODOMETRY, POSE, SECOND, TWIST, Bag, drive_along_x
 from slipwise.errors import LogError
 from slipwise.logs import Log, LogOptions, open_log
 from slipwise.logs.messages import ACKERMANN, TF
+from slipwise.logs.rotation import quaternions_of
 
 
 def counts(log: Log) -> dict[str, int]:
@@ -285,3 +286,19 @@ def test_poses_come_from_a_chain_of_transforms(tmp_path: Path, name: str) -> Non
 def test_a_bag_with_nothing_in_it_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="the bag has no messages"):
         open_log(Bag().write(tmp_path / "a.mcap"))
+
+
+def test_planar_poses_take_roll_and_pitch_of_an_imu_that_is_named(tmp_path: Path) -> None:
+    bag, kind, none = drive_along_x(Bag()), "sensor_msgs/msg/Imu", np.zeros(9)
+    for k in range(100):
+        stamp = EPOCH + k * SECOND // 10
+        x, y, z, w = quaternions_of(np.array([0.1]), np.array([-0.002 * k]), np.array([1.0]))[0].tolist()
+        turned, still = bag.make("geometry_msgs/msg/Quaternion", x, y, z, w), bag.vector(0.0, 0.0, 0.0)
+        message = bag.make(kind, bag.header(stamp), turned, none, still, none, still, none)
+        bag.add(stamp, "/imu/data", kind, message)
+    path = bag.write(tmp_path / "a.mcap")
+    poses = open_log(path, options=LogOptions(imu_topic="/imu/data")).runs[0].poses
+    assert poses.roll == pytest.approx(np.full(100, 0.1))
+    assert poses.pitch == pytest.approx(-0.002 * np.arange(100))
+    assert poses.yaw == pytest.approx(np.full(100, 0.5))
+    assert open_log(path).runs[0].poses.roll is None
