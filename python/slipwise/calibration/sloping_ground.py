@@ -1,43 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a log's ground slopes enough to try slip terms of gravity, and the settings that then do."""
+"""Whether a log holds an attitude, and the settings with which slip by gravity is then tried."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 
 from slipwise.calibration.settings import AUTO_BASES, Settings
 from slipwise.logs.log import Log
 
-#: Bases with terms of gravity that `auto` averages too where the ground slopes.
+#: Bases with terms of gravity that `auto` averages too where roll and pitch were measured.
 SLOPE_BASES = ("odd-even-13", "drive-9")
-LEAST_SPREAD = math.radians(1.5)  # of roll and pitch together; a suspension alone moves a robot by less
+_TINY = 1e-12  # rad; what is smaller everywhere was never measured
 
 
-def tilt_spread(log: Log) -> float:
-    """Return how much roll and pitch vary in a log: root of the sum of both variances [rad].
+def has_attitude(log: Log) -> bool:
+    """Return whether roll and pitch of some run were measured.
 
-    A sensor that is mounted with a tilt, or a floor that leans one way under a robot that never turns, does
-    not vary: there is nothing to learn of gravity.
+    How much they vary is not asked: a log that is cut off is learned with the same terms, so that no
+    prediction depends on what comes after it.
     """
-    rows = [
-        np.column_stack((run.poses.roll, run.poses.pitch))
+    return any(
+        np.nanmax(np.abs(angle), initial=0.0) > _TINY
         for run in log.runs
         if run.poses.roll is not None and run.poses.pitch is not None
-    ]
-    tilts = np.concatenate(rows) if rows else np.empty((0, 2))
-    tilts = tilts[np.isfinite(tilts).all(axis=1)]
-    return float(np.sqrt(tilts.var(axis=0).sum())) if len(tilts) else 0.0
+        for angle in (run.poses.roll, run.poses.pitch)
+    )
 
 
 def for_the_ground_of(log: Log, settings: Settings) -> Settings:
-    """Return the settings with which a log is learned: with terms of gravity where its ground slopes.
+    """Return the settings with which a log is learned: with terms of gravity where it has an attitude.
 
     Only the default list of `auto` is extended; bases that were chosen stay as they are.
     """
     default = settings.basis == "auto" and tuple(settings.auto.bases) == AUTO_BASES
-    if not default or tilt_spread(log) < LEAST_SPREAD:
+    if not default or not has_attitude(log):
         return settings
     bases = [*AUTO_BASES, *SLOPE_BASES]
     return settings.model_copy(update={"auto": settings.auto.model_copy(update={"bases": bases})})
