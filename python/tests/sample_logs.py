@@ -145,9 +145,9 @@ def with_poses(run: Run, poses: Poses) -> Run:
 
 def kept(poses: Poses, keep: NDArray[np.bool_]) -> Poses:
     """Return the poses where `keep` is true."""
-    return Poses(
-        t=poses.t[keep], x=poses.x[keep], y=poses.y[keep], yaw=poses.yaw[keep], frame=poses.frame[keep]
-    )
+    others = {name: column[keep] for name, column in poses.optional().items() if column is not None}
+    x, y, yaw, frame = (column[keep] for column in (poses.x, poses.y, poses.yaw, poses.frame))
+    return Poses(t=poses.t[keep], x=x, y=y, yaw=yaw, frame=frame, **others)
 
 
 def inputs_until(inputs: Inputs, t: float) -> Inputs:
