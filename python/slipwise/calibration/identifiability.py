@@ -96,8 +96,12 @@ def _terms(name: str) -> str:
     return name.partition(".")[2]
 
 
+def _slopes(name: str) -> bool:
+    return "gx" in _terms(name) or "gy" in _terms(name)
+
+
 def _turns(name: str) -> bool:
-    return "w" in _terms(name) or "kappa" in _terms(name)
+    return ("w" in _terms(name) or "kappa" in _terms(name)) and not _slopes(name)
 
 
 def _swapped(pair: Confounded) -> Confounded:
@@ -134,7 +138,7 @@ _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
         "Drive straight for longer; turning on the spot cannot show how a sensor is turned",
     ),
     (
-        lambda n: "gx" in _terms(n) or "gy" in _terms(n),
+        _slopes,
         "Drive up, down and across a slope, with roll and pitch in the log",
     ),
     (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
