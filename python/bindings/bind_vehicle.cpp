@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/vehicle.
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
 #include "slipwise/lie/body_twist.hpp"
 #include "slipwise/vehicle/ackermann.hpp"
 #include "slipwise/vehicle/differential_drive.hpp"
+#include "slipwise/vehicle/wheel_layout.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -27,9 +31,101 @@ Eigen::MatrixX2d twist_rows(const Eigen::VectorXd& first, const Eigen::VectorXd&
   return rows;
 }
 
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// One row of readings: all that was read at once.
+WheelReadings readings_at(Eigen::Index row, const Rows& speed, const Rows& steering, const Rows& hinge) {
+  WheelReadings readings{.speed = speed.row(row).transpose(), .steering = steering.row(row).transpose()};
+  if (hinge.rows() > 0) {
+    readings.hinge = hinge(row, 0);
+    readings.hinge_rate = hinge(row, 1);
+  }
+  return readings;
+}
+
+void check_readings(const Rows& speed, const Rows& steering, const Rows& hinge) {
+  if (steering.rows() != speed.rows() || (hinge.rows() > 0 && (hinge.rows() != speed.rows() || hinge.cols() != 2))) {
+    throw std::invalid_argument("speeds, steering angles and the hinge's (angle, rate) need equally many rows");
+  }
+}
+
+/// Rows of (v, vy, omega, chi2, freedom), and of covariances (3 x 3, row by row).
+std::pair<Rows, Rows> wheel_twists(const WheelLayout& layout, const Rows& speed, const Rows& steering,
+                                   const Rows& hinge) {
+  check_readings(speed, steering, hinge);
+  Rows twists(speed.rows(), 5), covariances(speed.rows(), 9);
+  for (Eigen::Index i = 0; i < speed.rows(); ++i) {
+    const WheelTwist found = layout.twist(readings_at(i, speed, steering, hinge));
+    twists.row(i) << found.twist.v, found.twist.vy, found.twist.omega, found.chi2, static_cast<double>(found.freedom);
+    covariances.row(i) = Eigen::Map<const Eigen::RowVectorXd>(found.covariance.data(), 9);
+  }
+  return {twists, covariances};
+}
+
+/// Speeds and steering angles for rows of twists; each row starts from where the one before it left the steering.
+std::pair<Rows, Rows> wheels_for_twists(const WheelLayout& layout, const Rows& twists) {
+  if (twists.cols() != 3) {
+    throw std::invalid_argument("twists need three columns: v, vy, omega");
+  }
+  const auto count = static_cast<Eigen::Index>(layout.wheels().size());
+  Rows speed(twists.rows(), count), steering(twists.rows(), count);
+  WheelReadings now{.speed = Eigen::VectorXd::Zero(count), .steering = Eigen::VectorXd::Zero(count)};
+  for (Eigen::Index i = 0; i < twists.rows(); ++i) {
+    const auto targets = layout.wheels_for({.v = twists(i, 0), .vy = twists(i, 1), .omega = twists(i, 2)}, now);
+    speed.row(i) = targets.speed.transpose();
+    steering.row(i) = targets.steering.transpose();
+    now.steering = targets.steering;
+  }
+  return {speed, steering};
+}
+
+void bind_wheel_layout(nb::module_& m) {
+  nb::class_<Wheel>(m, "Wheel", "One wheel on the ground, at (x, y) [m] in base_link.")
+      .def(
+          "__init__",
+          [](Wheel* self, double x, double y, double radius, double angle, std::optional<double> roller, bool steered,
+             bool behind_hinge) {
+            new (self) Wheel{.x = x,
+                             .y = y,
+                             .radius = radius,
+                             .angle = angle,
+                             .roller = roller,
+                             .steered = steered,
+                             .behind_hinge = behind_hinge};
+          },
+          nb::kw_only(), "x"_a, "y"_a, "radius"_a, "angle"_a, "roller"_a, "steered"_a, "behind_hinge"_a)
+      .def_ro("x", &Wheel::x)
+      .def_ro("y", &Wheel::y)
+      .def_ro("radius", &Wheel::radius)
+      .def_ro("angle", &Wheel::angle)
+      .def_ro("roller", &Wheel::roller)
+      .def_ro("steered", &Wheel::steered)
+      .def_ro("behind_hinge", &Wheel::behind_hinge);
+  nb::class_<WheelLayout>(m, "WheelLayout", "Any set of wheels: body twist by least squares, and back.")
+      .def(
+          "__init__",
+          [](WheelLayout* self, std::vector<Wheel> wheels, double rolling, double sideways,
+             const std::optional<std::pair<double, double>>& hinge) {
+            std::optional<Hinge> joint;
+            if (hinge) {
+              joint = Hinge{.x = hinge->first, .y = hinge->second};
+            }
+            new (self) WheelLayout(std::move(wheels), {.rolling = rolling, .sideways = sideways}, joint);
+          },
+          "wheels"_a, nb::kw_only(), "rolling"_a, "sideways"_a, "hinge"_a.none())
+      .def_prop_ro("wheels", &WheelLayout::wheels)
+      .def_prop_ro("tells_sideways", &WheelLayout::tells_sideways)
+      .def("twists", &wheel_twists, "speed"_a, "steering"_a, "hinge"_a,
+           "Rows of (v, vy, omega, chi2, freedom) and of covariances [9] from speeds and angles [N, wheels] in rad/s "
+           "and rad, and (angle, rate) of the hinge [N, 2], or [0, 2] where there is none.")
+      .def("wheels_for", &wheels_for_twists, "twists"_a,
+           "Speeds and steering angles [N, wheels] that make twists [N, 3], the hinge straight.");
+}
+
 }  // namespace
 
 void bind_vehicle(nb::module_& m) {
+  bind_wheel_layout(m);
   nb::class_<BodyTwist>(m, "BodyTwist", "Body velocity (v [m/s], vy [m/s], omega [rad/s]).")
       .def(nb::init<double, double, double>(), "v"_a, "vy"_a, "omega"_a)
       .def_ro("v", &BodyTwist::v)

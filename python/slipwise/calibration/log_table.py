@@ -33,6 +33,7 @@ class LogTable(BaseModel):
     wheel_radius: Positive | None = None  # m
     wheel_separation: Positive | None = None  # m
     wheelbase: Positive | None = None  # m
+    vehicle: str | None = None  # a preset or a .yaml file
     command_scale: Factors = [1.0, 1.0]  # of the commanded speed and yaw rate
     wheel_scale: Factors = [1.0, 1.0]  # of the wheels'
     pose_yaw_offset: Radians = 0.0  # rad

@@ -110,6 +110,7 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
         "Distance between left and right wheels, for wheel speeds in rad/s.",
     ),
     "wheelbase": (float, "METRES", "Distance between the axles, for steering angles."),
+    "vehicle": (str, "NAME", "What the robot drives on: a preset such as husky, or a .yaml file."),
     "command_scale": (
         str,
         "V,OMEGA",
@@ -136,15 +137,19 @@ _FACTORS = ("command_scale", "wheel_scale")
 
 
 def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command with a parameter `log_options` one option for each field of LogOptions."""
+    """Give a command with a parameter `log_options` one option for each field of LogOptions.
+
+    A command's own option of that name goes before: `slipwise live --vehicle` says whose model it is.
+    """
     unloaded = {"LogOptions": object}  # its module is heavy, and its type is never looked at
     signature = inspect.signature(command, eval_str=True, locals=unloaded)
     own = [parameter for parameter in signature.parameters.values() if parameter.name != "log_options"]
-    added = [_parameter(name, *about) for name, about in _LOG_OPTIONS.items()]
+    names = _LOG_OPTIONS.keys() - {parameter.name for parameter in own}
+    added = [_parameter(name, *about) for name, about in _LOG_OPTIONS.items() if name in names]
 
     @functools.wraps(command)
     def wrapper(**given: Any) -> int:
-        options = _log_options({name: given.pop(name) for name in _LOG_OPTIONS}, given.get("settings"))
+        options = _log_options({name: given.pop(name) for name in names}, given.get("settings"))
         return command(log_options=options, **given)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in (*own, *added)]

@@ -27,6 +27,8 @@ from slipwise.logs.messages import (
 from slipwise.logs.navsat import ecef, in_tangent_plane
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
+from slipwise.logs.vehicle_description import VehicleDescription
+from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
 OLDEST_IMU = 0.2  # s; an older orientation says nothing of a fix
 
@@ -76,6 +78,8 @@ def to_wheels(kind: str, options: LogOptions) -> ToWheels:
             return Wheels(t, scale_v * v, scale_omega * omega, scale_v * vy)
 
         return twist
+    if options.wheels is not None:
+        return _layout_wheels(options.wheels, options.wheel_scale)
     radius, separation = options.wheel_radius, options.wheel_separation
     if radius is None or separation is None:
         raise SettingsError(
@@ -90,6 +94,25 @@ def to_wheels(kind: str, options: LogOptions) -> ToWheels:
             return None
         v, omega = twist_from_wheels(left, right, wheel_radius=radius, wheel_separation=separation)
         return Wheels(t, scale_v * float(v[0]), scale_omega * float(omega[0]))
+
+    return joints
+
+
+def _layout_wheels(vehicle: VehicleDescription, scale: tuple[float, float]) -> ToWheels:
+    """Return what makes a wheel twist of all wheels that the vehicle names."""
+    read, last = JointReadings(vehicle), dict[str, float]()
+
+    def joints(message: Any, t: float) -> Wheels | None:
+        values = dict(zip(read.names.all, read(message), strict=True))
+        hinge = read.names.hinge
+        rows = {name: np.array([last.get(name, value), value]) for name, value in values.items()}
+        found = twists_of_wheels(vehicle, read.names, rows, np.array([last.get("t", t), t]))
+        if hinge is not None:
+            last.update({hinge: values[hinge], "t": t})
+        v, vy, omega = float(found.v[1]), float(found.vy[1]), float(found.omega[1])
+        if not math.isfinite(v + vy + omega):
+            return None
+        return Wheels(t, scale[0] * v, scale[1] * omega, scale[0] * vy)
 
     return joints
 

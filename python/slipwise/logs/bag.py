@@ -50,6 +50,7 @@ from slipwise.logs.transforms import (
     describe_transforms,
     known_edges,
 )
+from slipwise.logs.wheel_readings import JointReadings
 
 RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
 RUN_TYPE = "std_msgs/msg/String"
@@ -167,13 +168,18 @@ def _extractors(
     if roles.wheel is not None:
         joints = roles.wheel.type == JOINT_STATE
         found.append(
-            ("wheel", roles.wheel, SideMotion(options) if joints else WHEEL_VALUES[roles.wheel.type])
+            ("wheel", roles.wheel, joint_values(options) if joints else WHEEL_VALUES[roles.wheel.type])
         )
     if roles.pose is not None and roles.pose.type != TF:
         found.append(("pose", roles.pose, POSE_VALUES[roles.pose.type]))
     if roles.imu is not None:
         found.append(("imu", roles.imu, IMU_VALUES[roles.imu.type]))
     return found
+
+
+def joint_values(options: LogOptions) -> Callable[[Any], tuple[float, ...]]:
+    """Return what takes wheels out of joint states: each that the vehicle names, or the sides."""
+    return SideMotion(options) if options.wheels is None else JointReadings(options.wheels)
 
 
 def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) -> tuple[Run, ...]:

@@ -17,6 +17,8 @@ from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_p
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
+from slipwise.logs.vehicle_description import VehicleDescription
+from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
 _CLOCKS_APART = 10.0  # [s] header stamps this far from the time of receipt are on a clock of their own
 _TINY = 1e-12  # heights and tilts below this were never measured
@@ -100,6 +102,9 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     Raises:
         LogError: speeds of wheels came without their radius and distance.
     """
+    vehicle = context.options.wheels
+    if kind == JOINT_STATE and vehicle is not None:
+        return _layout_stream(context, samples, vehicle)
     if kind != JOINT_STATE:
         v, vy, omega = samples.values.T
         return context.stream("wheels", samples, {"v": v, "vy": vy, "omega": omega})
@@ -113,6 +118,14 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     left, right = _side_speeds(context, samples)
     v, omega = twist_from_wheels(left, right, wheel_radius=radius, wheel_separation=wheel_separation)
     return context.stream("wheels", samples, {"v": v, "omega": omega})
+
+
+def _layout_stream(context: BagContext, samples: Samples, vehicle: VehicleDescription) -> RawStream:
+    names = JointReadings(vehicle).names
+    readings = dict(zip(names.all, samples.values.T, strict=True))
+    found = twists_of_wheels(vehicle, names, readings, context.seconds(samples, "wheels"))
+    context.notes.append(f"{samples.topic}: {found.note(str(context.options.vehicle))}")
+    return context.stream("wheels", samples, {"v": found.v, "vy": found.vy, "omega": found.omega})
 
 
 def _side_speeds(context: BagContext, samples: Samples) -> Floats:

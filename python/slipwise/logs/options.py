@@ -7,10 +7,14 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
+
+if TYPE_CHECKING:
+    from slipwise.logs.vehicle_description import VehicleDescription
 
 AUTO = "auto"
 
@@ -34,6 +38,7 @@ class LogOptions:
     wheel_radius: float | None = None  # [m]
     wheel_separation: float | None = None  # [m] between the left and the right wheels
     wheelbase: float | None = None  # [m] between the axles, for steering angles
+    vehicle: str | None = None  # a preset or a .yaml file that says what the robot drives on
     command_scale: tuple[float, float] = (1.0, 1.0)  # factors of the commanded speed and yaw rate
     wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
     pose_yaw_offset: float = 0.0  # [rad] added to the heading of every pose
@@ -46,6 +51,7 @@ class LogOptions:
     unknown_after: float = UNKNOWN_AFTER  # [s] an input is unknown once it is older than this
 
     def __post_init__(self) -> None:
+        self._take_vehicle()
         for name in ("wheel_radius", "wheel_separation", "wheelbase"):
             value: float | None = getattr(self, name)
             if value is not None and not (math.isfinite(value) and value > 0.0):
@@ -75,6 +81,37 @@ class LogOptions:
             )
         if not self.unknown_after > 0.0:
             raise SettingsError("unknown_after must be more than 0 s", advice="such as 0.5")
+
+    @property
+    def wheels(self) -> VehicleDescription | None:
+        """The vehicle, where its description names each wheel."""
+        described = self._described()
+        return described if described is not None and described.wheels else None
+
+    def _described(self) -> VehicleDescription | None:
+        if self.vehicle is None:
+            return None
+        from slipwise.logs.vehicle_description import load_vehicle
+
+        return load_vehicle(self.vehicle)
+
+    def _take_vehicle(self) -> None:
+        """Take the sizes that the vehicle's description has and nobody gave."""
+        described = self._described()
+        if described is None:
+            return
+        sizes: dict[str, object] = {"wheelbase": described.wheelbase}
+        if described.tracks is not None:
+            sizes |= {
+                "wheel_radius": described.tracks.radius,
+                "wheel_separation": described.tracks.separation,
+            }
+        if not (self.left_joints or self.right_joints):
+            joints = (tuple(described.left_joints), tuple(described.right_joints))
+            sizes |= {"left_joints": joints[0] or None, "right_joints": joints[1] or None}
+        for name, size in sizes.items():
+            if size is not None and not getattr(self, name):
+                object.__setattr__(self, name, size)
 
     def _check_corrections(self) -> None:
         for name in ("command_scale", "wheel_scale"):

@@ -15,6 +15,8 @@ from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.options import LogOptions
 from slipwise.logs.table import Table
+from slipwise.logs.vehicle_description import VehicleDescription
+from slipwise.logs.wheel_readings import twists_of_wheels, wheel_names
 
 TEXT = ("run", "frame", "terrain")
 NUMERIC = (
@@ -26,6 +28,7 @@ USED = frozenset(
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
 POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
+LAYOUT_PREFIXES = ("wheel_", "steer_")  # of columns, before the names of wheels and steering joints
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
@@ -45,8 +48,10 @@ class InputColumns:
         return twist if self.vy is None else {**twist, "vy": self.vy}
 
 
-def require_columns(table: Table, *, poses: bool) -> None:
+def require_columns(table: Table, *, poses: bool, described: bool = False) -> None:
     """Check that the table has a time, some input and, where `poses` come from it, a pose.
+
+    Wheels of a vehicle that is `described` are looked for when they are read.
 
     Raises:
         LogError: it does not; the error names what is missing and what was found.
@@ -55,7 +60,7 @@ def require_columns(table: Table, *, poses: bool) -> None:
     missing = [name for name in ("t", *(("x", "y", "yaw") if poses else ())) if name not in names]
     commands = "cmd_v" in names or "cmd_vx" in names
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
-    if not commands and not wheels:
+    if not commands and not wheels and not described:
         alone = "cmd_curvature" in names  # without a speed it is no motion
         missing.append("cmd_v, the speed that cmd_curvature is driven at" if alone else _AN_INPUT)
     if missing:
@@ -105,6 +110,8 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
     if "odo_v" in names and "odo_omega" in names:
         vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
         return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
+    if options.wheels is not None:
+        return _layout_columns(table, options, options.wheels, tally, notes)
     if "wheel_left" in names and "wheel_right" in names:
         if options.wheel_radius is not None and options.wheel_separation is not None:
             left, right = table.numbers("wheel_left", tally), table.numbers("wheel_right", tally)
@@ -132,6 +139,19 @@ def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[s
             _raise_no_omega(table, "odo_omega", steer=False)
         notes.append(f"{table.path.name}: odo_v has no odo_omega beside it and is not used")
     return None
+
+
+def _layout_columns(
+    table: Table, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: list[str]
+) -> InputColumns:
+    try:
+        names = wheel_names(vehicle, table.names, LAYOUT_PREFIXES)
+    except LogError as error:
+        raise LogError(error.what, where=str(table.path), advice=error.advice) from error
+    readings = {name: table.numbers(name, tally) for name in names.all}
+    found = twists_of_wheels(vehicle, names, readings, table.numbers("t", tally))
+    notes.append(f"{table.path.name}: {found.note(str(options.vehicle))}")
+    return InputColumns(found.v, found.vy, found.omega)
 
 
 def missing_input(table: Table, wheels: InputColumns | None) -> dict[str, str]:

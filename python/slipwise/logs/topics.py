@@ -167,7 +167,9 @@ def _not_transforms(topic: Topic | None, transforms: TransformSource | None) -> 
 
 def _choose_wheel(live: Mapping[str, Topic], options: LogOptions, advice: dict[str, str]) -> RoleChoice:
     """Choose the wheels; joint states only where the sizes of the robot are given."""
-    sized = options.wheel_radius is not None and options.wheel_separation is not None
+    sized = options.wheels is not None or (
+        options.wheel_radius is not None and options.wheel_separation is not None
+    )
     if options.wheel_topic is not None or sized:
         return choose(live, _WHEEL, options.wheel_topic)
     joints = [topic for topic in live.values() if topic.type == JOINT_STATE]

@@ -72,6 +72,7 @@ right_joints = ["r"]
 wheel_radius = 0.1
 wheel_separation = 0.5
 wheelbase = 1.2
+vehicle = "husky"
 command_scale = [0.5, 1.0]
 wheel_scale = [0.1, -1.0]
 pose_yaw_offset = 0.2

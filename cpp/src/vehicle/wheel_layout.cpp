@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wheels to twist and back: one linear measurement of (v, vy, omega) per rolling constraint (derivations/wheels.md).
+#include "slipwise/vehicle/wheel_layout.hpp"
+
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace slipwise {
+namespace {
+
+/// Singular directions below this part of the largest pivot tell nothing.
+constexpr double kRankTolerance = 1e-9;
+/// A contact slower than this points nowhere: the wheel stays as it is [m/s].
+constexpr double kStandstill = 1e-9;
+
+Eigen::Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
+Eigen::Vector2d left_of(const Eigen::Vector2d& a) { return {-a.y(), a.x()}; }
+
+/// Where a wheel is and points.
+struct Placed {
+  Eigen::Vector2d at;     ///< contact in base_link [m]
+  Eigen::Vector2d swing;  ///< contact velocity because the hinge turns [m/s]
+  double heading;         ///< it rolls in [rad]
+};
+
+Placed placed(const Wheel& wheel, const std::optional<Hinge>& hinge, double steering, const WheelReadings& now) {
+  Placed result{{wheel.x, wheel.y}, Eigen::Vector2d::Zero(), wheel.angle + (wheel.steered ? steering : 0.0)};
+  if (wheel.behind_hinge) {
+    const Eigen::Vector2d joint(hinge->x, hinge->y);
+    const Eigen::Vector2d along = direction(now.hinge), arm = result.at - joint;
+    const Eigen::Vector2d turned = along * arm.x() + left_of(along) * arm.y();
+    result = {joint + turned, now.hinge_rate * left_of(turned), result.heading + now.hinge};
+  }
+  return result;
+}
+
+Eigen::RowVector3d velocity_along(const Eigen::Vector2d& at, const Eigen::Vector2d& along) {
+  return {along.x(), along.y(), along.y() * at.x() - along.x() * at.y()};
+}
+
+bool finite(double value) { return std::isfinite(value); }
+
+void check_wheel(const Wheel& wheel, bool hinged) {
+  if (!finite(wheel.x) || !finite(wheel.y) || !finite(wheel.angle) || !(wheel.radius > 0.0) || !finite(wheel.radius)) {
+    throw std::invalid_argument("a wheel needs a finite position and angle, and a positive radius [m]");
+  }
+  if (wheel.roller && !(std::abs(std::cos(*wheel.roller)) > 0.1)) {
+    throw std::invalid_argument("axes of rollers must not lie across the wheel; 0 is an omni wheel, 0.7854 mecanum");
+  }
+  if (wheel.behind_hinge && !hinged) {
+    throw std::invalid_argument("a wheel is behind a hinge, but there is no hinge; say where it is");
+  }
+}
+
+/// One constraint: a velocity of a contact along a direction is what is read.
+struct Row {
+  Eigen::RowVector3d of_twist;                             ///< derivative of the velocity by the twist
+  double reading = 0.0;                                    ///< [m/s]
+  double weight = 1.0;                                     ///< 1 / standard deviation
+  Eigen::Index wheel = -1;                                 ///< -1: of no wheel
+  double by_speed = 0.0;                                   ///< derivative of the reading by the wheel's speed [m]
+  Eigen::RowVector3d turned = Eigen::RowVector3d::Zero();  ///< derivative of of_twist by the steering angle
+  double reading_turned = 0.0;                             ///< derivative of the reading by the steering angle
+};
+
+/// Sideways motion is taken as none, where no wheel tells it.
+Row no_sideways(const WheelNoise& noise) { return {.of_twist = {0.0, 1.0, 0.0}, .weight = 1.0 / noise.sideways}; }
+
+std::vector<Row> rows_of(const std::vector<Wheel>& wheels, const WheelNoise& noise, const std::optional<Hinge>& hinge,
+                         const WheelReadings& readings) {
+  std::vector<Row> rows;
+  for (std::size_t i = 0; i < wheels.size(); ++i) {
+    const Wheel& wheel = wheels[i];
+    const auto place = static_cast<Eigen::Index>(i);
+    const Placed at = placed(wheel, hinge, readings.steering[place], readings);
+    const auto add = [&](double angle, double std, double by_speed) {
+      const Eigen::Vector2d along = direction(angle), turned = left_of(along);
+      const double speed = by_speed != 0.0 ? by_speed * readings.speed[place] : 0.0;
+      rows.push_back({.of_twist = velocity_along(at.at, along),
+                      .reading = speed - along.dot(at.swing),
+                      .weight = 1.0 / std,
+                      .wheel = place,
+                      .by_speed = by_speed,
+                      .turned = velocity_along(at.at, turned),
+                      .reading_turned = -turned.dot(at.swing)});
+    };
+    const double roller = wheel.roller.value_or(0.0);
+    if (finite(readings.speed[place])) {
+      add(at.heading + roller, noise.rolling, wheel.radius * std::cos(roller));
+    }
+    if (!wheel.roller) {
+      add(at.heading + std::numbers::pi / 2.0, noise.sideways, 0.0);
+    }
+  }
+  return rows;
+}
+
+/// The rows as a weighted linear system.
+struct System {
+  Eigen::MatrixX3d a;
+  Eigen::VectorXd b, weight;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> qr;
+
+  explicit System(const std::vector<Row>& rows) {
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    a.resize(count, 3);
+    b.resize(count);
+    weight.resize(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Row& row = rows[static_cast<std::size_t>(i)];
+      a.row(i) = row.of_twist;
+      b[i] = row.reading;
+      weight[i] = row.weight;
+    }
+    if (count > 0) {
+      qr.compute(weight.asDiagonal() * a);
+      qr.setThreshold(kRankTolerance);
+    }
+  }
+
+  bool tells_twist() const { return a.rows() >= 3 && qr.rank() == 3; }
+};
+
+/// Steered wheels may stand in line with each other at 0: they must tell a twist there or a little further.
+bool tell_twist(const std::vector<Wheel>& wheels, const std::optional<Hinge>& hinge, bool sideways_known) {
+  const auto count = static_cast<Eigen::Index>(wheels.size());
+  return std::ranges::any_of(std::array{0.0, 0.3}, [&](double steering) {
+    auto rows =
+        rows_of(wheels, {}, hinge,
+                {.speed = Eigen::VectorXd::Zero(count), .steering = Eigen::VectorXd::Constant(count, steering)});
+    if (sideways_known) {
+      rows.push_back(no_sideways({}));
+    }
+    return System(rows).tells_twist();
+  });
+}
+
+WheelTwist solved(const System& system) {
+  const Eigen::Vector3d t = system.qr.solve(system.weight.cwiseProduct(system.b));
+  WheelTwist found;
+  found.twist = {.v = t[0], .vy = t[1], .omega = t[2]};
+  found.residual = system.b - system.a * t;
+  found.chi2 = system.weight.cwiseProduct(found.residual).squaredNorm();
+  found.freedom = system.a.rows() - 3;
+  // Contradiction beyond the stated noise widens the covariance (Birge 1932); agreement does not narrow it.
+  const double ratio = found.freedom > 0 ? found.chi2 / static_cast<double>(found.freedom) : 1.0;
+  const Eigen::Matrix3d information = system.a.transpose() * system.weight.cwiseAbs2().asDiagonal() * system.a;
+  found.covariance = information.inverse() * std::max(ratio, 1.0);
+  return found;
+}
+
+}  // namespace
+
+WheelLayout::WheelLayout(std::vector<Wheel> wheels, const WheelNoise& noise, std::optional<Hinge> hinge)
+    : wheels_(std::move(wheels)), noise_(noise), hinge_(hinge) {
+  if (!(noise_.rolling > 0.0) || !(noise_.sideways > 0.0) || !finite(noise_.rolling) || !finite(noise_.sideways)) {
+    throw std::invalid_argument("standard deviations of wheels must be positive [m/s]; 0.02 is usual");
+  }
+  if (hinge_ && !(finite(hinge_->x) && finite(hinge_->y))) {
+    throw std::invalid_argument("a hinge needs a finite position [m]");
+  }
+  for (const Wheel& wheel : wheels_) {
+    check_wheel(wheel, hinge_.has_value());
+  }
+  tells_sideways_ = tell_twist(wheels_, hinge_, false);
+  if (!tells_sideways_ && !tell_twist(wheels_, hinge_, true)) {
+    throw std::invalid_argument("these wheels do not tell a motion; give at least two that are apart");
+  }
+}
+
+void WheelLayout::check(const WheelReadings& readings) const {
+  const auto count = static_cast<Eigen::Index>(wheels_.size());
+  if (readings.speed.size() != count || readings.steering.size() != count) {
+    throw std::invalid_argument("one speed and one steering angle per wheel are needed: " + std::to_string(count));
+  }
+  if (!finite(readings.hinge) || !finite(readings.hinge_rate)) {
+    throw std::invalid_argument("the hinge's angle and rate must be finite [rad, rad/s]");
+  }
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (wheels_[static_cast<std::size_t>(i)].steered && !finite(readings.steering[i])) {
+      throw std::invalid_argument("the angle of a steered wheel must be finite [rad]");
+    }
+  }
+}
+
+WheelTwist WheelLayout::twist(const WheelReadings& readings) const {
+  check(readings);
+  auto rows = rows_of(wheels_, noise_, hinge_, readings);
+  if (!tells_sideways_) {
+    rows.push_back(no_sideways(noise_));
+  }
+  const System system(rows);
+  if (!system.tells_twist()) {
+    throw std::invalid_argument("the readings of this moment do not tell a motion; too few wheels were read");
+  }
+  return solved(system);
+}
+
+WheelTwistLinearization WheelLayout::linearize_twist(const WheelReadings& readings) const {
+  const auto count = static_cast<Eigen::Index>(wheels_.size());
+  WheelTwistLinearization result{twist(readings), Eigen::Matrix3Xd::Zero(3, count), Eigen::Matrix3Xd::Zero(3, count)};
+  const WheelTwist& value = result.value;
+  const Eigen::Vector3d t(value.twist.v, value.twist.vy, value.twist.omega);
+  const double ratio = value.freedom > 0 ? std::max(value.chi2 / static_cast<double>(value.freedom), 1.0) : 1.0;
+  const Eigen::Matrix3d nominal = value.covariance / ratio;
+  const auto rows = rows_of(wheels_, noise_, hinge_, readings);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = rows[i];
+    const Eigen::Vector3d gain = row.weight * row.weight * (nominal * row.of_twist.transpose());
+    result.by_speed.col(row.wheel) += gain * row.by_speed;
+    if (wheels_[static_cast<std::size_t>(row.wheel)].steered) {
+      // Of the normal equations A^T W (b - A t) = 0, by what turns A and b.
+      result.by_steering.col(row.wheel) +=
+          row.weight * row.weight * value.residual[static_cast<Eigen::Index>(i)] * (nominal * row.turned.transpose()) +
+          gain * (row.reading_turned - row.turned.dot(t));
+    }
+  }
+  return result;
+}
+
+WheelTargets WheelLayout::wheels_for(const BodyTwist& twist, const WheelReadings& now) const {
+  check(now);
+  const auto count = static_cast<Eigen::Index>(wheels_.size());
+  WheelTargets targets{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
+    Placed at = placed(wheel, hinge_, now.steering[i], now);
+    const Eigen::Vector2d moves = Eigen::Vector2d(twist.v, twist.vy) + twist.omega * left_of(at.at) + at.swing;
+    if (wheel.steered) {
+      targets.steering[i] = now.steering[i];
+      if (moves.norm() > kStandstill) {
+        // The nearer of the two angles at which the wheel rolls along, forwards or backwards.
+        const double away = std::remainder(std::atan2(moves.y(), moves.x()) - at.heading, std::numbers::pi);
+        targets.steering[i] += away;
+        at.heading += away;
+      }
+    }
+    const double roller = wheel.roller.value_or(0.0);
+    targets.speed[i] = moves.dot(direction(at.heading + roller)) / (wheel.radius * std::cos(roller));
+    targets.across[i] = wheel.roller ? 0.0 : moves.dot(left_of(direction(at.heading)));
+  }
+  return targets;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Vehicles by name and from YAML, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from slipwise.errors import SettingsError
+from slipwise.logs.options import LogOptions
+from slipwise.logs.vehicle_description import load_vehicle, vehicle_names
+
+
+def written(folder: Path, text: str) -> str:
+    path = folder / "robot.yaml"
+    path.write_text(text)
+    return str(path)
+
+
+@pytest.mark.parametrize("name", vehicle_names())
+def test_every_preset_loads_and_names_its_source(name: str) -> None:
+    assert len(load_vehicle(name).source) > 10
+
+
+def test_sizes_of_a_preset_are_taken_where_none_are_given() -> None:
+    husky = LogOptions(vehicle="husky")
+    assert (husky.wheel_radius, husky.wheel_separation) == (0.1651, 0.555)
+    assert husky.left_joints == ("front_left_wheel_joint", "rear_left_wheel_joint")
+    assert LogOptions(vehicle="husky", wheel_separation=0.54).wheel_separation == 0.54
+    assert LogOptions(vehicle="f1tenth").wheelbase == 0.25
+    assert husky.wheels is None
+
+
+def test_a_robotino_that_drives_ahead_turns_its_side_wheels_against_each_other() -> None:
+    layout = load_vehicle("robotino").layout()
+    assert layout is not None
+    assert layout.tells_sideways
+    speed, _ = layout.wheels_for(np.array([[0.5, 0.0, 0.0]]))
+    assert speed[0, 0] == pytest.approx(-speed[0, 2])
+    assert speed[0, 1] == pytest.approx(0.0, abs=1e-4)
+
+
+def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
+    text = """vehicle:
+  hinge: {name: waist, x: -1.0}
+  wheels:
+    - {name: fl, x: 0, y: 0.5, radius: 0.4}
+    - {name: fr, x: 0, y: -0.5, radius: 0.4}
+    - {name: rl, x: -3, y: 0.5, radius: 0.4, behind_hinge: true}
+"""
+    found = load_vehicle(written(tmp_path, text))
+    assert found.hinge is not None
+    assert [wheel.behind_hinge for wheel in found.wheels] == [False, False, True]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("robot: {}\n", "no section vehicle"),
+        ("vehicle: {}\n", "none of them"),
+        ("vehicle: {wheelbase: 1.0, tracks: {radius: 1, separation: 1}}\n", "tracks and wheelbase"),
+        ("vehicle: {tracks: {radius: -1, separation: 1}}\n", "radius"),
+        ("vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1, slides: true}]}\n", "do not tell a motion"),
+        (
+            "vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1}, {name: a, x: 0, y: 1, radius: 0.1}]}\n",
+            "same name",
+        ),
+        ("vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1, colour: red}]}\n", "no such key"),
+    ],
+)
+def test_a_description_that_makes_no_sense_is_refused(tmp_path: Path, text: str, said: str) -> None:
+    with pytest.raises(SettingsError, match=said):
+        load_vehicle(written(tmp_path, text))
+
+
+def test_an_unknown_name_is_answered_with_those_that_are_known() -> None:
+    with pytest.raises(SettingsError, match="husky"):
+        LogOptions(vehicle="huskie")

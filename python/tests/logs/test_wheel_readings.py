@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Twists from the readings of all wheels, out of tables and joint states."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from slipwise.errors import LogError
+from slipwise.live.ros_samples import to_wheels
+from slipwise.logs import LogOptions, open_log
+from slipwise.logs.messages import JOINT_STATE
+from slipwise.logs.vehicle_description import load_vehicle
+from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels, wheel_names
+
+SWERVE = """vehicle:
+  wheels:
+    - {name: fl, x: 0.4, y: 0.3, radius: 0.1, steer: fl_angle}
+    - {name: fr, x: 0.4, y: -0.3, radius: 0.1, steer: fr_angle}
+    - {name: rl, x: -0.4, y: 0.3, radius: 0.1, steer: rl_angle}
+    - {name: rr, x: -0.4, y: -0.3, radius: 0.1, steer: rr_angle}
+"""
+TWISTS = np.array([[0.5, 0.1, 0.2], [0.6, 0.0, -0.4], [0.4, 0.2, 0.1]])
+
+
+def swerve_table(folder: Path) -> tuple[Path, str]:
+    vehicle = folder / "swerve.yaml"
+    vehicle.write_text(SWERVE)
+    layout = load_vehicle(str(vehicle)).layout()
+    assert layout is not None
+    twists = np.repeat(TWISTS, 40, axis=0)
+    speed, steering = layout.wheels_for(twists)
+    t = 0.05 * np.arange(len(twists))
+    names = ("fl", "fr", "rl", "rr")
+    columns = {"t": t, "x": 0.4 * t, "y": 0.1 * t, "yaw": 0.0 * t}
+    columns |= {f"wheel_{name}": speed[:, k] for k, name in enumerate(names)}
+    columns |= {f"steer_{name}_angle": steering[:, k] for k, name in enumerate(names)}
+    path = folder / "swerve.csv"
+    rows = np.column_stack(list(columns.values()))
+    np.savetxt(path, rows, fmt="%.9f", delimiter=",", header=",".join(columns), comments="")
+    return path, str(vehicle)
+
+
+def test_a_table_of_steered_wheels_gives_the_twist_that_drove_them(tmp_path: Path) -> None:
+    path, vehicle = swerve_table(tmp_path)
+    log = open_log(path, options=LogOptions(vehicle=vehicle))
+    wheels = log.runs[0].wheels
+    assert wheels is not None
+    np.testing.assert_allclose(
+        np.stack([wheels.v, wheels.vy, wheels.omega], 1), np.repeat(TWISTS, 40, 0), atol=1e-6
+    )
+    assert any("odo from the wheels of" in note for note in log.notes)
+
+
+def test_a_missing_column_is_named(tmp_path: Path) -> None:
+    path, vehicle = swerve_table(tmp_path)
+    path.write_text(path.read_text().replace("wheel_rl", "other"))
+    with pytest.raises(LogError, match="wheel_rl"):
+        open_log(path, options=LogOptions(vehicle=vehicle))
+
+
+def test_a_row_without_a_reading_has_no_twist() -> None:
+    vehicle = load_vehicle("robotino")
+    names = wheel_names(vehicle, ["wheel0", "wheel1", "wheel2"], ("wheel_", "steer_"))
+    speed = np.array([[-5.0, 0.0, 5.0], [np.nan, 0.0, 5.0]])
+    found = twists_of_wheels(vehicle, names, {f"wheel{k}": speed[:, k] for k in range(3)}, np.arange(2.0))
+    assert np.isfinite(found.v).tolist() == [True, False]
+    assert found.v[0] > 0.0
+    assert np.isnan(found.contradiction)  # three wheels tell three numbers, and nothing more
+
+
+def test_joint_states_are_read_by_the_names_of_wheels_live_too() -> None:
+    options = LogOptions(vehicle="dingo-omni")
+    vehicle = load_vehicle("dingo-omni")
+    layout = vehicle.layout()
+    assert layout is not None
+    speed, _ = layout.wheels_for(np.array([[0.3, 0.2, 0.5]]))
+    names = [wheel.name for wheel in vehicle.wheels]
+    joints = SimpleNamespace(
+        name=["camera", *names], velocity=[9.0, *speed[0]], position=[0.0] * 5, header=None
+    )
+    assert JointReadings(vehicle)(joints) == pytest.approx(tuple(speed[0]))
+    wheels = to_wheels(JOINT_STATE, options)(joints, 1.0)
+    assert wheels is not None
+    assert (wheels.v, wheels.vy, wheels.omega) == pytest.approx((0.3, 0.2, 0.5))
+
+
+def test_a_joint_state_without_a_wheel_is_refused() -> None:
+    with pytest.raises(LogError, match="front_left_wheel_joint"):
+        JointReadings(load_vehicle("dingo-omni"))(SimpleNamespace(name=["a"], velocity=[1.0], position=[0.0]))
