@@ -92,7 +92,7 @@ def calibrate(
     out = Output(json)
     named = settings or basis or estimator
     chosen = chosen_settings(settings, basis, estimator) if named or not memory else None
-    refuse_unwritable(output, report, out.written_file, inputs=(*logs, log_options.poses, settings))
+    refuse_unwritable(output, report, out.written_file, inputs=(*logs, *log_options.files, settings))
     asked = Asked(
         logs, log_options, input_name and input_name.value, chosen, smooth, memory, tuple(terrain or ())
     )

@@ -49,7 +49,7 @@ def compare(
     from slipwise.models.difference import differences
 
     out = Output(json)
-    refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), log_options.poses))
+    refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), *log_options.files))
     models = named_models([first, second])
     rows = differences(*models.values())
     evaluation = _predicted(models, logs, log_options) if logs else None

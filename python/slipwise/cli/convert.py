@@ -52,7 +52,7 @@ def convert(
     if output is None:
         raise OutputError("say where the new log goes", advice="give -o FILE, such as -o drive.csv")
     refuse_unknown_log_format(output)
-    refuse_unwritable(output, out.written_file, inputs=(*logs, log_options.poses, settings))
+    refuse_unwritable(output, out.written_file, inputs=(*logs, *log_options.files, settings))
     with progress_bar("reading") as update:
         log = open_log(*logs, options=log_options)
         update("writing", 0.5)

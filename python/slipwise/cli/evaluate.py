@@ -112,7 +112,7 @@ def evaluate(
         _options(horizons, methods, vendor_wheel_separation_multiplier, model or []),
         model or [],
     )
-    read = (*logs, log_options.poses, *models, settings)
+    read = (*logs, *log_options.files, *models, settings)
     refuse_unwritable(predictions, report, out.written_file, inputs=read)
     if memory:
         from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory

@@ -49,7 +49,7 @@ def inspect(
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
-    refuse_unwritable(out.written_file, inputs=(*logs, log_options.poses, settings))
+    refuse_unwritable(out.written_file, inputs=(*logs, *log_options.files, settings))
     with progress_bar("reading") as update:
         inspection = inspect_files(logs, log_options, chosen, progress=update)
     out.document(_document(inspection))

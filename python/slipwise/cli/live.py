@@ -110,7 +110,7 @@ def live(
     }  # fmt: skip
     chosen = live_settings(chosen_settings(settings, basis), given)
     to_file = None if results is None or str(results) == "-" else results
-    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, log_options.poses))
+    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, *log_options.files))
     shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove, host, record)
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, seed, rate, results)

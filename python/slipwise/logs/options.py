@@ -88,6 +88,12 @@ class LogOptions:
         described = self._described()
         return described if described is not None and described.wheels else None
 
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """Files that are read beside a log."""
+        described = () if self.vehicle is None or "." not in self.vehicle else (Path(self.vehicle),)
+        return (*(() if self.poses is None else (self.poses,)), *described)
+
     def _described(self) -> VehicleDescription | None:
         if self.vehicle is None:
             return None

@@ -72,6 +72,7 @@ def files(folder: Path, drive_csv: Path) -> None:
     make_model(named("edd-2", ang__w=-0.4)).save(folder / "other.yaml")
     (folder / "p.csv").write_text("t,x,y,yaw\n")
     (folder / "s.toml").write_text("basis = 'edd-2'\n")
+    (folder / "v.yaml").write_text("vehicle: {wheelbase: 1.0}\n")
     write_pgm(folder / "map.png", np.ones((60, 60)))  # what a file is called says nothing of what it is
     (folder / "map.yaml").write_text("image: map.png\nresolution: 0.1\norigin: [-3.0, -3.0, 0.0]\n")
 
@@ -108,6 +109,7 @@ DESTROYING = (
     "lattice m.yaml --json m.yaml --no-picture",
     "show m.yaml --json m.yaml",
     "evaluate drive.csv --poses p.csv --json p.csv",
+    "calibrate drive.csv --vehicle v.yaml -o v.yaml",
     "compare m.yaml other.yaml --json other.yaml",
     "compare m.yaml other.yaml drive.csv --json drive.csv",
     "surfaces list m.yaml --json m.yaml",
