@@ -32,7 +32,7 @@ struct Placed {
 
 Placed placed(const Wheel& wheel, const std::optional<Hinge>& hinge, double steering, const WheelReadings& now) {
   Placed result{{wheel.x, wheel.y}, Eigen::Vector2d::Zero(), wheel.angle + (wheel.steered ? steering : 0.0)};
-  if (wheel.behind_hinge) {
+  if (wheel.behind_hinge && hinge) {
     const Eigen::Vector2d joint(hinge->x, hinge->y);
     const Eigen::Vector2d along = direction(now.hinge), arm = result.at - joint;
     const Eigen::Vector2d turned = along * arm.x() + left_of(along) * arm.y();

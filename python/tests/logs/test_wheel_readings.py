@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sample_bags import EPOCH, SECOND, Bag, drive_along_x
 
 from slipwise.errors import LogError
 from slipwise.live.ros_samples import to_wheels
@@ -91,3 +92,37 @@ def test_joint_states_are_read_by_the_names_of_wheels_live_too() -> None:
 def test_a_joint_state_without_a_wheel_is_refused() -> None:
     with pytest.raises(LogError, match="front_left_wheel_joint"):
         JointReadings(load_vehicle("dingo-omni"))(SimpleNamespace(name=["a"], velocity=[1.0], position=[0.0]))
+
+
+ARTICULATED = """vehicle:
+  hinge: {name: waist, x: -1.0}
+  wheels:
+    - {name: fl, x: 0, y: 0.5, radius: 0.5}
+    - {name: fr, x: 0, y: -0.5, radius: 0.5}
+    - {name: rl, x: -3, y: 0.5, radius: 0.5, behind_hinge: true}
+    - {name: rr, x: -3, y: -0.5, radius: 0.5, behind_hinge: true}
+"""
+
+
+def test_an_articulated_vehicle_in_a_bag_turns_as_its_hinge_says(tmp_path: Path) -> None:
+    (tmp_path / "loader.yaml").write_text(ARTICULATED)
+    angle, v = 0.3, 1.0
+    omega = -v * np.sin(angle) / (np.cos(angle) + 2.0)  # Corke and Ridley 2001
+    speeds = [(v - 0.5 * omega) / 0.5, (v + 0.5 * omega) / 0.5]
+    at_hinge = np.array([v, -omega])  # velocity of the hinge in the front's frame
+    along = float(at_hinge @ [np.cos(angle), np.sin(angle)])
+    speeds += [(along - 0.5 * omega) / 0.5, (along + 0.5 * omega) / 0.5]
+    bag = drive_along_x(Bag())
+    for k in range(100):
+        stamp = EPOCH + k * SECOND // 10
+        names = ["fl", "fr", "rl", "rr", "waist"]
+        bag.add(
+            stamp, "/joint_states", JOINT_STATE, bag.joints(stamp, names, [0.0] * 4 + [angle], [*speeds, 0.0])
+        )
+    options = LogOptions(vehicle=str(tmp_path / "loader.yaml"))
+    log = open_log(bag.write(tmp_path / "a.mcap"), options=options)
+    wheels = log.runs[0].wheels
+    assert wheels is not None
+    np.testing.assert_allclose(wheels.v, v, atol=1e-9)
+    np.testing.assert_allclose(wheels.vy, 0.0, atol=1e-9)
+    np.testing.assert_allclose(wheels.omega, omega, atol=1e-9)
