@@ -79,8 +79,8 @@ TEST_CASE("of two memories, surfaces that cannot be told apart become one") {
   CHECK(names[0] == "surface 1 (2)");
   const auto events = begins.surface_events();
   REQUIRE(events.size() == 1);
-  CHECK(events[0].name == "surface 2");
-  CHECK(events[0].other == "surface 1 (2)");
+  CHECK(events[0].event.name == "surface 2");
+  CHECK(events[0].event.other == "surface 1 (2)");
   const double once =
       first.on_surface(first.surfaces().surfaces()[1], Structure::Joint)->state.estimate.covariance.trace();
   CHECK(begins.on_surface(surfaces[1], Structure::Joint)->state.estimate.covariance.trace() < once);

@@ -2,6 +2,7 @@
 // A learner that comes back to surfaces.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -48,7 +49,7 @@ TEST_CASE("a change within a drive recalls the surface that it is a change to") 
 }
 
 TEST_CASE("each window says how probable the surfaces are, and each recall when it was decided") {
-  MotionLearner learner(settings(true));
+  MotionLearner learner(surface_settings(true));
   visit(learner, {0.1, 0.5});
   learner.events();
   learner.surface_events();
@@ -74,8 +75,8 @@ TEST_CASE("each window says how probable the surfaces are, and each recall when 
 }
 
 TEST_CASE("without a memory no window speaks of surfaces") {
-  MotionLearner learner(settings(false));
-  push(learner, drive(0.3, 5, 20.0, 0.0));
+  MotionLearner learner(surface_settings(false));
+  push(learner, drive_on(0.3, 5, 20.0, 0.0));
   learner.end_run();
   for (const LearnerEvent& event : learner.events()) {
     CHECK(event.surfaces.empty());

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "slipwise/actuator/axis_response.hpp"
+#include "slipwise/linear/plain_value.hpp"
 
 namespace slipwise {
 
@@ -16,8 +17,6 @@ struct MeasuredChannel {
   T settled;   ///< what the slow mode settles at under the input that acts now
   T carried;   ///< the measured speed without what the fast mode settles at
 };
-
-inline double value_of(double number) { return number; }
 
 /// The slow mode holds what is left, within the range of the other three: so a constant input carries the speed from
 /// the measured one to its own, and not beyond.

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "slipwise/linear/plain_value.hpp"
+
 namespace slipwise {
 
 /// A value and its derivatives by three variables (forward differentiation).
@@ -35,8 +37,7 @@ inline Dual3 sqrt(const Dual3& a) {
 inline Dual3 cos(const Dual3& a) { return {std::cos(a.value), -std::sin(a.value) * a.by}; }
 inline Dual3 sin(const Dual3& a) { return {std::sin(a.value), std::cos(a.value) * a.by}; }
 
-/// The value alone, of a plain number too.
-inline double value_of(double a) { return a; }
+/// The value alone.
 inline double value_of(const Dual3& a) { return a.value; }
 
 }  // namespace slipwise
