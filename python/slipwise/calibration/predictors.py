@@ -103,26 +103,49 @@ def _predict_in_sample(posterior: Posterior, draft: _Draft, i: int) -> None:
 
 
 def _finished(predictor: Predictor, learned: WindowSet, draft: _Draft) -> Predictions:
-    targets, pose = draft.targets, draft.pose
-    known = targets.count_until(targets.position, targets.start - targets.length)
-    squared = normalised_squared(residual(targets.measured, pose), draft.covariance)
-    students = _tails(known, squared)
+    targets, known = draft.targets, known_windows(draft.targets)
+    until = _learned_until(predictor, ((learned, draft.counts), (targets, known)), targets)
+    proposed = ProposedPoses(draft.pose, draft.covariance, draft.in_sample, draft.structure)
+    return scored_predictions(predictor.method, targets, proposed, until)
+
+
+@dataclass(frozen=True, eq=False)
+class ProposedPoses:
+    """What a method proposes for the windows of a set, [N] each."""
+
+    pose: Floats  # [N, 3] T_start_end
+    covariance: Floats  # [N, 3, 3] without what is learned from earlier errors
+    in_sample: Floats  # [N, 3] pose after learning the window
+    structure: Ints  # of STRUCTURES
+
+
+def known_windows(targets: WindowSet) -> Ints:
+    """Return how many of the targets had ended one horizon before each began, [N]."""
+    return targets.count_until(targets.position, targets.start - targets.length)
+
+
+def scored_predictions(
+    method: str, targets: WindowSet, proposed: ProposedPoses, learned_until: Floats
+) -> Predictions:
+    """Return the predictions beside what was measured, with the tails that earlier errors show."""
+    squared = normalised_squared(residual(targets.measured, proposed.pose), proposed.covariance)
+    students = _tails(known_windows(targets), squared)
     inflation = np.array([tail.inflation for tail in students])
-    left = residual(targets.measured, draft.in_sample)
+    left = residual(targets.measured, proposed.in_sample)
     return Predictions(
-        method=predictor.method,
+        method=method,
         horizon=targets.length,
         run=np.array([targets.drive[p].index for p in targets.position], dtype=np.int64),
         t_start=targets.start,
         t_end=targets.end,
-        pose=pose,
-        covariance=draft.covariance * inflation[:, None, None],
+        pose=proposed.pose,
+        covariance=proposed.covariance * inflation[:, None, None],
         inflation=inflation,
         dof=np.array([tail.dof for tail in students]),
         nominal_nis=squared,
-        structure=draft.structure,
+        structure=proposed.structure,
         measured=targets.measured,
-        learned_until=_learned_until(predictor, ((learned, draft.counts), (targets, known)), targets),
+        learned_until=learned_until,
         in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
     )
 

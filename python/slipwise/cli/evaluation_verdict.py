@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from slipwise.models import Model
 
 #: What learns nothing, or nothing causally, and baselines that no model file can hold.
-_NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo")
+_NOT_JUDGED = ("none", "vendor", "batch", "slip-ratio-ekf", "slip-ratio-smo", "neural", "neural-residual")
 
 
 def judged_method(methods: tuple[str, ...], models: tuple[str, ...] = ()) -> str | None:

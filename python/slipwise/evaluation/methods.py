@@ -16,6 +16,7 @@ from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import SLOPE_BASES
 from slipwise.errors import SettingsError
+from slipwise.evaluation.neural import neural, neural_residual
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_predictor
 from slipwise.models.model import Model
@@ -86,6 +87,10 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
         "surface-bayesian": MethodInfo(
             _by(_surface), "slip surface by Bayesian linear regression (thesis 5.13)"
         ),
+        "neural": MethodInfo(_neural, "neural networks from inputs to motion, fitted again as windows come"),
+        "neural-residual": MethodInfo(
+            _neural_residual, "neural networks that correct the predictions of auto"
+        ),
         "custom": MethodInfo(_learned, "the terms of the settings file"),
     }
     if name in models:
@@ -129,6 +134,16 @@ def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     horizons = [targets.length for targets in contest.targets]
     learned = learn_log(contest.windows.drive, settings, horizons)
     return tuple(replace(predictions, method=name) for predictions in learned.predictions)
+
+
+def _neural(_: str, contest: Contest) -> tuple[Predictions, ...]:
+    baseline = predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
+    return tuple(neural(*pair) for pair in zip(contest.targets, baseline, strict=True))
+
+
+def _neural_residual(_: str, contest: Contest) -> tuple[Predictions, ...]:
+    own = _learned("auto", contest)
+    return tuple(neural_residual(*pair) for pair in zip(contest.targets, own, strict=True))
 
 
 def _estimator(name: str, contest: Contest) -> Predictor:

@@ -16,8 +16,9 @@ from typing import Any
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import numpy as np
-from bindings.sound_arguments import other_objects, owner_of, sound
+from bindings.sound_arguments import owner_of, sound
 from bindings.stub_calls import Bound, bound_functions
+from bindings.unusual_objects import other_objects
 
 from slipwise import _core
 
