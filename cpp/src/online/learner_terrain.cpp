@@ -46,11 +46,14 @@ void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel&
   if (settings_.learn_disturbance) {
     disturbance_.begin_with(law);
   }
+  note_surfaces(runs_, newest());
   known_.back() = now_known(known_.back().until);
 }
 
 std::vector<std::string> MotionLearner::add_surfaces(const KnownBefore& other) {
-  return hypotheses_.add_surfaces(disturbance_.law(), other);
+  std::vector<std::string> names = hypotheses_.add_surfaces(disturbance_.law(), other);
+  note_surfaces(runs_, newest());
+  return names;
 }
 
 void MotionLearner::consider_surfaces(double t) {
