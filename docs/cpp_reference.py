@@ -132,13 +132,13 @@ def page(folder: str) -> str:
     """Return the page of one folder of headers."""
     lines = [f"# slipwise/{folder}", "", FOLDERS[folder], ""]
     lines += [
-        "Made from the headers; their comments have units and errors. All is in the namespace `slipwise`.",
+        "Made from the headers; their comments have units and errors. All is in the namespace `slipwise`, or in one of the folder's name in it.",
         "",
     ]
     for header in sorted((HEADERS / folder).glob("*.hpp")):
         text = header.read_text(encoding="utf-8")
         sentence = " ".join(re.findall(r"^// (.*)$", text.partition("#pragma once")[0], re.MULTILINE)[1:])
-        start = re.search(r"^namespace slipwise \{", text, re.MULTILINE)
+        start = re.search(r"^namespace slipwise(?:::\w+)? \{", text, re.MULTILINE)
         inside = "" if start is None else text[start.end() : end_of(text, start.end() - 1) - 1]
         inside = re.sub(r"^#.*$", "", inside, flags=re.MULTILINE)
         lines += [f"## {header.name}", "", sentence, "", f"`#include <slipwise/{folder}/{header.name}>`", ""]

@@ -93,7 +93,7 @@ void bind_wheel_layout(nb::module_& m) {
                              .steered = steered,
                              .behind_hinge = behind_hinge};
           },
-          nb::kw_only(), "x"_a, "y"_a, "radius"_a, "angle"_a, "roller"_a, "steered"_a, "behind_hinge"_a)
+          "x"_a, "y"_a, "radius"_a, "angle"_a, "roller"_a, "steered"_a, "behind_hinge"_a)
       .def_ro("x", &Wheel::x)
       .def_ro("y", &Wheel::y)
       .def_ro("radius", &Wheel::radius)
@@ -112,7 +112,7 @@ void bind_wheel_layout(nb::module_& m) {
             }
             new (self) WheelLayout(std::move(wheels), {.rolling = rolling, .sideways = sideways}, joint);
           },
-          "wheels"_a, nb::kw_only(), "rolling"_a, "sideways"_a, "hinge"_a.none())
+          "wheels"_a, "rolling"_a, "sideways"_a, "hinge"_a.none())
       .def_prop_ro("wheels", &WheelLayout::wheels)
       .def_prop_ro("tells_sideways", &WheelLayout::tells_sideways)
       .def("twists", &wheel_twists, "speed"_a, "steering"_a, "hinge"_a,

@@ -10,6 +10,8 @@ import pytest
 from python.tests.docs.pages import PAGES, ROOT, blocks, name_of
 
 import slipwise as sw
+from slipwise.calibration.calibrate_sequence import calibrate_sequence
+from slipwise.calibration.learned_sequence import SequenceOptions
 
 WITH_PYTHON = [page for page in PAGES if blocks(page, "python")]
 COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
@@ -17,7 +19,7 @@ COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
 
 @pytest.fixture(scope="module")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder that holds a short bag and a model learned from it, as the pages take for granted."""
+    """Return a folder with a short bag, a model learned from it, and one with a surface, as the pages take for granted."""
     pytest.importorskip("mujoco", reason="the log is simulated, which needs MuJoCo")
     from slipwise.simulation import Scenario, simulate
 
@@ -25,6 +27,8 @@ def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
     log = simulate(Scenario(duration=90.0), seed=2).log
     sw.save_log(log, folder / "run.mcap")
     sw.calibrate(log, basis="edd-2").model.save(folder / "model.yaml")
+    learned, _ = calibrate_sequence([log], options=SequenceOptions(labels=("sand",)))
+    learned.model.save(folder / "tuesday.yaml")
     return folder
 
 

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arguments with which what is bound of vehicles works."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from slipwise import _core
+
+
+def _wheel(x: float, y: float, *, steered: bool = False) -> _core.Wheel:
+    return _core.Wheel(x, y, 0.1, 0.0, None, steered, False)
+
+
+def _layout() -> _core.WheelLayout:
+    """Two wheels on an axle and a steered one ahead of it."""
+    return _core.WheelLayout(
+        [_wheel(0.0, 0.3), _wheel(0.0, -0.3), _wheel(0.5, 0.0, steered=True)], 0.02, 0.02, None
+    )
+
+
+#: Sound objects by the name of their type.
+VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {"Wheel": lambda: _wheel(0.0, 0.3), "WheelLayout": _layout}
+
+#: Sound arguments by function and parameter.
+VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
+    "Wheel.__init__ behind_hinge": lambda: False,
+    "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
+    "WheelLayout.twists hinge": lambda: np.zeros((0, 2)),
+}
