@@ -19,7 +19,7 @@ COMMAND = re.compile(r"^(?:\.venv/bin/)?slipwise .*")
 
 @pytest.fixture(scope="module")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with a short bag, a model learned from it, and one with a surface, as the pages take for granted."""
+    """Return a folder with what the pages take for granted: a short bag, its model, one with a surface."""
     pytest.importorskip("mujoco", reason="the log is simulated, which needs MuJoCo")
     from slipwise.simulation import Scenario, simulate
 
