@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,18 +25,34 @@ CHUNK = 12_000  # steps integrated at a time
 SlipNoise = Callable[[int, np.random.Generator], Floats]  # slip rates [N, 3] at every step
 
 
+@dataclass(frozen=True)
+class Answer:
+    """How the drive follows commands, in place of wheel speeds that are known."""
+
+    delay: float = 0.2  # s
+    lag: float = 0.3  # s, of first order
+
+
 def simulated_log(
-    minutes: float, *, seed: int, slip_noise: SlipNoise | None = None, slips: Sequence[Floats] = (SLIP,)
+    minutes: float,
+    *,
+    seed: int,
+    slip_noise: SlipNoise | None = None,
+    slips: Sequence[Floats] = (SLIP,),
+    answer: Answer | None = None,
 ) -> Log:
     """Return a log of one run: held random wheel speeds, the poses they lead to, and pose noise.
 
-    The slip parameters are `slips` in turn, each for the same fraction of the time.
+    The slip parameters are `slips` in turn, each for the same fraction of the time. With an `answer` the log
+    holds commands instead, which the drive follows.
     """
     rng = np.random.default_rng(seed)
     count = round(minutes * 60.0 * RATE)
     t = np.round(np.arange(count) / RATE, 3)
     v, omega = _held_inputs(count, rng)
     twist = np.column_stack((v, np.zeros(count), omega))
+    if answer is not None:
+        twist = _answered(twist, answer)
     if slip_noise is not None:
         twist = twist + slip_noise(count, rng)
     x, y, yaw = _poses(twist, slips)
@@ -48,7 +65,18 @@ def simulated_log(
         yaw=np.arctan2(np.sin(yaw), np.cos(yaw)),
         frame=np.zeros(count, np.int64),
     )
-    return Log((Run(name=f"simulated{minutes:g}min", commands=None, wheels=inputs, poses=poses),))
+    commands, wheels = (None, inputs) if answer is None else (inputs, None)
+    return Log((Run(name=f"simulated{minutes:g}min", commands=commands, wheels=wheels, poses=poses),))
+
+
+def _answered(twist: Floats, answer: Answer) -> Floats:
+    """Return what the drive makes of commanded twists [N, 3]: late, then a lag of first order."""
+    late, keep = round(answer.delay * RATE), np.exp(-1.0 / (RATE * answer.lag))
+    driven, now = np.zeros_like(twist), np.zeros(3)
+    for i in range(len(twist)):
+        now = keep * now + (1.0 - keep) * (twist[i - late] if i >= late else 0.0)
+        driven[i] = now
+    return driven
 
 
 def _held_inputs(count: int, rng: np.random.Generator) -> tuple[Floats, Floats]:
