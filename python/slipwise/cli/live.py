@@ -99,6 +99,7 @@ def live(
       slipwise live --demo --web
       robot-log | slipwise live --transport stdin --results -
     """  # noqa: D301
+    from slipwise.calibration.sloping_ground import for_the_ground_of
     from slipwise.cli.live_parts import Source, live_settings, model_of_replay, open_robot, watchers_for
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.live.build import build_node
@@ -115,6 +116,8 @@ def live(
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, seed, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
+        if robot.log is not None:
+            chosen = for_the_ground_of(robot.log, chosen)
         watchers = watchers_for(shown, chosen.live)
         built = build_node(robot.transport, robot.input_name, chosen, watchers=watchers, run=robot.run)
         stopping.node = built.node

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from sample_logs import simulated_log
+from sample_slopes import Hills, hilly_log
 from scripted_node import SLIP
 
 import slipwise as sw
@@ -39,6 +40,18 @@ def test_a_log_is_replayed_into_the_model_that_calibrate_writes(
     os.chdir(tmp_path)
     assert run(["calibrate", str(drive), "--no-report", "-o", str(log)]) == 0
     assert live.read_bytes() == log.read_bytes()
+
+
+def test_a_log_of_hills_is_replayed_with_the_terms_that_calibrate_tries(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hills, live, log = tmp_path / "hills.csv", tmp_path / "live.yaml", tmp_path / "calibrate.yaml"
+    sw.save_log(hilly_log(1, Hills(seconds=60.0)), hills)
+    monkeypatch.chdir(tmp_path)
+    assert run(["live", "--replay", str(hills), "--rate", "0", "--quiet", "-o", str(live)]) == 0
+    assert run(["calibrate", str(hills), "--no-report", "-o", str(log)]) in (0, 1)
+    assert live.read_bytes() == log.read_bytes()
+    assert "gy" in live.read_text(encoding="utf-8")
 
 
 @pytest.mark.slow
