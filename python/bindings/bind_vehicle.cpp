@@ -43,8 +43,11 @@ WheelReadings readings_at(Eigen::Index row, const Rows& speed, const Rows& steer
   return readings;
 }
 
-void check_readings(const Rows& speed, const Rows& steering, const Rows& hinge) {
-  if (steering.rows() != speed.rows() || (hinge.rows() > 0 && (hinge.rows() != speed.rows() || hinge.cols() != 2))) {
+void check_readings(bool hinged, const Rows& speed, const Rows& steering, const Rows& hinge) {
+  const bool missing =
+      hinged && speed.rows() > 0 && hinge.rows() == 0;  // a bent vehicle is never taken for a straight one
+  const bool uneven = hinge.rows() > 0 && (hinge.rows() != speed.rows() || hinge.cols() != 2);
+  if (steering.rows() != speed.rows() || missing || uneven) {
     throw std::invalid_argument("speeds, steering angles and the hinge's (angle, rate) need equally many rows");
   }
 }
@@ -52,7 +55,7 @@ void check_readings(const Rows& speed, const Rows& steering, const Rows& hinge) 
 /// Rows of (v, vy, omega, chi2, freedom), and of covariances (3 x 3, row by row).
 std::pair<Rows, Rows> wheel_twists(const WheelLayout& layout, const Rows& speed, const Rows& steering,
                                    const Rows& hinge) {
-  check_readings(speed, steering, hinge);
+  check_readings(layout.hinged(), speed, steering, hinge);
   Rows twists(speed.rows(), 5), covariances(speed.rows(), 9);
   for (Eigen::Index i = 0; i < speed.rows(); ++i) {
     const WheelTwist found = layout.twist(readings_at(i, speed, steering, hinge));

@@ -45,6 +45,7 @@ ANY_LENGTH = {
     "RegressionExample.__init__ features",
     "StartList.__init__ past",
     "StartList.__init__ starts",
+    "WheelLayout.wheels_for twists",
     "actuator_output times",
     "correlated_pairs covariance",
     "distance_field occupied",

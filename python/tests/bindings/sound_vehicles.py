@@ -11,15 +11,14 @@ import numpy as np
 from slipwise import _core
 
 
-def _wheel(x: float, y: float, *, steered: bool = False) -> _core.Wheel:
-    return _core.Wheel(x, y, 0.1, 0.0, None, steered, False)
+def _wheel(x: float, y: float, *, trailed: bool = False) -> _core.Wheel:
+    return _core.Wheel(x, y, 0.1, 0.0, None, trailed, trailed)
 
 
 def _layout() -> _core.WheelLayout:
-    """Two wheels on an axle and a steered one ahead of it."""
-    return _core.WheelLayout(
-        [_wheel(0.0, 0.3), _wheel(0.0, -0.3), _wheel(0.5, 0.0, steered=True)], 0.02, 0.02, None
-    )
+    """Two wheels on an axle, and a steered one behind a hinge."""
+    wheels = [_wheel(0.0, 0.3), _wheel(0.0, -0.3), _wheel(-1.0, 0.0, trailed=True)]
+    return _core.WheelLayout(wheels, 0.02, 0.02, (-0.5, 0.0))
 
 
 #: Sound objects by the name of their type.
@@ -29,5 +28,5 @@ VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {"Wheel": lambda: _wheel(0.0, 0.
 VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "Wheel.__init__ behind_hinge": lambda: False,
     "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
-    "WheelLayout.twists hinge": lambda: np.zeros((0, 2)),
+    "WheelLayout.twists hinge": lambda: np.full((3, 2), 0.1),
 }

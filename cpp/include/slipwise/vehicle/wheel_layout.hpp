@@ -72,6 +72,7 @@ class WheelLayout {
   explicit WheelLayout(std::vector<Wheel> wheels, const WheelNoise& noise = {}, std::optional<Hinge> hinge = {});
 
   const std::vector<Wheel>& wheels() const { return wheels_; }
+  bool hinged() const { return hinge_.has_value(); }
   /// Wheels that all slide across, as in skid steering, do not tell vy: it is taken as 0, and slip terms say the rest.
   bool tells_sideways() const { return tells_sideways_; }
 
