@@ -15,7 +15,7 @@ from slipwise.reporting.palette import DIVERGING
 from slipwise.reporting.slip_places import CHANNELS, SlipPlaces, slip_places
 from slipwise.reporting.thinning import thinned
 
-_HEIGHT = 280  # px
+_HEIGHT = 300  # px
 _SMALLEST, _LARGEST = 4.0, 13.0  # px, of a square
 
 
