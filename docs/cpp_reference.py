@@ -132,8 +132,7 @@ def page(folder: str) -> str:
     """Return the page of one folder of headers."""
     lines = [f"# slipwise/{folder}", "", FOLDERS[folder], ""]
     lines += [
-        "Made from the headers; their comments have units and errors. All is in the namespace `slipwise`, "
-        "or in one of the folder's name in it.",
+        "Made from the headers; their comments have units and errors. All is in the namespace `slipwise`.",
         "",
     ]
     for header in sorted((HEADERS / folder).glob("*.hpp")):
