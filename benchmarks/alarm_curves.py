@@ -168,6 +168,7 @@ def main() -> None:
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=6, help="drives of each step")
+    parser.add_argument("--each", action="store_true", help="show each step by itself too")
     parser.add_argument("--json", type=Path, help="write all points to this file")
     arguments = parser.parse_args()
     with ProcessPoolExecutor() as pool:
@@ -175,10 +176,8 @@ def main() -> None:
     joined: dict[str, list[Course]] = {}
     for title, part in courses.items():
         joined.setdefault(title.split(":")[0] + (": all steps" if "slip +" in title else ""), []).extend(part)
-    every = {
-        title: {finder: curve(part, finder) for finder in FINDERS}
-        for title, part in (joined | courses).items()
-    }
+    shown = joined | courses if arguments.each else joined
+    every = {title: {finder: curve(part, finder) for finder in FINDERS} for title, part in shown.items()}
     for title, curves in every.items():
         print_curves(title, curves)
     if arguments.json:

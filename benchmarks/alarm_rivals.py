@@ -68,7 +68,7 @@ def adwin(course: Course, delta: float) -> Alarms:
 def offline(course: Course, penalty: float) -> Alarms:
     """PELT of `ruptures` over the whole drive: it knows what comes after, and has no delay of its own."""
     signal = np.column_stack([standard(stream) for stream in course.signed.T])
-    breaks = ruptures.Pelt(model="l2", min_size=3, jump=1).fit(signal).predict(pen=penalty)
+    breaks = ruptures.Pelt(model="l2", min_size=3, jump=2).fit(signal).predict(pen=penalty)
     return [int(b) for b in breaks[:-1]]
 
 
