@@ -4,7 +4,7 @@
 One learner runs over each drive and takes no notice of changes; all finders see what it says of each
 window before it learns it. Drives are simulated (steps of slip, from wheel speeds and from commands, with
 white slip noise and with slip noise that lasts for seconds), and real: grounds of the Warthog's window sets
-one after the other, and the Robotino on a table and then on gray floor. Finders are run at every setting;
+one after the other. Finders are run at every setting;
 of the settings with as few false alarms the one that is soonest counts. ruptures looks at whole drives: its
 delay is how far its nearest change lies from the true one.
 """
@@ -114,15 +114,6 @@ def warthog(order: tuple[str, ...]) -> Course:
     return course_of(joined, "wheel", tuple(int(n) for n in lengths[:-1]))
 
 
-def robotino(_: object) -> Course:
-    """The Robotino on the table until run 5, then on gray floor."""
-    folder = data_folder()
-    assert folder is not None
-    log = slipwise.open_log(folder / "robotino" / "table_gray.csv.gz")
-    windows = windows_of(log, "command")
-    return course_of(windows, "command", (int(np.searchsorted(windows.position, len(log.runs) // 2)),))
-
-
 def curve(courses: list[Course], finder: str) -> list[Point]:
     """Run a finder at each of its settings."""
     find, settings = FINDERS[finder]
@@ -160,7 +151,6 @@ def groups(pool: ProcessPoolExecutor, seeds: int) -> dict[str, list[Course]]:
         found["Warthog: asphalt, gravel, sand in every order"] = list(
             pool.map(warthog, permutations(GROUNDS))
         )
-        found["Robotino: table, then gray floor"] = list(pool.map(robotino, (0,)))
     return found
 
 
