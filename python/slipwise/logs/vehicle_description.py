@@ -85,8 +85,9 @@ class VehicleDescription(_Part):
     rolling_std: Std = 0.02  # m/s, along the rollers' axes or a plain wheel's direction
     sideways_std: Std = 0.02  # m/s, across a plain wheel
 
+    @functools.cached_property
     def layout(self) -> _core.WheelLayout | None:
-        """Return the wheels, or None where there are none.
+        """The wheels, or None where there are none; made once, since every message of a live robot asks.
 
         Raises:
             SettingsError: the wheels do not tell a motion.
@@ -147,7 +148,7 @@ def _checked(content: Any, *, where: str) -> VehicleDescription:
     names = [wheel.name for wheel in found.wheels]
     if len(set(names)) < len(names):
         raise SettingsError("two wheels have the same name", where=where, advice="name them by their joints")
-    found.layout()
+    _ = found.layout  # refused here, not when the first wheel is read
     return found
 
 

@@ -89,7 +89,7 @@ def twists_of_wheels(
         readings: by name [N], rad/s of speeds and rad of angles, NaN where there is none.
         t: stamps [N] s, which the rate of a hinge is taken from.
     """
-    layout = vehicle.layout()
+    layout = vehicle.layout
     assert layout is not None
     count = len(t)
     there = np.ones(count, bool)

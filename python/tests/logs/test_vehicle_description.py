@@ -34,7 +34,7 @@ def test_sizes_of_a_preset_are_taken_where_none_are_given() -> None:
 
 
 def test_a_robotino_that_drives_ahead_turns_its_side_wheels_against_each_other() -> None:
-    layout = load_vehicle("robotino").layout()
+    layout = load_vehicle("robotino").layout
     assert layout is not None
     assert layout.tells_sideways
     speed, _ = layout.wheels_for(np.array([[0.5, 0.0, 0.0]]))

@@ -30,7 +30,7 @@ TWISTS = np.array([[0.5, 0.1, 0.2], [0.6, 0.0, -0.4], [0.4, 0.2, 0.1]])
 def swerve_table(folder: Path) -> tuple[Path, str]:
     vehicle = folder / "swerve.yaml"
     vehicle.write_text(SWERVE)
-    layout = load_vehicle(str(vehicle)).layout()
+    layout = load_vehicle(str(vehicle)).layout
     assert layout is not None
     twists = np.repeat(TWISTS, 40, axis=0)
     speed, steering = layout.wheels_for(twists)
@@ -76,7 +76,7 @@ def test_a_row_without_a_reading_has_no_twist() -> None:
 def test_joint_states_are_read_by_the_names_of_wheels_live_too() -> None:
     options = LogOptions(vehicle="dingo-omni")
     vehicle = load_vehicle("dingo-omni")
-    layout = vehicle.layout()
+    layout = vehicle.layout
     assert layout is not None
     speed, _ = layout.wheels_for(np.array([[0.3, 0.2, 0.5]]))
     names = [wheel.name for wheel in vehicle.wheels]
