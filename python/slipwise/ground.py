@@ -59,6 +59,11 @@ class Grade:
         return _core.Ground.grade(*self.rise(pose[2]))
 
 
+def rise_of(grade: Grade | None) -> tuple[float, float]:
+    """Return how much a plane rises per metre along the axes of the frame of the poses; level without one."""
+    return (0.0, 0.0) if grade is None else grade.rise(0.0)
+
+
 @dataclass(frozen=True, eq=False)
 class ElevationMap:
     """Elevations on a grid, such as a layer of a grid_map or a digital terrain model.

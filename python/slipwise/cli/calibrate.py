@@ -145,6 +145,8 @@ def _memory_part(given: Opened, learned: LearnedLogs) -> dict[str, Any]:
     """Return what became of surfaces; nothing where there was no memory."""
     from dataclasses import asdict
 
+    from slipwise.cli.document import memory_part
+
     sequence = learned.sequence
     if sequence is None:
         return {}
@@ -154,8 +156,7 @@ def _memory_part(given: Opened, learned: LearnedLogs) -> dict[str, Any]:
             {"log": name, "surface": log.surface, "changes": [asdict(change) for change in log.changes]}
             for name, log in visited
         ],
-        "surfaces": [asdict(surface) for surface in sequence.surfaces],
-        "labels": dict(zip(("all", "right"), sequence.labels, strict=True)),
+        **memory_part(sequence),
     }
 
 

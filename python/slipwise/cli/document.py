@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from slipwise.calibration import Calibration, Verdict
+    from slipwise.calibration.learned_sequence import LearnedSequence
     from slipwise.evaluation import Evaluation
     from slipwise.logs import LeftOut, Log
+    from slipwise.models import Model
 
 
 def head(command: str) -> dict[str, Any]:
@@ -26,6 +28,20 @@ def log_part(log: Log, left_out: Sequence[LeftOut]) -> dict[str, Any]:
         "sources": [asdict(source) for source in log.sources],
         "notes": list(log.notes),
         "left_out": [asdict(entry) for entry in left_out],
+    }
+
+
+def surfaces_part(model: Model) -> list[dict[str, Any]]:
+    """Return what is known of each surface that a model remembers, without what is learned of its slip."""
+    learned = {"slip", "covariance", "memory"}
+    return [surface.model_dump(exclude=learned) for surface in model.content.surfaces]
+
+
+def memory_part(learned: LearnedSequence) -> dict[str, Any]:
+    """Return the surfaces that are remembered after a sequence of logs, and what labels were worth."""
+    return {
+        "surfaces": [asdict(surface) for surface in learned.surfaces],
+        "labels": dict(zip(("all", "right"), learned.labels, strict=True)),
     }
 
 

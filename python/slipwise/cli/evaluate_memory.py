@@ -104,7 +104,7 @@ def _show(out: Output, sequence: SequenceEvaluation) -> None:
 
 
 def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str, Any]:
-    from slipwise.cli.document import evaluation_part, head
+    from slipwise.cli.document import evaluation_part, head, memory_part
 
     visited = zip(sequence.names, sequence.evaluations, sequence.learned.logs, sequence.visits(), strict=True)
     return head("evaluate") | {
@@ -116,6 +116,5 @@ def _document(sequence: SequenceEvaluation, files: dict[str, Path]) -> dict[str,
             | evaluation_part(evaluation)
             for name, evaluation, log, visit in visited
         ],
-        "surfaces": [asdict(surface) for surface in sequence.learned.surfaces],
-        "labels": dict(zip(("all", "right"), sequence.learned.labels, strict=True)),
+        **memory_part(sequence.learned),
     }

@@ -62,7 +62,7 @@ def _origin(model: Model) -> tuple[str, ...]:
 def _document(model: Model, summary: Summary) -> dict[str, Any]:
     from dataclasses import asdict
 
-    from slipwise.cli.document import head
+    from slipwise.cli.document import head, surfaces_part
 
     content = model.content
     return head("show") | {
@@ -74,7 +74,5 @@ def _document(model: Model, summary: Summary) -> dict[str, Any]:
         "verdict": content.verdict.model_dump(),
         "range": content.range.model_dump(),
         "provenance": content.provenance.model_dump(),
-        "surfaces": [
-            surface.model_dump(exclude={"slip", "covariance", "memory"}) for surface in content.surfaces
-        ],
+        "surfaces": surfaces_part(model),
     }

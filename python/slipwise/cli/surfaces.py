@@ -126,9 +126,6 @@ def merge(model: ModelFile, second: Second, output: Output, json: Json = None) -
 
 
 def _document(command: str, learned: Model) -> dict[str, Any]:
-    from slipwise.cli.document import head
+    from slipwise.cli.document import head, surfaces_part
 
-    kept = [
-        surface.model_dump(exclude={"slip", "covariance", "memory"}) for surface in learned.content.surfaces
-    ]
-    return head(command) | {"exit_code": 0, "surfaces": kept}
+    return head(command) | {"exit_code": 0, "surfaces": surfaces_part(learned)}

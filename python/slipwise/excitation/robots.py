@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.excitation.knowledge import Knowledge
+from slipwise.planning.start import Start
 
 Floats = NDArray[np.float64]
 
 PERIOD = 0.1  # s, of the rollouts
-LEVEL = [0.0] * 4  # no gravity along the robot's axes, no rise of the ground
 THREE_SIGMA = 2.782  # normal quantile of 99.73 %, which three standard deviations hold in one dimension
 
 
@@ -95,8 +95,8 @@ def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:
     values, vectors = np.linalg.eigh(knowledge.spread)
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     parameters = knowledge.mean + drawn @ root.T
-    motion, limits = knowledge.motion, knowledge.limits
-    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, LEVEL, limits) for row in parameters))
+    motion, limits, level = knowledge.motion, knowledge.limits, Start().ground
+    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, level, limits) for row in parameters))
 
 
 def _rolled(program: _core.RolloutProgram, commands: Floats) -> Floats:

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from slipwise.errors import ModelError
@@ -68,9 +66,7 @@ def _offset(
         return Kept(
             _STEERING, "the model has no term that turns a vehicle whose wheels stand straight, such as ang V"
         )
-    tangent = veer * options.wheel_base / speed
-    slope = 1.0 / (1.0 + tangent.value**2)
-    angle = LearnedNumber(math.atan(tangent.value), tangent.by_parameter * slope)
+    angle = (veer * options.wheel_base / speed).arctan()
     before = options.logged.get(_STEERING[0], 0.0)
     number = numbers.exactly(before) + angle
     meaning = (

@@ -7,7 +7,6 @@ points to the right, `is_left` is the one place that turns it round.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -178,12 +177,8 @@ class FirmwareNumbers:
             return "give --wheel-base and --min-turning-radius for a vehicle that steers"
         if isinstance(radius, str):
             return radius
-        tangent = self.numbers.exactly(base) / radius.number
-        slope = 1.0 / (1.0 + tangent.value**2)
-        number = LearnedNumber(
-            math.atan(tangent.value), tangent.by_parameter * slope, tangent.own_variance * slope**2
-        )
-        return Quantity(number, f"the angle that turns a vehicle without slip so: {radius.source}")
+        angle = (self.numbers.exactly(base) / radius.number).arctan()
+        return Quantity(angle, f"the angle that turns a vehicle without slip so: {radius.source}")
 
     def _steering_feed_forward(self) -> Answer:
         return self._scaled("ATC_STR_RAT_FF", self._yaw_gain, "yaw rate", inverse=True)

@@ -40,6 +40,12 @@ class LearnedNumber:
         ratio = self.value / other.value
         return self._joined(ratio, (1.0 / other.value, -ratio / other.value), other)
 
+    def arctan(self) -> LearnedNumber:
+        """Return the angle [rad] whose tangent this is."""
+        slope = 1.0 / (1.0 + self.value**2)
+        variance = slope**2 * self.own_variance
+        return LearnedNumber(math.atan(self.value), slope * self.by_parameter, variance, self.guessed)
+
     def _scaled(self, factor: float) -> LearnedNumber:
         variance = factor**2 * self.own_variance
         return LearnedNumber(factor * self.value, factor * self.by_parameter, variance, self.guessed)

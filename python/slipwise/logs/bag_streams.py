@@ -161,14 +161,37 @@ def with_tilts(context: BagContext, poses: RawStream, imu: Samples | None) -> Ra
     """Give planar poses the roll and the pitch of an IMU, where one was named; poses in space keep theirs."""
     if imu is None or not len(imu.values) or "roll" in poses.columns or "pitch" in poses.columns:
         return poses
+    orientation = _orientation(context, imu)
+    if orientation is None:
+        return poses
+    context.notes.append(f"roll and pitch are those of {imu.topic}")
+    return replace(poses, columns={**poses.columns, **orientation.tilts_at(poses.t)})
+
+
+@dataclass(frozen=True, eq=False)
+class _Orientation:
+    """What an IMU said of its orientation, [M] each."""
+
+    t: Floats  # s
+    roll: Floats  # rad
+    pitch: Floats
+    yaw: Floats
+
+    def tilts_at(self, t: Floats) -> dict[str, Floats]:
+        """Return roll and pitch at stamps [N]; NaN where no sample was near enough."""
+        return {
+            "roll": tilt_from_imu(t, self.t, self.roll),
+            "pitch": tilt_from_imu(t, self.t, self.pitch),
+        }
+
+
+def _orientation(context: BagContext, imu: Samples) -> _Orientation | None:
+    """Read an IMU's orientations and count messages without one; None where all are."""
     q, upright = unit_quaternions(imu.values)
     _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
     if not upright.any():
-        return poses
-    imu_t, (roll, pitch, _) = context.seconds(imu, "imu")[upright], angles_of(q[upright])
-    context.notes.append(f"roll and pitch are those of {imu.topic}")
-    tilts = {"roll": tilt_from_imu(poses.t, imu_t, roll), "pitch": tilt_from_imu(poses.t, imu_t, pitch)}
-    return replace(poses, columns={**poses.columns, **tilts})
+        return None
+    return _Orientation(context.seconds(imu, "imu")[upright], *angles_of(q[upright]))
 
 
 def fix_stream(
@@ -191,12 +214,10 @@ def fix_stream(
     tilts: dict[str, Floats] = {}
     t = context.seconds(samples, "poses")
     if imu is not None and len(imu.values):
-        q, upright = unit_quaternions(imu.values)
-        if upright.any():
-            imu_t, (roll, pitch, heading) = context.seconds(imu, "imu")[upright], angles_of(q[upright])
-            yaw, known = heading_from_imu(t, imu_t, heading)
-            tilts = {"roll": tilt_from_imu(t, imu_t, roll), "pitch": tilt_from_imu(t, imu_t, pitch)}
-        _count(context, imu, ~upright, "bad-quaternion", "imu messages without an orientation")
+        orientation = _orientation(context, imu)
+        if orientation is not None:
+            yaw, known = heading_from_imu(t, orientation.t, orientation.yaw)
+            tilts = orientation.tilts_at(t)
     if known.any():
         context.notes.append("headings, roll and pitch are those of the IMU")
     else:

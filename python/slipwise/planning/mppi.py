@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
-from slipwise.ground import Grade
+from slipwise.ground import Grade, rise_of
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
@@ -121,11 +121,7 @@ _InCore = tuple[_core.MotionModel, Floats, _core.CommandLimits | None, tuple[flo
 
 
 def _as_core(motions: list[Motion]) -> list[_InCore]:
-    return [(motion.model, motion.parameters, motion.limits, _rise(motion.grade)) for motion in motions]
-
-
-def _rise(grade: Grade | None) -> tuple[float, float]:
-    return (0.0, 0.0) if grade is None else grade.rise(0.0)
+    return [(motion.model, motion.parameters, motion.limits, rise_of(motion.grade)) for motion in motions]
 
 
 def _sent(command: tuple[float, float]) -> Floats:

@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from slipwise import _core
 from slipwise.errors import SettingsError
-from slipwise.ground import Grade
+from slipwise.ground import Grade, rise_of
 
 Floats = NDArray[np.float64]
-
 
 GroundOfRollouts = tuple[float, float, float, float]  # gx, gy [m/s^2], rise along x and along y [m/m]
 
@@ -31,7 +30,7 @@ class Start:
     @property
     def ground(self) -> GroundOfRollouts:
         """Gravity, and how much the ground rises per metre along the axes of the frame of `pose`."""
-        return (*self.gravity, *((0.0, 0.0) if self.grade is None else self.grade.rise(0.0)))
+        return (*self.gravity, *rise_of(self.grade))
 
     def in_core(self, rollouts: int) -> _core.StartList:
         """Check the start against the number of rollouts and hand it to the core.

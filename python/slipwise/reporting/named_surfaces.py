@@ -34,21 +34,17 @@ def named_surfaces(
         Names in the order in which they were driven, and the probability of each, [W, names].
     """
     renamed = {change.other: change.name for _, change in changes if change.what == "merged"}
-    rows, places = (
-        np.zeros((len(probability), len(names))),
-        np.zeros((len(probability), len(names)), np.int64),
-    )
+    places = np.zeros((len(probability), len(names)), np.int64)
     found: dict[str, int] = {}
     for row in range(len(probability)):
         for column, name in enumerate(names):
-            rows[row, column] = probability[row, column]
-            if not rows[row, column]:
+            if not probability[row, column]:
                 continue
             shown = _last_name(name or _later_name(row, changes, last), renamed)
             places[row, column] = found.setdefault(shown, len(found))
     joined = np.zeros((len(probability), max(len(found), 1)))
     for column in range(len(names)):
-        np.add.at(joined, (np.arange(len(rows)), places[:, column]), rows[:, column])
+        joined[np.arange(len(joined)), places[:, column]] += probability[:, column]
     return tuple(found) or (UNNAMED,), joined
 
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from slipwise.ground import Grade
 from slipwise.logs.log import Inputs
+from slipwise.logs.rotation import angles_of, product, quaternions_of, rotate
 from slipwise.simulation.land_tamer import GRAVITY
 from slipwise.simulation.truth import Truth
 
@@ -21,9 +22,13 @@ _LEGS, _TURNS = (4.0, 8.0), (1.5, 3.5)  # s
 
 def axes_of(grade: Grade) -> Floats:
     """Return the axes [3, 3] of a plane, in columns: x looks along yaw 0, z is its normal."""
-    _, roll, pitch = grade.under((0.0, 0.0, 0.0)).standings(np.zeros((1, 3)))[0].tolist()
-    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
-    return np.array([[cp, sp * sr, sp * cr], [0.0, cr, -sr], [-sp, cp * sr, cp * cr]])
+    return rotate(np.repeat(_tilt(grade), 3, axis=0), np.eye(3)).T
+
+
+def _tilt(grade: Grade) -> Floats:
+    """The rotation [1, 4] of a robot that stands on the plane and looks along yaw 0."""
+    _, roll, pitch = grade.under((0.0, 0.0, 0.0)).standings(np.zeros((1, 3))).T
+    return quaternions_of(roll, pitch, np.zeros(1))
 
 
 def gravity_on(grade: Grade | None) -> tuple[float, float, float]:
@@ -60,26 +65,7 @@ def seen_from_above(truth: Truth, position: Floats, grade: Grade) -> Truth:
         position: MuJoCo's positions there: x, y, z [m] and the quaternion (w, x, y, z), [M, 7 or more].
         grade: the plane.
     """
-    axes = axes_of(grade)
-    place = position[:, :3] @ axes.T
-    turned = np.einsum("ij,njk->nik", axes, _rotations(position[:, 3:7]))
-    return replace(
-        truth,
-        x=place[:, 0],
-        y=place[:, 1],
-        z=place[:, 2],
-        yaw=np.unwrap(np.arctan2(turned[:, 1, 0], turned[:, 0, 0])),
-        pitch=-np.arcsin(turned[:, 2, 0]),
-        roll=np.arctan2(turned[:, 2, 1], turned[:, 2, 2]),
-    )
-
-
-def _rotations(q: Floats) -> Floats:
-    """Rotation matrices [M, 3, 3] of unit quaternions (w, x, y, z) [M, 4]."""
-    w, x, y, z = q.T
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
-    return np.moveaxis(np.array(rows), 2, 0)
+    tilt = np.repeat(_tilt(grade), len(position), axis=0)
+    x, y, z = rotate(tilt, position[:, :3]).T
+    roll, pitch, yaw = angles_of(product(tilt, position[:, [4, 5, 6, 3]]))
+    return replace(truth, x=x, y=y, z=z, yaw=np.unwrap(yaw), pitch=pitch, roll=roll)

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
+from slipwise.calibration.learned_sequence import SurfaceSummary
 from slipwise.calibration.result import History
+from slipwise.models.schema import SurfaceSection
 from slipwise.reporting.contents import Contents
 from slipwise.reporting.ground_strip import UNNAMED, GroundStrip, strip_html
 from slipwise.reporting.markup import missing, paragraph, table
@@ -52,26 +52,7 @@ def maps_html(figures: list[str]) -> str:
     return paragraph(PLACES, kind="explanation") + f'<div class="grid">{"".join(figures)}</div>'
 
 
-class RememberedSurface(Protocol):
-    """What the table says of a surface."""
-
-    @property
-    def name(self) -> str: ...  # noqa: D102
-    @property
-    def seconds(self) -> float: ...  # noqa: D102
-    @property
-    def segments(self) -> int: ...  # noqa: D102
-    @property
-    def visits(self) -> int: ...  # noqa: D102
-    @property
-    def last_seen(self) -> str: ...  # noqa: D102
-    @property
-    def speed(self) -> float: ...  # noqa: D102
-    @property
-    def yaw_rate(self) -> float: ...  # noqa: D102
-
-
-def bank_table(surfaces: Iterable[RememberedSurface]) -> str:
+def bank_table(surfaces: Iterable[SurfaceSummary | SurfaceSection]) -> str:
     """Return the table of surfaces that are remembered."""
     rows = [
         (
@@ -89,19 +70,6 @@ def bank_table(surfaces: Iterable[RememberedSurface]) -> str:
     return paragraph("Surfaces remembered:") + table(head, rows)
 
 
-@dataclass(frozen=True)
-class _Stretches:
-    """Columns of a strip where no surface is remembered: from one alarm to the next."""
-
-    names: tuple[str, ...]
-    of_window: np.ndarray
-
-
-def _stretches(history: History) -> _Stretches:
-    of_window = np.cumsum(history.alarm)
-    return _Stretches(tuple(f"stretch {k + 1}" for k in range(int(of_window[-1]) + 1)), of_window)
-
-
 def _strip(contents: Contents, history: History | None) -> str:
     """The strip of one log, by surfaces or else by the alarms."""
     if history is None or not len(history.t):
@@ -111,8 +79,9 @@ def _strip(contents: Contents, history: History | None) -> str:
         names, probability = named_surfaces(course.names, course.probability, (), last="")
         names = tuple("the surface of this drive" if n == UNNAMED and len(names) == 1 else n for n in names)
     elif history.alarm.any():
-        stretches = _stretches(history)
-        names, probability = stretches.names, np.eye(len(stretches.names))[stretches.of_window]
+        stretch = np.cumsum(history.alarm)  # from one alarm to the next
+        probability = np.eye(int(stretch[-1]) + 1)[stretch]
+        names = tuple(f"stretch {k + 1}" for k in range(len(probability.T)))
     else:
         return missing("No change of terrain was found: the whole drive seems to be on one ground.")
     x = timeline.at(history.run, history.t)
