@@ -15,9 +15,6 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kJoint = 0;
-constexpr std::size_t kDirect = 1;
-constexpr std::size_t kCascaded = 2;
 constexpr double kFavoured = 0.9;  // weight of the structure that was the best before
 
 std::size_t place_of(const MotionPosterior& model) {
@@ -119,14 +116,10 @@ void ModelAverage::begin_on(const SurfaceMemory& surface, double seconds, double
   }
 }
 
-std::array<const ModelAverage*, kAverages> MotionHypotheses::all_averages() const {
-  return {&joint_, direct_ ? &*direct_ : nullptr, cascaded_ ? &cascaded_->slip() : nullptr};
-}
-
 /// What one structure remembers is what the others begin with: the slip is the same.
 Surface MotionHypotheses::completed(const KnownSurface& known, std::size_t place) const {
   Surface surface = known.facts;
-  const auto averages = all_averages();
+  const auto averages = averages_of(*this);
   for (std::size_t i = 0; i < kAverages; ++i) {
     surface.memories[i].reset();
     if (averages[i] != nullptr) {
@@ -150,8 +143,7 @@ void MotionHypotheses::favour(Structure structure) {
 void MotionHypotheses::begin_with(const KnownBefore& known, double segment_length, bool wheels_known) {
   const MotionPosterior& model = known.model;
   const std::size_t place = place_of(model);
-  std::array<ModelAverage*, kAverages> averages{&joint_, direct_ ? &*direct_ : nullptr,
-                                                cascaded_ ? &cascaded_->slip() : nullptr};
+  const Averages averages = averages_of(*this);
   if (count_ > 0 || known.surfaces.empty()) {
     throw std::invalid_argument("a learner begins with surfaces before it has learned anything");
   }
@@ -208,7 +200,7 @@ std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface
   if (structure == Structure::Limited && cascaded_ && tried(Structure::Cascaded)) {
     place = kCascaded;  // what is behind limits is what the cascade learns, where there is one
   }
-  const ModelAverage* average = all_averages()[place];
+  const ModelAverage* average = averages_of(*this)[place];
   const auto& memory = surface.memories[place];
   if (average == nullptr || !memory || structure == Structure::Baseline) {
     return std::nullopt;

@@ -4,16 +4,11 @@
 #include "slipwise/linear/present.hpp"
 
 namespace slipwise {
-namespace {
-
-constexpr std::size_t kJoint = 0;
-constexpr std::size_t kCascaded = 2;
-
-}  // namespace
-
 Averages MotionHypotheses::averages() {
-  return {&joint_, direct_ && tried(Structure::Direct) ? &*direct_ : nullptr,
-          cascaded_ && tried(Structure::Cascaded) ? &cascaded_->slip() : nullptr};
+  Averages found = averages_of(*this);
+  found[kDirect] = tried(Structure::Direct) ? found[kDirect] : nullptr;
+  found[kCascaded] = tried(Structure::Cascaded) ? found[kCascaded] : nullptr;
+  return found;
 }
 
 /// What learns slip behind measured wheel speeds tells surfaces apart soonest.

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/ground_along.hpp"
 
 namespace slipwise {
 namespace {
@@ -14,13 +14,6 @@ namespace {
 SLIPWISE_TUNING(kLongestPiece, 0.1);  // [s] over which the robot's tilt is one
 constexpr double kMostPieces = 1000.0;
 constexpr double kRounding = 1e-9;
-
-/// How the ground rises seen along a heading [m/m], and how the rise ahead changes along the path [1/m].
-template <class Scalar>
-struct RiseAlong {
-  Scalar ahead, left;
-  Scalar bend_ahead, bend_left;
-};
 
 /// A robot's tilt as the cosine and sine of pitch and roll.
 template <class Scalar>
@@ -35,31 +28,6 @@ TiltAngles<Scalar> tilt_on(const RiseAlong<Scalar>& rise) {
   const Scalar tan_roll = rise.left * cos_pitch;
   const Scalar cos_roll = Scalar(1.0) / sqrt(Scalar(1.0) + tan_roll * tan_roll);
   return {cos_pitch, -(rise.ahead * cos_pitch), cos_roll, tan_roll * cos_roll};
-}
-
-template <class Scalar>
-RiseAlong<Scalar> rise_along(const Ground& ground, const std::array<Scalar, 3>& pose) {
-  using std::cos;
-  using std::sin;
-  const Scalar c = cos(pose[2]);
-  const Scalar s = sin(pose[2]);
-  if (const auto* plane = std::get_if<Grade>(&ground)) {
-    const Scalar x(plane->rise_x);
-    const Scalar y(plane->rise_y);
-    return {x * c + y * s, y * c - x * s, Scalar(0.0), Scalar(0.0)};
-  }
-  const auto& mapped = std::get<MappedGround>(ground);
-  const double c0 = std::cos(mapped.start.theta);
-  const double s0 = std::sin(mapped.start.theta);
-  const auto rise = mapped.map->rise(Scalar(mapped.start.x) + Scalar(c0) * pose[0] - Scalar(s0) * pose[1],
-                                     Scalar(mapped.start.y) + Scalar(s0) * pose[0] + Scalar(c0) * pose[1]);
-  const Scalar ch = c * Scalar(c0) - s * Scalar(s0);  // of the heading on the map
-  const Scalar sh = s * Scalar(c0) + c * Scalar(s0);
-  const Scalar x_ahead = rise.xx * ch + rise.xy * sh;
-  const Scalar y_ahead = rise.yx * ch + rise.yy * sh;
-  const Scalar x_left = rise.xy * ch - rise.xx * sh;
-  const Scalar y_left = rise.yy * ch - rise.yx * sh;
-  return {rise.x * ch + rise.y * sh, rise.y * ch - rise.x * sh, x_ahead * ch + y_ahead * sh, x_left * ch + y_left * sh};
 }
 
 /// Rows of `level` on a surface. The robot turns about the surface's normal; where the surface bends along the path,
@@ -86,23 +54,6 @@ Pose2 middle_of(const ActuatorStep& step, const Pose2& pose) {
   return compose(pose, {0.5 * step.forward, 0.5 * step.left, 0.5 * step.turn});
 }
 
-/// Roll and pitch at a stamp.
-template <class Scalar>
-std::array<Scalar, 2> tilt_at(const MeasuredTilts& measured, const Scalar& t) {
-  const auto after = std::ranges::upper_bound(measured.at, value_of(t), {}, &Tilt::t);
-  if (measured.at.empty()) {
-    return {Scalar(0.0), Scalar(0.0)};
-  }
-  if (after == measured.at.begin() || after == measured.at.end()) {
-    const Tilt& held = after == measured.at.end() ? measured.at.back() : measured.at.front();
-    return {Scalar(held.roll), Scalar(held.pitch)};
-  }
-  const Tilt& before = *std::prev(after);
-  const Scalar part = (t - Scalar(before.t)) / Scalar(after->t - before.t);
-  return {Scalar(before.roll) + part * Scalar(after->roll - before.roll),
-          Scalar(before.pitch) + part * Scalar(after->pitch - before.pitch)};
-}
-
 /// What a ground step is made of, in numbers with or without derivatives.
 template <class Scalar>
 struct StepParts {
@@ -115,8 +66,8 @@ template <class Scalar>
 StepParts<Scalar> measured_parts(const MeasuredTilts& measured, const Scalar& start, const Scalar& duration) {
   using std::cos;
   using std::sin;
-  const auto tilt = tilt_at(measured, start + Scalar(0.5) * duration);
-  const Scalar pitched = tilt_at(measured, start + duration)[1] - tilt_at(measured, start)[1];
+  const auto tilt = roll_and_pitch(measured, start + Scalar(0.5) * duration);
+  const Scalar pitched = roll_and_pitch(measured, start + duration)[1] - roll_and_pitch(measured, start)[1];
   const TiltAngles<Scalar> at{cos(tilt[1]), sin(tilt[1]), cos(tilt[0]), sin(tilt[0])};
   const Scalar zero(0.0);
   const Scalar vertical = Scalar(1.0) / (at.cos_roll * at.cos_pitch);

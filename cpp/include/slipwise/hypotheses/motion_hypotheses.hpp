@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "slipwise/filter/motion_posterior.hpp"
@@ -138,13 +139,19 @@ class MotionHypotheses {
   bool tried(Structure structure) const { return tried_[static_cast<std::size_t>(structure)]; }
   double weight(Structure structure) const { return weights_[static_cast<std::size_t>(structure)]; }
   void join_cascade();
-  Averages averages();
+  /// Of the structures that may come to be tried.
+  template <class Self>
+  static auto averages_of(Self& self) {
+    using Average = std::conditional_t<std::is_const_v<Self>, const ModelAverage, ModelAverage>;
+    return std::array<Average*, kAverages>{&self.joint_, self.direct_ ? &*self.direct_ : nullptr,
+                                           self.cascaded_ ? &self.cascaded_->slip() : nullptr};
+  }
+  Averages averages();  ///< of those that are tried
   std::size_t leader() const;
   ScoredSegment predict(Structure structure);
   ModelAverage* average_of(Structure structure);
   ScoredSegment learned(const ModelAverage& average, Structure structure);
   void favour(Structure structure);
-  std::array<const ModelAverage*, kAverages> all_averages() const;
   Surface completed(const KnownSurface& known, std::size_t place) const;
   void update_weights();
   void drop_refuted();

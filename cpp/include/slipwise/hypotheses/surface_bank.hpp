@@ -16,6 +16,7 @@ namespace slipwise {
 
 /// The averages of one learner, each of which remembers every surface in its own terms; nothing where one is not tried.
 inline constexpr std::size_t kAverages = 3;
+inline constexpr std::size_t kJoint = 0, kDirect = 1, kCascaded = 2;  ///< which is whose
 using Averages = std::array<ModelAverage*, kAverages>;
 
 struct Surface {
