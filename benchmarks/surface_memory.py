@@ -178,17 +178,17 @@ def main() -> int:
         orders = list(itertools.permutations(GROUNDS))[: 2 if arguments.quick else None]
         visits = [v for same in (False, True) for order in orders for v in robot.visits(order, same=same)]
         first = [v for v in visits if not v.second and v.order.split()[0] not in v.log]
-        told = "with labels" if labels else "without labels"
-        print_visits(first, f"{input_name}, {told}: first visits, other surfaces being known")
+        labelling = "with labels" if labels else "without labels"
+        print_visits(first, f"{input_name}, {labelling}: first visits, other surfaces being known")
         print_visits(
             [v for v in visits if v.second and "other" in v.order],
-            f"{input_name}, {told}: second visits, other logs",
+            f"{input_name}, {labelling}: second visits, other logs",
         )
         print_visits(
             [v for v in visits if v.second and "same" in v.order],
-            f"{input_name}, {told}: second visits, same logs",
+            f"{input_name}, {labelling}: second visits, same logs",
         )
-        content["real"][f"{input_name}, {told}"] = [asdict(v) for v in visits]
+        content["real"][f"{input_name}, {labelling}"] = [asdict(v) for v in visits]
     for data in data_sets(folder) if folder else []:
         if data.name in FEW:
             log = slipwise.open_log(data.path)

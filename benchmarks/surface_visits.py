@@ -167,18 +167,20 @@ def labelled_visits(noise: str, visits: int, wrong: float, seed: int) -> Labelle
     ]
     labels = tuple(f"floor {k}" for k in named)
     alone = learn_sequence(drives, Settings(), (SIMULATED_HORIZON,))
-    told = learn_sequence(drives, Settings(), (SIMULATED_HORIZON,), options=SequenceOptions(labels=labels))
+    labelled = learn_sequence(
+        drives, Settings(), (SIMULATED_HORIZON,), options=SequenceOptions(labels=labels)
+    )
     known = [i for i, k in enumerate(truth) if k in set(truth[:i])]
 
     def heading(learned: LearnedSequence, count: int | None) -> float:
         return float(np.mean([learned.logs[i].predictions[0].heading_error[:count].mean() for i in known]))
 
-    judged, right = told.labels
+    judged, right = labelled.labels
     return LabelledVisits(
         noise,
         wrong,
-        heading(told, 3) / heading(alone, 3),
-        heading(told, None) / heading(alone, None),
+        heading(labelled, 3) / heading(alone, 3),
+        heading(labelled, None) / heading(alone, None),
         right / max(judged, 1.0),
     )
 

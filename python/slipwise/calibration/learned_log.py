@@ -135,15 +135,15 @@ def pushed(
     Args:
         learner: what is given the measurements.
         drive: the runs, in the order of time.
-        cues: of each run, when somebody named the surface; the learner is told at that time.
+        cues: of each run, when somebody named the surface; the learner gets the name at that time.
     """
     for place, run in enumerate(drive):
         learner.start_run()
-        told = dict(cues[place]) if place < len(cues) else {}
-        edges = np.unique([*np.linspace(*run.run.span, STEPS + 1)[1:-1], *told])
+        names = dict(cues[place]) if place < len(cues) else {}
+        edges = np.unique([*np.linspace(*run.run.span, STEPS + 1)[1:-1], *names])
         for k, since in enumerate([-np.inf, *edges.tolist()]):
-            if since in told:
-                learner.cue_surface(told[since])
+            if since in names:
+                learner.cue_surface(names[since])
             until = float(edges[k]) if k < len(edges) else np.inf
             learner.push(recording_of(run.run, since, until))
             yield (place + (k + 1) / (len(edges) + 1)) / len(drive)
