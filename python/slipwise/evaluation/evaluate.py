@@ -85,7 +85,7 @@ def evaluate(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
         methods=tuple(methods),
-        scores=_scores(predictions, contest.targets),
+        scores=_scores(predictions, _baseline(predictions, contest), contest.targets),
         predictions=tuple(predictions),
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
@@ -95,6 +95,12 @@ def evaluate(
         ),
         models=tuple(models),
     )
+
+
+def _baseline(predictions: Sequence[Predictions], contest: Contest) -> dict[float, Predictions]:
+    """Predictions of no slip by horizon, that ratios are relative to; made here where not asked for."""
+    asked = [each for each in predictions if each.method == "none"]
+    return {each.horizon: each for each in asked or method_info("none", {}).predict("none", contest)}
 
 
 def _made(name: str, options: EvaluationOptions, contest: Contest) -> tuple[Predictions, ...] | None:
@@ -167,20 +173,22 @@ def _learned_from(log: Log, model: Model) -> bool:
     return any(source.sha256 in hashes for source in log.sources)
 
 
-def _scores(predictions: Sequence[Predictions], sets: Sequence[WindowSet]) -> tuple[Score, ...]:
+def _scores(
+    predictions: Sequence[Predictions], baseline: Mapping[float, Predictions], sets: Sequence[WindowSet]
+) -> tuple[Score, ...]:
     scores = []
     for targets in sets:
         group = [p for p in predictions if p.horizon == targets.length]
         distance = float(targets.distances()[held_out_half(len(targets))].mean())
-        scores += [_score(p, group, distance) for p in group]
+        scores += [_score(p, baseline[targets.length], group, distance) for p in group]
     return tuple(scores)
 
 
-def _score(predictions: Predictions, group: Sequence[Predictions], distance: float) -> Score:
+def _score(
+    predictions: Predictions, baseline: Predictions, group: Sequence[Predictions], distance: float
+) -> Score:
     half = held_out_half(len(predictions))
     position, heading = predictions.position_error[half], predictions.heading_error[half]
-    plain = next((p for p in group if p.method == "none"), None)
-    undefined = (float("nan"),) * 3
     nis = predictions.nis[half]
     return Score(
         method=predictions.method,
@@ -190,8 +198,8 @@ def _score(predictions: Predictions, group: Sequence[Predictions], distance: flo
         position=summarise(position),
         heading=summarise(heading),
         percent_of_distance=float(100.0 * position.mean() / distance) if distance > 0.0 else float("nan"),
-        position_ratio=ratio_of_means(position, plain.position_error[half]) if plain else undefined,
-        heading_ratio=ratio_of_means(heading, plain.heading_error[half]) if plain else undefined,
+        position_ratio=ratio_of_means(position, baseline.position_error[half]),
+        heading_ratio=ratio_of_means(heading, baseline.heading_error[half]),
         position_to_rival=_to_rival(predictions, group, "position_error"),
         heading_to_rival=_to_rival(predictions, group, "heading_error"),
         in_sample_position=float(predictions.in_sample[half, 0].mean()),

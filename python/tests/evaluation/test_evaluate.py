@@ -64,6 +64,14 @@ def test_ratios_are_relative_to_the_baseline_model_and_to_the_best_rival(evaluat
     assert scores["auto"].heading_to_rival == pytest.approx(scores["auto"].heading.mean / best)
 
 
+def test_ratios_stand_where_the_baseline_model_was_not_asked_for(log: Log, evaluation: Evaluation) -> None:
+    alone = evaluate(log, input="wheel", options=EvaluationOptions(horizons=(2.0,), methods=("edd-2",)))
+    asked = evaluation.score("edd-2", 2.0)
+    assert alone.score("edd-2", 2.0).position_ratio == asked.position_ratio
+    assert alone.score("edd-2", 2.0).heading_ratio == asked.heading_ratio
+    assert {p.method for p in alone.predictions} == {"edd-2"}
+
+
 def test_vendor_multiplier_that_is_true_leaves_no_heading_error(evaluation: Evaluation) -> None:
     assert evaluation.score("vendor", 5.0).heading.mean < 0.03
     assert evaluation.score("none", 5.0).heading.mean > 0.2
