@@ -5,6 +5,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
@@ -87,7 +88,7 @@ void bind_trajectory(nb::module_& m) {
           },
           "model"_a, "parameters"_a, "limits"_a, "settings"_a, "start"_a, "of_drive"_a.none(),
           "Commands are planned within `limits`; those `of_drive` lie behind the commands.")
-      .def("to", &TrajectoryPlanner::to, "goal"_a, "start"_a);
+      .def("to", &TrajectoryPlanner::to, "goal"_a, "start"_a, "ground"_a.none() = nb::none());
 }
 
 void bind_mppi_settings(nb::module_& m) {

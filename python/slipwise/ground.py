@@ -99,6 +99,10 @@ class ElevationMap:
             raise _beside("the path begins", pose)
         return _core.Ground.mapped(self._core_map, _core.Pose2(*pose))
 
+    def holds(self, poses: Floats) -> bool:
+        """Whether all poses [N, 3] lie on the map."""
+        return all(self._core_map.holds(x, y) for x, y, _ in poses.tolist())
+
     def check(self, poses: Floats) -> None:
         """Refuse poses [N, 3] that lie beside the map.
 

@@ -12,11 +12,13 @@
 #include "slipwise/actuator/axis_response.hpp"
 #include "slipwise/actuator/axis_stepper.hpp"
 #include "slipwise/actuator/command_limiter.hpp"
+#include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/path_step.hpp"
 
 namespace slipwise {
 namespace {
 
+constexpr double kNoStamp = 0.0;                                      // [s]; a plane or a map is the same at any time
 using StepJacobian = Eigen::Matrix<double, 4, kManoeuvreParameters>;  // duration, forward, left, turn
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLongestStep = ActuatorSpan{.start = 0.0, .end = 0.0}.longest_step;  // [s]
@@ -39,32 +41,72 @@ AxisStepper<N> started(const AxisResponse& response, double drive, double comman
 /// The pose as it grows, and the sums that give its derivative.
 class GrowingEnd {
  public:
-  explicit GrowingEnd(const PlanningModel& model)
-      : model_(model),
-        along_{.basis = model.basis(), .alpha = model.alpha(), .gravity = {}},
-        features_(model.basis().size()) {}
+  GrowingEnd(const PlanningModel& model, const Ground* ground)
+      : model_(model), ground_(ground), features_(model.basis().size()) {}
 
   /// Drives one step; `jacobian` is null where no derivative is asked for.
   void drive(const ActuatorStep& step, const StepJacobian* jacobian) {
-    model_.basis().features(slip_state(step, BodyGravity{}), features_);
-    const Eigen::Vector3d slip = slip_rate(model_.basis(), model_.alpha(), features_);
-    const Eigen::Vector3d tangent = tangent_of(step, slip);
-    const auto arc = arc_functions(tangent.z());
-    const Eigen::Vector2d moved = heading_ * (arc_matrix(arc) * tangent.head<2>());
-    pose_ = {pose_.x + moved.x(), pose_.y + moved.y(), pose_.theta + tangent.z()};
-    if (jacobian != nullptr) {
-      sums_.noalias() += start_by_tangent(heading_, tangent, arc, pose_) * tangent_by(step, *jacobian, along_, slip);
+    if (ground_ == nullptr) {
+      drive_level(step, jacobian);
+    } else if (jacobian == nullptr) {
+      const GroundStep at = ground_step(*ground_, step, pose_, kNoStamp);
+      move(at.seen_from_above(tangent_of(step, slip_at(step, at.gravity))));
+    } else {
+      drive_linearized(step, *jacobian, linearize_ground_step(*ground_, step, pose_, kNoStamp));
     }
-    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
-    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
   }
 
   const Pose2& pose() const { return pose_; }
   ManoeuvreJacobian jacobian() const { return transition(Pose2{}, pose_) * sums_; }
 
  private:
+  PathSlip along(const BodyGravity& gravity) const {
+    return {.basis = model_.basis(), .alpha = model_.alpha(), .gravity = gravity};
+  }
+
+  Eigen::Vector3d slip_at(const ActuatorStep& step, const BodyGravity& gravity) {
+    model_.basis().features(slip_state(step, gravity), features_);
+    return slip_rate(model_.basis(), model_.alpha(), features_);
+  }
+
+  void drive_level(const ActuatorStep& step, const StepJacobian* jacobian) {
+    const Eigen::Vector3d slip = slip_at(step, {});
+    const Eigen::Vector3d tangent = tangent_of(step, slip);
+    const Eigen::Matrix2d heading = heading_;
+    const auto arc = move(tangent);
+    if (jacobian != nullptr) {
+      sums_.noalias() += start_by_tangent(heading, tangent, arc, pose_) * tangent_by(step, *jacobian, along({}), slip);
+    }
+  }
+
+  /// The place of the step moves its tilt, so that what was driven before it counts too.
+  void drive_linearized(const ActuatorStep& step, const StepJacobian& jacobian, const GroundStepLinearization& at) {
+    const PathSlip slips = along(at.step.gravity);
+    const Eigen::Vector3d slip = slip_at(step, at.step.gravity);
+    const Eigen::Vector3d body = tangent_of(step, slip);
+    const Eigen::Vector3d tangent = at.step.seen_from_above(body);
+    const Eigen::Matrix2d heading = heading_;
+    const Pose2 before = pose_;
+    const auto arc = move(tangent);
+    const Eigen::Matrix3d by_tangent = start_by_tangent(heading, tangent, arc, pose_);
+    const Eigen::Matrix3d by_place = by_tangent * above_by_place(at, step, slips, body);
+    sums_ += (by_place * (at.at_by_pose * transition(Pose2{}, before) * sums_ + at.at_by_step * jacobian) +
+              by_tangent * at.step.level * tangent_by(step, jacobian, slips, slip))
+                 .eval();
+  }
+
+  /// Appends an exact arc as it is seen from above.
+  ArcFunctions<double> move(const Eigen::Vector3d& tangent) {
+    const auto arc = arc_functions(tangent.z());
+    const Eigen::Vector2d moved = heading_ * (arc_matrix(arc) * tangent.head<2>());
+    pose_ = {pose_.x + moved.x(), pose_.y + moved.y(), pose_.theta + tangent.z()};
+    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
+    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
+    return arc;
+  }
+
   const PlanningModel& model_;
-  PathSlip along_;
+  const Ground* ground_;
   std::vector<double> features_;
   Pose2 pose_;
   Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
@@ -74,9 +116,10 @@ class GrowingEnd {
 /// Walks over the moments at which a delayed command begins to act in one of the channels.
 class ManoeuvreWalk {
  public:
-  ManoeuvreWalk(const PlanningModel& model, const HeldCommands& held, const ActuatorState& start)
-      : ManoeuvreWalk(model, limited_commands(held, model.limits(), start.commanded), start,
-                      settled(model.limits(), start.commanded)) {}
+  ManoeuvreWalk(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
+                const ActuatorState& start)
+      : ManoeuvreWalk(model, frame.ground.get(),
+                      limited_commands(held_commands(frame, parameters), model.limits(), start.commanded), start) {}
 
   template <bool kDerivatives>
   void run() {
@@ -111,15 +154,20 @@ class ManoeuvreWalk {
   ManoeuvreJacobian jacobian() const { return end_.jacobian(); }
 
  private:
+  ManoeuvreWalk(const PlanningModel& model, const Ground* ground, HeldCommands held, const ActuatorState& start)
+      : ManoeuvreWalk(model, ground, std::move(held), start, settled(model.limits(), start.commanded)) {}
+
   /// `commanded` is what the limits gave before the start.
-  ManoeuvreWalk(const PlanningModel& model, HeldCommands held, const ActuatorState& start, const BodyTwist& commanded)
+  ManoeuvreWalk(const PlanningModel& model, const Ground* ground, HeldCommands held, const ActuatorState& start,
+                const BodyTwist& commanded)
       : actuator_(model.actuator()),
         held_(std::move(held)),
         v_(started<1>(speed_response(model.actuator()), start.drive.v, commanded.v, fast_of(start, &BodyTwist::v))),
         vy_(started<1>(speed_response(model.actuator()), start.drive.vy, commanded.vy, fast_of(start, &BodyTwist::vy))),
         omega_(started<kManoeuvreParameters>(yaw_rate_response(model.actuator()), start.drive.omega, commanded.omega,
                                              fast_of(start, &BodyTwist::omega))),
-        end_(model) {}
+        tilted_(ground != nullptr),
+        end_(model, ground) {}
 
   static std::optional<double> fast_of(const ActuatorState& start, double BodyTwist::* channel) {
     return start.fast ? std::optional<double>((*start.fast).*channel) : std::nullopt;
@@ -154,7 +202,8 @@ class ManoeuvreWalk {
   void subdivide(const Knot& from, const Knot& to) {
     const bool lagging =
         speed_response(actuator_).longest_lag() > 0.0 || yaw_rate_response(actuator_).longest_lag() > 0.0;
-    const int parts = lagging ? lag_parts(to.t - from.t, kLongestStep) : 1;
+    const int for_tilt = tilted_ ? static_cast<int>(ground_pieces(to.t - from.t)) : 1;
+    const int parts = std::max(lagging ? lag_parts(to.t - from.t, kLongestStep) : 1, for_tilt);
     const double duration = (to.t - from.t) / parts;
     const AxisDecay decay_v(speed_response(actuator_), duration), decay_omega(yaw_rate_response(actuator_), duration);
     for (int i = 0; i < parts; ++i) {
@@ -184,6 +233,7 @@ class ManoeuvreWalk {
   YawRateAxis omega_;
   std::size_t next_v_ = 0;
   std::size_t next_omega_ = 0;
+  bool tilted_;
   GrowingEnd end_;
   ManoeuvrePath* path_ = nullptr;
 };
@@ -204,7 +254,7 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
 
 Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                      const ActuatorState& start) {
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
+  ManoeuvreWalk walk(model, frame, parameters, start);
   walk.run<false>();
   return walk.pose();
 }
@@ -212,7 +262,7 @@ Pose2 manoeuvre_pose(const PlanningModel& model, const ManoeuvreFrame& frame, co
 ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& frame, const ManoeuvreVector& parameters,
                              const ActuatorState& start) {
   ManoeuvrePath path;
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
+  ManoeuvreWalk walk(model, frame, parameters, start);
   walk.record(path);
   walk.run<false>();
   path.drive = walk.drive();
@@ -222,7 +272,7 @@ ManoeuvrePath manoeuvre_path(const PlanningModel& model, const ManoeuvreFrame& f
 
 ManoeuvreEnd linearize_manoeuvre(const PlanningModel& model, const ManoeuvreFrame& frame,
                                  const ManoeuvreVector& parameters, const ActuatorState& start) {
-  ManoeuvreWalk walk(model, held_commands(frame, parameters), start);
+  ManoeuvreWalk walk(model, frame, parameters, start);
   walk.run<true>();
   return {walk.pose(), walk.jacobian()};
 }

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "slipwise/actuator/axis_response.hpp"
@@ -185,7 +187,9 @@ ReachProblem TrajectoryPlanner::problem(const ActuatorState& start, double cruis
   return {.model = model_, .frame = frame, .start = start, .bounds = bounds};
 }
 
-Trajectory TrajectoryPlanner::to(const Pose2& goal, const ActuatorState& start) const {
+Trajectory TrajectoryPlanner::to(const Pose2& goal, const ActuatorState& start,
+                                 const std::shared_ptr<const Ground>& ground) const {
+  need(!ground || !std::holds_alternative<MeasuredTilts>(*ground), "a plan needs a plane or a map, not an attitude");
   need(goal.vector().allFinite(), "the goal is not finite; give x and y in metres and the heading in radians");
   Trajectory best{.gap_xy = std::hypot(goal.x, goal.y), .gap_yaw = std::abs(wrap_angle(goal.theta))};
   std::vector<ManoeuvreVector> guesses;
@@ -197,7 +201,8 @@ Trajectory TrajectoryPlanner::to(const Pose2& goal, const ActuatorState& start) 
   bool found = false;
   double cruise = settings_.cruise;
   for (int slower = 0; slower < kSlower; ++slower, cruise *= 0.5) {
-    const ReachProblem start_of_all = problem(start, cruise);
+    ReachProblem start_of_all = problem(start, cruise);
+    start_of_all.frame.ground = ground;
     ManoeuvreFrame frame = start_of_all.frame;
     Reach nearest{.parameters = ManoeuvreVector::Zero()};
     bool first = true;

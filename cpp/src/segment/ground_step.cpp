@@ -123,12 +123,16 @@ Eigen::Matrix3d GroundStepLinearization::above_by(const Eigen::Vector3d& tangent
   return derivative;
 }
 
+std::size_t ground_pieces(double duration) {
+  return static_cast<std::size_t>(
+      std::min(std::max(1.0, std::ceil(duration / kLongestPiece - kRounding)), kMostPieces));
+}
+
 void cut_for_ground(ActuatorSteps& drive) {
   ActuatorSteps cut;
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
-    const auto pieces = static_cast<std::size_t>(
-        std::min(std::max(1.0, std::ceil(step.duration / kLongestPiece - kRounding)), kMostPieces));
+    const std::size_t pieces = ground_pieces(step.duration);
     const double part = 1.0 / static_cast<double>(pieces);
     for (std::size_t i = 0; i < pieces; ++i) {
       cut.steps.push_back({step.duration * part, step.forward * part, step.left * part, step.turn * part});
@@ -165,6 +169,12 @@ GroundStepLinearization linearize_ground_step(const Ground& ground, const Actuat
   at.at_by_step.block<2, 2>(0, 1) = half;
   at.at_by_step(2, 3) = 0.5;
   return at;
+}
+
+Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
+                               const Eigen::Vector3d& body) {
+  const auto by_gravity = slip_rate_by_gravity(along.basis, along.alpha, slip_state(step, along.gravity));
+  return ground.above_by(body) + ground.step.level * by_gravity * ground.gravity_by * step.duration;
 }
 
 Eigen::Matrix<double, 3, 2> slip_rate_by_gravity(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,

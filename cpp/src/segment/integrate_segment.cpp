@@ -148,13 +148,6 @@ struct SensitivitySums {
   }
 };
 
-/// Derivative of a step's tangent, seen from above, by what the ground is evaluated at.
-Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
-                               const Eigen::Vector3d& body) {
-  const auto by_gravity = slip_rate_by_gravity(along.basis, along.alpha, slip_state(step, along.gravity));
-  return ground.above_by(body) + ground.step.level * by_gravity * ground.gravity_by * step.duration;
-}
-
 /// What a step is driven on, and how that follows from the parameters; nothing on level ground.
 struct GroundUnder {
   GroundStep step;

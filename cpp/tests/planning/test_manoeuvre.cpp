@@ -11,7 +11,7 @@
 namespace slipwise {
 namespace {
 
-constexpr ManoeuvreFrame kFrame{
+const ManoeuvreFrame kFrame{
     .speeds = {.start = 0.2, .cruise = 1.0, .end = 0.4}, .acceleration = 0.5, .direction = 1.0, .commands = 16};
 
 ManoeuvreVector bent() {

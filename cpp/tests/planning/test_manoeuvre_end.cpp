@@ -2,6 +2,8 @@
 // Where a manoeuvre leads: as the integrator says, with the exact derivative by every parameter.
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "sample_manoeuvres.hpp"
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/planning/manoeuvre_end.hpp"
+#include "slipwise/segment/elevation_map.hpp"
+#include "slipwise/segment/ground.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -100,6 +104,58 @@ TEST_CASE("a manoeuvre's end has the exact derivative by every parameter, over a
     for (const double end_speed : {0.0, 0.7}) {
       CAPTURE(sample.name);
       const ManoeuvreFrame frame = sample_frame(1.0, end_speed);
+      const PlanningModel model(sample.motion, sample.parameters);
+      const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
+        return manoeuvre_pose(model, frame, p, kStart).vector();
+      };
+      const auto numeric = tests::finite_difference(value, sample_parameters(), 1e-4);
+      const ManoeuvreJacobian exact = linearize_manoeuvre(model, frame, sample_parameters(), kStart).by;
+      CHECK(tests::jacobian_error(exact, numeric, 0.1) < 10.0 * tests::kDerivativeTolerance);
+    }
+  }
+}
+
+/// A plane, and a map of rounded hills; both as seen from the start.
+std::vector<std::shared_ptr<const Ground>> sample_grounds() {
+  Eigen::MatrixXd elevation(41, 41);
+  for (Eigen::Index row = 0; row < elevation.rows(); ++row) {
+    for (Eigen::Index column = 0; column < elevation.cols(); ++column) {
+      elevation(row, column) =
+          0.5 * std::sin(0.4 * static_cast<double>(column)) * std::cos(0.3 * static_cast<double>(row));
+    }
+  }
+  const auto map = std::make_shared<const ElevationMap>(elevation, Eigen::Vector2d(-10.0, -10.0), 0.5);
+  return {std::make_shared<const Ground>(Grade{0.12, -0.2}),
+          std::make_shared<const Ground>(MappedGround{.map = map, .start = {0.4, -0.3, 0.7}})};
+}
+
+TEST_CASE("on a plane and on hills a manoeuvre ends where the integrator says, over all bases and chains") {
+  for (const tests::SampleModel& sample : tests::sample_models()) {
+    for (const auto& ground : sample_grounds()) {
+      CAPTURE(sample.name);
+      ManoeuvreFrame frame = sample_frame(1.0, 0.0);
+      const PlanningModel model(sample.motion, sample.parameters);
+      const HeldCommands held = held_commands(frame, sample_parameters());
+      const double end = frame.commands * held.period.value + frame.settling;
+      const Segment segment{.start = 0.0, .end = end, .initial = kStart.drive, .ground = ground};
+      const Pose2 expected = integrate_segment(sample.motion, sample.parameters, track_of(held), segment).poses.back();
+      const Pose2 level = manoeuvre_pose(model, frame, sample_parameters(), kStart);
+      frame.ground = ground;
+      const Pose2 pose = manoeuvre_pose(model, frame, sample_parameters(), kStart);
+      CHECK((pose.vector() - expected.vector()).norm() < 1e-9);
+      CHECK((pose.vector() - level.vector()).norm() > 1e-2);
+      const Pose2 linearized = linearize_manoeuvre(model, frame, sample_parameters(), kStart).pose;
+      CHECK((linearized.vector() - pose.vector()).norm() < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("on a plane and on hills the derivative of a manoeuvre's end is exact") {
+  for (const tests::SampleModel& sample : tests::sample_models()) {
+    for (const auto& ground : sample_grounds()) {
+      CAPTURE(sample.name);
+      ManoeuvreFrame frame = sample_frame(1.0, 0.7);
+      frame.ground = ground;
       const PlanningModel model(sample.motion, sample.parameters);
       const auto value = [&](const Eigen::VectorXd& p) -> Eigen::VectorXd {
         return manoeuvre_pose(model, frame, p, kStart).vector();

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
 #include "sample_manoeuvres.hpp"
 #include "slipwise/lie/angle.hpp"
 #include "slipwise/planning/trajectory.hpp"
+#include "slipwise/segment/ground.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
 
 namespace slipwise {
@@ -24,13 +26,14 @@ TrajectorySettings quick_settings(double end_speed) {
 
 tests::SampleModel skidding(bool dynamics) { return tests::sample_model(named_basis("odd-even-10"), dynamics); }
 
-Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const ActuatorState& start) {
+Pose2 driven(const tests::SampleModel& sample, const Trajectory& plan, const ActuatorState& start,
+             const std::shared_ptr<const Ground>& ground = {}) {
   std::vector<double> t{-100.0}, v{start.commanded.v}, omega{start.commanded.omega};
   t.insert(t.end(), plan.t.begin(), plan.t.end());
   v.insert(v.end(), plan.v.begin(), plan.v.end());
   omega.insert(omega.end(), plan.omega.begin(), plan.omega.end());
   const std::vector<double> vy(t.size(), 0.0);
-  const Segment segment{.start = 0.0, .end = plan.path.t.back(), .initial = start.drive};
+  const Segment segment{.start = 0.0, .end = plan.path.t.back(), .initial = start.drive, .ground = ground};
   return integrate_segment(sample.motion, sample.parameters, InputHistory(t, v, vy, omega), segment).poses.back();
 }
 
@@ -75,6 +78,42 @@ TEST_CASE("trajectories reach reachable goals within all limits, with and withou
   check_goals(skidding(true), 0.0, {});
   const BodyTwist moving{.v = 0.8, .vy = 0.0, .omega = 0.3};
   check_goals(skidding(true), 0.6, {.drive = moving, .commanded = moving});
+}
+
+TEST_CASE("on a hillside trajectories end at goals that level plans miss") {
+  const tests::SampleModel sample = tests::sample_model(named_basis("odd-even-13"), true);
+  const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.0), {});
+  const auto hillside = std::make_shared<const Ground>(Grade{0.05, 0.2});
+  ReachProblem problem = planner.problem({}, planner.settings().cruise);
+  std::mt19937_64 random(12);
+  int reached = 0;
+  double missed = 0.0;
+  constexpr int kGoals = 40;
+  for (int i = 0; i < kGoals; ++i) {
+    const ManoeuvreVector hidden = tests::random_manoeuvre(problem.bounds, random);
+    problem.frame.ground = hillside;
+    const Pose2 goal = manoeuvre_pose(problem.model, problem.frame, hidden, {});
+    const Trajectory plan = planner.to(goal, {}, hillside);
+    if (plan.status != TrajectoryStatus::Reached) {
+      continue;
+    }
+    ++reached;
+    const Pose2 end = driven(sample, plan, {}, hillside);
+    CHECK(std::hypot(end.x - goal.x, end.y - goal.y) < 1.1e-3);
+    CHECK(std::abs(wrap_angle(end.theta - goal.theta)) < 1.1e-3);
+    check_limits(plan, 0.0);
+    const Pose2 as_if_level = driven(sample, planner.to(goal, {}), {}, hillside);
+    missed += std::hypot(as_if_level.x - goal.x, as_if_level.y - goal.y);
+  }
+  CHECK(reached >= kGoals - 2);
+  CHECK(missed / reached > 0.05);
+}
+
+TEST_CASE("a plan refuses an attitude that was measured for ground") {
+  const tests::SampleModel sample = skidding(false);
+  const TrajectoryPlanner planner({sample.motion, sample.parameters}, kLimits, quick_settings(0.0), {});
+  const auto measured = std::make_shared<const Ground>(MeasuredTilts{{{0.0, 0.1, 0.0}}});
+  CHECK_THROWS_AS(planner.to({2.0, 0.0, 0.0}, {}, measured), std::invalid_argument);
 }
 
 TEST_CASE("a trajectory goes on from where another one ended, though commands are still on their way then") {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from slipwise.cli.options import Json, ModelFile, optional
+from slipwise.cli.options import GRADE_HELP, Json, ModelFile, optional
 from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ def lattice(
     headings: Annotated[int, typer.Option(metavar="N", help="A multiple of 8.")] = 16,
     turns: Annotated[int, typer.Option(metavar="N", help="Headings a primitive turns by at most.")] = 3,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one primitive.")] = 6.0,
+    grade: Annotated[str | None, optional("SLOPE,DOWNHILL", GRADE_HELP)] = None,
     curvature: Annotated[float | None, optional("1/M", "Largest of commands; by the model's range.")] = None,
     picture: Annotated[
         bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
@@ -35,7 +36,8 @@ def lattice(
     """Write state-lattice primitives that the robot can really drive, for Nav2's Smac lattice planner.
 
     lattice.json is what `lattice_filepath` names: every primitive has the slip that the model learned, at one
-    speed. curvature.csv and curvature.png say what curvature the robot holds at what speed and command.
+    speed, on a slope each heading its own. curvature.csv and curvature.png say what curvature the robot holds
+    at what speed and command on level ground.
     A model with a bad verdict is refused with exit code 1 unless --force is given.
 
     \b
@@ -43,12 +45,14 @@ def lattice(
       slipwise lattice model.yaml -o lattice/
       slipwise lattice model.yaml -o lattice/ --speed 0.8 --grid 0.1 --longest 10
       slipwise lattice model.yaml --headings 24 --curvature 0.8 --no-picture
+      slipwise lattice model.yaml --grade 8,-90
     """  # noqa: D301
     from dataclasses import replace
     from json import loads
 
     from slipwise.cli.bad_verdict import say_refused
     from slipwise.cli.document import head
+    from slipwise.cli.numbers import grade_of
     from slipwise.cli.output import Output
     from slipwise.cli.tables import show_files
     from slipwise.cli.writable import refuse_unwritable
@@ -73,9 +77,8 @@ def lattice(
     if drawn:
         write_curvature_picture(files["picture"], held, model.name)
     _write_table(files["curvature"], held)
-    text = write_lattice(files["lattice"], learned, options=options, limits=limits).read_text(
-        encoding="utf-8"
-    )
+    written = write_lattice(files["lattice"], learned, options=options, limits=limits, grade=grade_of(grade))
+    text = written.read_text(encoding="utf-8")
     metadata = loads(text)["lattice_metadata"]
     notes = [left_out] if left_out else []
     content = {"exit_code": 0, "files": files, "notes": notes, "lattice_metadata": metadata}

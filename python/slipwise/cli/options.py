@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from slipwise.logs import LogOptions
 
 
+GRADE_HELP = "Ground that falls by SLOPE towards DOWNHILL, both in degrees, 0 along x."
+
+
 class InputName(StrEnum):
     """What a model is learned from."""
 

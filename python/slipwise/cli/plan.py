@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from slipwise.cli.options import Json, optional
+from slipwise.cli.options import GRADE_HELP, Json, optional
 from slipwise.cli.pictures import PICTURE_HELP, missing_picture
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ def plan(
     radius: Annotated[float, typer.Option(metavar="METRES", help="Of a disc that covers the robot.")] = 0.5,
     cruise: Annotated[float | None, optional("M/S", "Speed; 0.7 of the model's range by default.")] = None,
     longest: Annotated[float, typer.Option(metavar="METRES", help="Of one manoeuvre.")] = 10.0,
+    grade: Annotated[str | None, optional("SLOPE,DOWNHILL", GRADE_HELP)] = None,
     picture: Annotated[
         bool | None, typer.Option("--picture/--no-picture", help=PICTURE_HELP, show_default=False)
     ] = None,
@@ -48,8 +49,10 @@ def plan(
     Examples:
       slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57
       slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57 --radius 0.8 -o dock
+      slipwise plan --model model.yaml --map map.yaml --from 1,2,0 --to 8,5,1.57 --grade 8,-90
     """  # noqa: D301
     from slipwise.cli.document import head
+    from slipwise.cli.numbers import grade_of, pose_of
     from slipwise.cli.output import Output
     from slipwise.cli.tables import show_files
     from slipwise.cli.writable import refuse_unwritable
@@ -65,12 +68,13 @@ def plan(
     kinds = ("png", "html", "csv") if picture is not False and not left_out else ("html", "csv")
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in kinds}
     refuse_unwritable(*files.values(), out.written_file, inputs=(model, map_file, image_of(map_file)))
-    begin, end = _pose(start, "--from"), _pose(goal, "--to")
+    begin, end = pose_of(start, "--from"), pose_of(goal, "--to")
     planner = RoutePlanner(
         learned,
         grid,
         options=TrajectoryOptions(cruise=cruise, longest=longest),
         search=RouteOptions(radius=radius, seed=seed),
+        ground=grade_of(grade),
     )
     drawn = Plan(planner.route(begin, end), grid, radius, begin, end, f"{model.name} on {map_file.name}")
     _write(files, drawn)
@@ -80,20 +84,6 @@ def plan(
         out.line(sentence)
     show_files(out, files)
     return 0
-
-
-def _pose(text: str, option: str) -> tuple[float, float, float]:
-    import math
-
-    try:
-        x, y, yaw = (float(part) for part in text.split(","))
-    except ValueError:
-        x = y = yaw = math.nan
-    if not all(map(math.isfinite, (x, y, yaw))):
-        from slipwise.errors import SettingsError
-
-        raise SettingsError(f"{text!r} is no pose", where=option, advice="give X,Y,YAW, such as 1.5,2,0.3")
-    return x, y, yaw
 
 
 def _write(files: dict[str, Path], drawn: Plan) -> None:

@@ -6,9 +6,10 @@ from __future__ import annotations
 import itertools
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
 from slipwise.files import write_text_whole
+from slipwise.ground import Grade
 from slipwise.models.model import Model
 from slipwise.planning.holdable import curvature_map
 from slipwise.planning.limits import Limits, limits_of
@@ -70,12 +72,17 @@ def heading_angles(count: int) -> Floats:
 
 
 def lattice_primitives(
-    model: Model, *, options: LatticeOptions = LatticeOptions(), limits: Limits | None = None
+    model: Model,
+    *,
+    options: LatticeOptions = LatticeOptions(),
+    limits: Limits | None = None,
+    grade: Grade | None = None,
 ) -> list[Primitive]:
     """Return primitives by their start heading, each from straight driving to straight driving at one speed.
 
-    They have the model's slip. Lag, delay and limits of the drive are left out: they shift where a command
-    acts, which is up to the controller that follows the plan.
+    They have the model's slip, on a `grade` that of each heading against the slope; poses are as seen from
+    above. Lag, delay and limits of the drive are left out: they shift where a command acts, which is up to
+    the controller that follows the plan.
 
     Raises:
         SettingsError: an option makes no sense.
@@ -85,18 +92,21 @@ def lattice_primitives(
     angles = heading_angles(options.headings)
     planner = _steady_planner(model, options, limits_of(model) if limits is None else limits)
     found: list[Primitive] = []
-    quarter = options.headings // 4
-    for start, turn in itertools.product(range(quarter), range(-options.turns, options.turns + 1)):
-        made = _shortest(planner, angles, (start, turn), options)
+    # On level ground the grid looks the same to a robot that is turned by a quarter.
+    apart = options.headings // 4 if grade is None else options.headings
+    for start, turn in itertools.product(range(apart), range(-options.turns, options.turns + 1)):
+        under = None if grade is None else grade.under((0.0, 0.0, float(angles[start])))
+        made = _shortest(partial(planner.to, ground=under), angles, (start, turn), options)
         if made is not None:
             found.append(made)
-    if {made.start for made in found} != set(range(quarter)):
+    if {made.start for made in found} != set(range(apart)):
         raise PlanningError(
             "some headings have no primitive",
             where="lattice",
             advice="allow longer primitives, a lower speed or a coarser grid",
         )
-    turned = [_quarter_turned(made, k, options.headings) for k in range(4) for made in found]
+    quarters = options.headings // apart
+    turned = [_quarter_turned(made, k, options.headings) for k in range(quarters) for made in found]
     return sorted(turned, key=lambda made: (made.start, (made.end - made.start) % options.headings))
 
 
@@ -106,6 +116,7 @@ def write_lattice(
     *,
     options: LatticeOptions = LatticeOptions(),
     limits: Limits | None = None,
+    grade: Grade | None = None,
 ) -> Path:
     """Write the primitives as the JSON file that Nav2's `lattice_filepath` names; return its path.
 
@@ -114,7 +125,7 @@ def write_lattice(
         SettingsError, PlanningError: as of `lattice_primitives`.
     """
     within = limits_of(model) if limits is None else limits
-    made = lattice_primitives(model, options=options, limits=within)
+    made = lattice_primitives(model, options=options, limits=within, grade=grade)
     target = Path(path)
     held = curvature_map(model, limits=within, speeds=40)
     row = int(np.argmin(np.abs(held.speed - options.speed)))
@@ -170,7 +181,10 @@ def _driving(speed: float) -> _core.ActuatorState:
 
 
 def _shortest(
-    planner: _core.TrajectoryPlanner, angles: Floats, change: tuple[int, int], options: LatticeOptions
+    plan_to: Callable[[_core.Pose2, _core.ActuatorState], _core.Trajectory],
+    angles: Floats,
+    change: tuple[int, int],
+    options: LatticeOptions,
 ) -> Primitive | None:
     """Return the primitive with the nearest end point for a start heading and a turn, or None."""
     start, turn = change
@@ -180,7 +194,7 @@ def _shortest(
     for x, y in itertools.islice(_end_points(heading, swing, options), TRIES):
         cos, sin = math.cos(heading), math.sin(heading)
         goal = _core.Pose2(cos * x + sin * y, cos * y - sin * x, swing)
-        plan = planner.to(goal, _driving(options.speed))
+        plan = plan_to(goal, _driving(options.speed))
         if plan.status != _core.TrajectoryStatus.Reached:
             continue
         path = np.asarray(plan.path)

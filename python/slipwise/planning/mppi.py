@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
-from slipwise.ground import Grade, rise_of
+from slipwise.ground import Grade, Pose, rise_of
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.reference_path import ReferencePath
-from slipwise.planning.trajectory import Pose, to_core_pose
+from slipwise.planning.trajectory import to_core_pose
 
 Floats = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import Ground, Pose
 from slipwise.models.model import Model
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.limits import AT_REST, DriveState, Limits
@@ -18,7 +19,6 @@ from slipwise.planning.position_ellipse import first_crossing
 from slipwise.planning.trajectory import (
     NOMINAL,
     Planner,
-    Pose,
     Trajectory,
     TrajectoryOptions,
     placed,
@@ -74,13 +74,13 @@ class _Node:
 
 
 class RoutePlanner:
-    """Looks for routes of a model through one map.
+    """Looks for routes of a model through one map, on level ground or on `ground` in the map's frame.
 
     Raises:
         SettingsError: options and limits contradict each other.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 - what a Planner takes, a map and how it is searched
         self,
         model: Model,
         grid: GridMap,
@@ -88,6 +88,7 @@ class RoutePlanner:
         limits: Limits | None = None,
         options: TrajectoryOptions = NOMINAL,
         search: RouteOptions = RouteOptions(),
+        ground: Ground | None = None,
     ) -> None:
         if not (math.isfinite(search.radius) and search.radius > 0.0):
             raise SettingsError(
@@ -106,7 +107,7 @@ class RoutePlanner:
                 advice="use a finer map, or check the unit of its resolution",
             )
         self._model, self._grid, self._search = model, grid, search
-        self._last = Planner(model, limits=limits, options=options)
+        self._last = Planner(model, limits=limits, options=options, ground=ground)
         cruise = options.to_core(self._last.limits).cruise
         between = replace(
             options,
@@ -115,7 +116,7 @@ class RoutePlanner:
             tolerance_xy=VIA_TOLERANCE,
             tolerance_yaw=VIA_TOLERANCE,
         )
-        self._between = Planner(model, limits=limits, options=between)
+        self._between = Planner(model, limits=limits, options=between, ground=ground)
         self._longest = options.longest
         self._bend = GENTLE * min(self._last.limits.curvature, self._last.limits.yaw_rate / cruise)  # 1/m
 
@@ -229,7 +230,7 @@ class RoutePlanner:
             poses=np.concatenate([leg.poses for leg in node.legs]),
             at_end=node.state,
         )
-        path: Path = uncertain_path(self._model, whole)
+        path: Path = uncertain_path(self._model, whole, ground=self._last.ground, at=start)
         poses = placed(path.poses, start)
         return Route(
             trajectory=whole,

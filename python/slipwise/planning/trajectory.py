@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import ElevationMap, Ground, Pose
 from slipwise.models.model import Model
 from slipwise.planning.limits import AT_REST, DriveState, Limits, limits_of
 from slipwise.prediction import Path, predict
 
 Floats = NDArray[np.float64]
-Pose = tuple[float, float, float]  # x, y [m], yaw [rad]
 
 CRUISE_FRACTION = 0.7  # of the limit of speed, where the user says nothing
 LONG_AGO = 1e4  # s before a plan, when what was commanded last is taken to have been commanded
@@ -80,6 +80,8 @@ class Planner:
         limits: of the commands; by default what the model was learned within.
         options: how trajectories are shaped.
         state: what the robot usually does when a plan begins.
+        ground: what the robot drives on, in the frame of the goals; level by default. Poses are as seen from
+            above.
 
     Raises:
         SettingsError: limits, options or state contradict each other.
@@ -92,8 +94,10 @@ class Planner:
         limits: Limits | None = None,
         options: TrajectoryOptions = NOMINAL,
         state: DriveState = AT_REST,
+        ground: Ground | None = None,
     ) -> None:
         self.limits = limits_of(model) if limits is None else limits
+        self.ground = ground
         settings = options.to_core(self.limits)
         try:
             self._core = _core.TrajectoryPlanner(
@@ -107,28 +111,40 @@ class Planner:
     ) -> Trajectory | None:
         """Return a trajectory from `start` to `goal`, None where there is none; see `to`."""
         plan = self._plan(goal, start, state)
-        return _trajectory(plan, start) if plan.status == _core.TrajectoryStatus.Reached else None
+        if plan.status != _core.TrajectoryStatus.Reached:
+            return None
+        found = _trajectory(plan, start)
+        return found if self._holds(found.poses) else None
 
     def to(self, goal: Pose, *, start: Pose = (0.0, 0.0, 0.0), state: DriveState = AT_REST) -> Trajectory:
         """Return a trajectory from `start` to `goal`, both (x [m], y [m], yaw [rad]) in one frame.
 
         Raises:
             PlanningError: no manoeuvre within the limits ends at the goal.
-            SettingsError: a pose is not finite, or the start is faster than the limits.
+            SettingsError: a pose is not finite, the start is faster than the limits, or the path leaves the
+                map of elevations.
         """
         plan = self._plan(goal, start, state)
         if plan.status != _core.TrajectoryStatus.Reached:
             what, _, advice = _core.trajectory_advice(plan.status).partition(": ")
             nearest = f"the nearest attempt ends {plan.gap_xy:.2g} m and {plan.gap_yaw:.2g} rad beside it"
             raise PlanningError(f"{what}; {nearest}", where=f"goal {pose_text(goal)}", advice=advice)
-        return _trajectory(plan, start)
+        found = _trajectory(plan, start)
+        if isinstance(self.ground, ElevationMap):
+            self.ground.check(found.poses)
+        return found
 
     def _plan(self, goal: Pose, start: Pose, state: DriveState) -> _core.Trajectory:
         relative = _core.between(to_core_pose(start, "start"), to_core_pose(goal, "goal"))
+        under = None if self.ground is None else self.ground.under(start)
         try:
-            return self._core.to(relative, state.to_core())
+            return self._core.to(relative, state.to_core(), under)
         except ValueError as problem:
             raise SettingsError(str(problem), where="start state") from problem
+
+    def _holds(self, poses: Floats) -> bool:
+        """Whether the ground is known under all poses."""
+        return not isinstance(self.ground, ElevationMap) or self.ground.holds(poses)
 
 
 def trajectory_to(  # noqa: PLR0913 - what a Planner takes, and what its `to` takes
@@ -139,16 +155,27 @@ def trajectory_to(  # noqa: PLR0913 - what a Planner takes, and what its `to` ta
     limits: Limits | None = None,
     options: TrajectoryOptions = NOMINAL,
     state: DriveState = AT_REST,
+    ground: Ground | None = None,
 ) -> Trajectory:
     """Plan once; whoever plans often keeps a `Planner`, whose table is made once. See `Planner.to`."""
-    return Planner(model, limits=limits, options=options, state=state).to(goal, start=start, state=state)
+    planner = Planner(model, limits=limits, options=options, state=state, ground=ground)
+    return planner.to(goal, start=start, state=state)
 
 
-def uncertain_path(model: Model, trajectory: Trajectory, *, state: DriveState = AT_REST) -> Path:
-    """Return the path of a trajectory with its covariance, from the origin; see `predict`."""
+def uncertain_path(
+    model: Model,
+    trajectory: Trajectory,
+    *,
+    state: DriveState = AT_REST,
+    ground: Ground | None = None,
+    at: Pose = (0.0, 0.0, 0.0),
+) -> Path:
+    """Return the path of a trajectory with its covariance, from the origin; see `predict`, also for `at`."""
     before = np.array([[-LONG_AGO, *state.commanded]])
     commands = np.vstack((before, trajectory.commands))
-    return predict(model, commands, horizon=trajectory.duration, start=0.0, initial=state.drive)
+    return predict(
+        model, commands, horizon=trajectory.duration, start=0.0, initial=state.drive, ground=ground, at=at
+    )
 
 
 def to_core_pose(pose: Pose, name: str) -> _core.Pose2:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.ellipse import ellipse
+from slipwise.ground import Pose
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.route import Route
-from slipwise.planning.trajectory import Pose
 
 Floats = NDArray[np.float64]
 

@@ -51,6 +51,16 @@ def test_plan_without_a_picture_needs_no_matplotlib_and_tells_machines(
     assert not Path("plan.png").exists()
 
 
+def test_a_plan_on_a_grade_takes_slope_and_direction(slipwise: Slipwise, arguments: list[object]) -> None:
+    route = [*arguments, "--from", START, "--to", GOAL, "--no-picture", "--json", "-"]
+    level, tilted = slipwise(*route), slipwise(*route, "--grade", "15,180")
+    assert (level.code, tilted.code) == (0, 0)
+    assert tilted.json["end"] == pytest.approx([5.0, 6.4, 0.1], abs=5e-3)
+    # A way up a slope is longer than it looks from above.
+    assert tilted.json["duration"] > 1.01 * level.json["duration"]
+    assert slipwise(*route, "--grade", "15").line.startswith("'15' is no grade (--grade)")
+
+
 def test_without_matplotlib_all_but_the_picture_is_written_and_that_is_said(
     slipwise: Slipwise, arguments: list[object], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -7,7 +7,9 @@ import functools
 
 import numpy as np
 from sample_logs import Drive, simulated_log
+from sample_models import Made, make_model
 
+from slipwise import _core
 from slipwise.calibration import calibrate, make_settings
 from slipwise.models import Model
 from slipwise.planning import GridMap, Limits
@@ -21,6 +23,12 @@ def learned_model() -> Model:
     """Return a model with slip, lag and delay, learned from a simulated drive."""
     log = simulated_log(Drive(seconds=60.0, lag=0.2, delay=0.1))
     return calibrate(log, input="command", settings=make_settings({"basis": "edd-2"})).model
+
+
+def sliding() -> Model:
+    """A model of a robot that slides downhill and turns its nose down, behind a lag and a delay."""
+    values = {"lon.V": -0.05, "lon.gx": 0.05, "lat.gy": 0.1, "ang.w": -0.2, "ang.gy": 0.05}
+    return make_model(Made(basis=_core.named_basis("ipem-13"), values=values, commands=True))
 
 
 def walled_map() -> GridMap:

@@ -5,15 +5,17 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from planning.planning_samples import LIMITS, learned_model
+from planning.planning_samples import LIMITS, learned_model, sliding
 from sample_models import Made, make_model
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import Grade
 from slipwise.planning import (
     LatticeOptions,
     Primitive,
@@ -47,6 +49,18 @@ def test_the_map_of_held_curvatures_has_dead_band_and_tops() -> None:
     left = np.where(np.abs(turn) < 0.1, 0.0, np.clip(turn, -0.5, 0.5))
     assert held.held[known] == pytest.approx((left / np.minimum(speed, 0.8))[known])
     assert held.achieved_speed[known] == pytest.approx(np.minimum(speed, 0.8)[known])
+
+
+def test_on_a_slope_each_heading_has_primitives_of_its_own_that_end_on_the_grid() -> None:
+    model, grade = sliding(), Grade(0.15, downhill=-math.pi / 2.0)
+    made = lattice_primitives(model, options=replace(OPTIONS, turns=1), limits=LIMITS, grade=grade)
+    assert {primitive.start for primitive in made} == set(range(16))
+    ends = np.array([primitive.poses[-1, :2] for primitive in made]) / OPTIONS.grid
+    assert ends == pytest.approx(np.round(ends), abs=1e-9)
+    straight = {primitive.start: primitive.length for primitive in made if primitive.swing == 0.0}
+    # Straight up and down one grid step will do; across, where the robot slides, an S has to make up for it.
+    assert {heading for heading, length in straight.items() if length < 0.5} == {4, 12}
+    assert min(straight[0], straight[8]) > 2.0
 
 
 def test_headings_point_at_grid_points() -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from planning.planning_samples import sliding
 from sample_logs import Drive, simulated_log
 from sample_models import LIMITS, Made, make_model
 
@@ -249,12 +250,6 @@ def test_a_model_of_another_schema_is_refused_before_it_can_be_rolled_out(
     path.write_text(path.read_text().replace("slipwise_model: 4", "slipwise_model: 99"))
     with pytest.raises(ModelError, match="schema version 99"):
         load_model(path)
-
-
-def sliding() -> Model:
-    """A model of a robot that slides downhill and turns its nose down, behind a lag and a delay."""
-    values = {"lon.V": -0.05, "lon.gx": 0.05, "lat.gy": 0.1, "ang.w": -0.2, "ang.gy": 0.05}
-    return make_model(Made(basis=_core.named_basis("ipem-13"), values=values, commands=True))
 
 
 def test_rollouts_on_a_grade_are_those_of_predict_from_every_heading() -> None:

@@ -7,12 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planning.planning_samples import LIMITS, learned_model, walled_map
+from planning.planning_samples import CELL, LIMITS, learned_model, sliding, walled_map
 from sample_models import Made, make_model
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
-from slipwise.planning import GridMap, RouteOptions, RoutePlanner, TrajectoryOptions
+from slipwise.ground import Grade
+from slipwise.planning import GridMap, RouteOptions, RoutePlanner, TrajectoryOptions, uncertain_path
+from slipwise.planning.trajectory import placed
 
 OPTIONS = TrajectoryOptions(cruise=0.8, longest=6.0)
 
@@ -37,6 +39,21 @@ def test_a_route_leads_round_a_wall_to_the_goal_without_touching_it() -> None:
     assert (np.diff(route.trajectory.commands[:, 0]) > 0.0).all()
     spread = route.covariance[:, 0, 0] + route.covariance[:, 1, 1]
     assert spread[-1] > spread[len(spread) // 4] > 0.0
+
+
+def test_a_route_on_a_hillside_ends_at_the_goal_that_a_level_route_misses() -> None:
+    grid = GridMap(np.zeros((300, 300), dtype=bool), CELL)
+    start, goal = (10.0, 15.0, 0.0), (18.5, 15.0, -0.5)
+    options = TrajectoryOptions(cruise=1.0, longest=6.0)
+    hillside = Grade(0.1, downhill=-1.5)
+    route = RoutePlanner(
+        sliding(), grid, limits=LIMITS, options=options, search=RouteOptions(radius=0.3), ground=hillside
+    ).route(start, goal)
+    assert route.legs > 1
+    assert route.predicted[-1] == pytest.approx(goal, abs=0.05)
+    assert route.clearance >= 0.0
+    level = uncertain_path(sliding(), route.trajectory)
+    assert np.linalg.norm(placed(level.poses, start)[-1, :2] - goal[:2]) > 0.1
 
 
 def test_manoeuvres_in_a_row_go_on_with_what_the_slow_part_of_the_chain_holds() -> None:

@@ -8,12 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planning.planning_samples import LIMITS, learned_model
+from planning.planning_samples import LIMITS, learned_model, sliding
 from sample_models import LIMITS as AXES
 from sample_models import Made, make_model, named
 
 from slipwise import _core
 from slipwise.errors import PlanningError, SettingsError
+from slipwise.ground import ElevationMap, Grade
 from slipwise.models import Model
 from slipwise.planning import (
     DriveState,
@@ -25,7 +26,7 @@ from slipwise.planning import (
     uncertain_path,
 )
 from slipwise.planning.limits import ACCELERATION
-from slipwise.planning.trajectory import pose_text
+from slipwise.planning.trajectory import placed, pose_text
 
 OPTIONS = TrajectoryOptions(cruise=1.0, longest=8.0)
 
@@ -46,6 +47,30 @@ def test_a_trajectory_ends_at_the_goal_as_the_model_predicts(planner: Planner) -
         assert path.poses[-1] == pytest.approx(goal, abs=2e-3)
         assert plan.poses[-1] == pytest.approx(path.poses[-1], abs=1e-6)
         assert path.t[-1] == pytest.approx(plan.duration)
+
+
+def test_on_a_hillside_a_trajectory_ends_at_the_goal_as_the_model_predicts_there() -> None:
+    model, grade, start = sliding(), Grade(0.15, downhill=0.7), (1.0, 2.0, -1.2)
+    planner = Planner(model, limits=LIMITS, options=OPTIONS, ground=grade)
+    goal = (3.5, -1.2, -0.6)
+    plan = planner.to(goal, start=start)
+    path = uncertain_path(model, plan, ground=grade, at=start)
+    assert placed(path.poses, start)[-1] == pytest.approx(goal, abs=2e-3)
+    assert plan.poses[-1] == pytest.approx(goal, abs=2e-3)
+    level = Planner(model, limits=LIMITS, options=OPTIONS).to(goal, start=start)
+    slid = placed(uncertain_path(model, level, ground=grade, at=start).poses, start)[-1]
+    assert math.dist(slid[:2], goal[:2]) > 0.05
+
+
+def test_on_a_map_of_elevations_a_path_is_planned_where_the_map_is_and_refused_beside_it() -> None:
+    slope = ElevationMap(0.1 * np.mgrid[0:21, 0:21][0], origin=(-5.0, -5.0), cell=0.5)
+    planner = Planner(sliding(), limits=LIMITS, options=OPTIONS, ground=slope)
+    goal = (2.5, 1.0, 0.4)
+    path = uncertain_path(sliding(), planner.to(goal), ground=slope)
+    assert path.poses[-1] == pytest.approx(goal, abs=2e-3)
+    with pytest.raises(SettingsError, match="the path leads beside the map of elevations"):
+        planner.to((6.5, 0.0, 0.0))
+    assert planner.try_to((6.5, 0.0, 0.0)) is None
 
 
 def test_commands_stay_within_the_limits(planner: Planner) -> None:

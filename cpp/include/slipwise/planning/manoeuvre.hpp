@@ -3,11 +3,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "slipwise/actuator/command_limits.hpp"
 #include "slipwise/planning/curvature_spline.hpp"
 #include "slipwise/planning/speed_profile.hpp"
+#include "slipwise/segment/ground.hpp"
 
 namespace slipwise {
 
@@ -24,6 +26,8 @@ struct ManoeuvreFrame {
   double direction = 1.0;     ///< -1 drives backwards
   int commands = 32;          ///< how many, each held for the same time
   double settling = 0.0;      ///< time under the last command after the others [s]
+  /// A plane or a map under the manoeuvre, as seen from its start; level where there is none.
+  std::shared_ptr<const Ground> ground = {};
 };
 
 /// One held command and its derivative by the parameters.

@@ -29,7 +29,7 @@ struct ManoeuvrePath {
   BodyTwist fast = {};  ///< of the drive, what the lags hold beside the slow ones
 };
 
-/// A motion model as a planner uses it, on flat terrain. A clock offset is one of measured poses; plans have none.
+/// A motion model as a planner uses it. A clock offset is one of measured poses; plans have none.
 class PlanningModel {
  public:
   /// The limits lie in front of the actuator.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -50,10 +51,11 @@ class TrajectoryPlanner {
   TrajectoryPlanner(PlanningModel model, const DriveLimits& limits, const TrajectorySettings& settings,
                     const ActuatorState& start = {});
 
-  /// A manoeuvre to `goal`, observed from the robot. Without one the status says so, and the nearest attempt is
-  /// returned.
-  /// \throws std::invalid_argument when goal or start are not finite, or the start is faster than the limits.
-  Trajectory to(const Pose2& goal, const ActuatorState& start) const;
+  /// A manoeuvre to `goal`, observed from the robot, over a plane or a map as the robot sees it, level where there is
+  /// none. Without a manoeuvre the status says so, and the nearest attempt is returned.
+  /// \throws std::invalid_argument when goal or start are not finite, the start is faster than the limits, or the
+  /// ground is an attitude that was measured.
+  Trajectory to(const Pose2& goal, const ActuatorState& start, const std::shared_ptr<const Ground>& ground = {}) const;
 
   /// Bounds and frame of all manoeuvres from a start; `cruise` [m/s] is what the settings say, or slower.
   ReachProblem problem(const ActuatorState& start, double cruise) const;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/segment/ground.hpp"
@@ -40,7 +41,9 @@ struct GroundStepLinearization {
   Eigen::Matrix3d above_by(const Eigen::Vector3d& tangent) const;
 };
 
-/// Steps cut into pieces that are short enough for a tilt each.
+/// How many pieces of a step that lasts `duration` [s] are short enough for a tilt each.
+std::size_t ground_pieces(double duration);
+/// Steps cut into such pieces.
 void cut_for_ground(ActuatorSteps& drive);
 
 /// The step that begins at `pose` and stamp `t` [s].
@@ -48,6 +51,11 @@ GroundStep ground_step(const Ground& ground, const ActuatorStep& step, const Pos
 /// The same with derivatives.
 GroundStepLinearization linearize_ground_step(const Ground& ground, const ActuatorStep& step, const Pose2& pose,
                                               double t);
+
+/// Derivative of a step's tangent, seen from above, by what its ground is evaluated at; `body` is the tangent in the
+/// robot's axes.
+Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const ActuatorStep& step, const PathSlip& along,
+                               const Eigen::Vector3d& body);
 
 /// Derivative of the slip rates by the gravity (gx, gy).
 Eigen::Matrix<double, 3, 2> slip_rate_by_gravity(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
