@@ -20,7 +20,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("motion",),
     ("segment", "rollout"),
     ("filter", "planning"),
-    ("disturbance", "identify"),
+    ("disturbance", "identify", "dynamics"),
     ("hypotheses",),
     ("online", "thesis"),
 )

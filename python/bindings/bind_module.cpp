@@ -20,6 +20,7 @@ NB_MODULE(_core, m) {
   bind_slip_disturbance(m);
   bind_regression(m);
   bind_estimators(m);
+  bind_dynamics(m);
   bind_limits(m);
   bind_archive(m);
   bind_surfaces(m);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/tuning.hpp"
@@ -38,6 +40,11 @@ ScoreCovariance::ScoreCovariance(const MotionModel& model) : groups_(kChannels +
   restart();
 }
 
+ScoreCovariance::ScoreCovariance(std::vector<std::vector<Eigen::Index>> groups, Eigen::Index size)
+    : groups_(std::move(groups)), earlier_(size) {
+  restart();
+}
+
 void ScoreCovariance::restart() {
   const Eigen::Index size = earlier_.size();
   information_ = scatter_ = lagged_ = Eigen::MatrixXd::Zero(size, size);
@@ -47,15 +54,23 @@ void ScoreCovariance::restart() {
 
 void ScoreCovariance::add(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
                           const Eigen::Matrix3d& noise) {
-  const auto& jacobian = at.by_parameter;
+  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
+  add_score(at.by_parameter, residual, covariance, noise, (segment.start + segment.end) / 2.0);
+}
+
+void ScoreCovariance::add(const MeasurementScore& measured) {
+  add_score(measured.jacobian, measured.residual, measured.covariance, measured.noise, measured.t);
+}
+
+template <class Jacobian, class Residual, class Noise>
+void ScoreCovariance::add_score(const Jacobian& jacobian, const Residual& residual, const Eigen::MatrixXd& covariance,
+                                const Noise& noise, double middle) {
   if (jacobian.isZero(0.0)) {
     return;
   }
-  const Eigen::Vector3d residual = segment.measured.vector() - at.predicted.vector();
-  const Eigen::Matrix3d square = residual * residual.transpose() + jacobian * covariance * jacobian.transpose();
-  const Eigen::Matrix3Xd weighted = noise.llt().solve(jacobian);
+  const Noise square = residual * residual.transpose() + jacobian * covariance * jacobian.transpose();
+  const Jacobian weighted = noise.llt().solve(jacobian);
   const Eigen::VectorXd score = weighted.transpose() * residual;
-  const double middle = (segment.start + segment.end) / 2.0;
   const double age = middle - time_;
   const double decay = age >= 0.0 ? std::exp(-age / kKernelTime) : 0.0;  // time goes back where a new run begins
   earlier_ *= decay;

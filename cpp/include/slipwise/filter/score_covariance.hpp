@@ -11,6 +11,15 @@
 
 namespace slipwise {
 
+/// A measurement as it speaks of parameters.
+struct MeasurementScore {
+  Eigen::MatrixXd jacobian;    ///< [M, parameters] of what was predicted, by the parameters
+  Eigen::VectorXd residual;    ///< [M] measured minus predicted, at the estimate
+  Eigen::MatrixXd covariance;  ///< [parameters, parameters] of the estimate
+  Eigen::MatrixXd noise;       ///< [M, M] of the measurement, the parameters being known
+  double t;                    ///< [s] of its middle
+};
+
 /// Running sums of the scores J^T R^-1 r of segments: their covariance, and that with the scores before them. Compared
 /// with the information J^T R^-1 J, they give factors for the variances of an estimate
 /// (derivations/reported-covariance.md).
@@ -18,11 +27,15 @@ class ScoreCovariance {
  public:
   ScoreCovariance() = default;  ///< of a model without parameters
   explicit ScoreCovariance(const MotionModel& model);
+  /// Of `size` parameters, those of a group having one factor.
+  ScoreCovariance(std::vector<std::vector<Eigen::Index>> groups, Eigen::Index size);
 
   /// Adds one segment: linearised `at` the estimate whose covariance is given, learned with `noise`. One that says
   /// nothing of the parameters is passed over.
   void add(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Segment& segment,
            const Eigen::Matrix3d& noise);
+  /// Adds one measurement of any size.
+  void add(const MeasurementScore& measured);
   /// Forgets all segments.
   void restart();
 
@@ -39,6 +52,9 @@ class ScoreCovariance {
   }
 
  private:
+  template <class Jacobian, class Residual, class Noise>
+  void add_score(const Jacobian& jacobian, const Residual& residual, const Eigen::MatrixXd& covariance,
+                 const Noise& noise, double middle);
   double factor(const std::vector<Eigen::Index>& group, const Eigen::MatrixXd& covariance) const;
 
   std::vector<std::vector<Eigen::Index>> groups_;  ///< parameters whose factor is one
