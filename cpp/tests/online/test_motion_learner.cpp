@@ -209,7 +209,7 @@ TEST_CASE("poses that are said to be poor spoil less, and poses said to be alike
   std::ranges::for_each(alike.poses, [](MeasuredPose& pose) { pose.std = {.xy = 3.0, .yaw = 1e6}; });
   check_same(learned(silent, false), learned(alike, false));
   const auto uncertainty = [](const Recording& recording) {
-    const Estimate& estimate = learned(recording, false).known.slip->estimate;
+    const Estimate estimate = learned(recording, false).known.slip->estimate;
     return estimate.covariance.trace();
   };
   CHECK(uncertainty(run) < uncertainty(silent));
