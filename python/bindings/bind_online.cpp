@@ -153,19 +153,28 @@ void bind_results(nb::module_& m) {
       .def_ro("inflation", &StudentT::inflation)
       .def_ro("dof", &StudentT::dof);
   nb::class_<HeldOutPrediction>(m, "HeldOutPrediction", "A prediction of one horizon, and what was measured.")
-      .def_ro("run", &HeldOutPrediction::run)
-      .def_ro("horizon", &HeldOutPrediction::horizon)
-      .def_ro("start", &HeldOutPrediction::start)
-      .def_ro("end", &HeldOutPrediction::end)
-      .def_ro("pose", &HeldOutPrediction::pose)
-      .def_ro("covariance", &HeldOutPrediction::covariance)
-      .def_ro("student", &HeldOutPrediction::student)
-      .def_ro("nominal_nis", &HeldOutPrediction::nominal_nis)
-      .def_prop_ro("structure", [](const HeldOutPrediction& p) { return static_cast<int>(p.structure); })
-      .def_ro("measured", &HeldOutPrediction::measured)
-      .def_ro("baseline", &HeldOutPrediction::baseline)
-      .def_ro("in_sample", &HeldOutPrediction::in_sample)
-      .def_ro("learned_until", &HeldOutPrediction::learned_until);
+      .def_ro("horizon", &HeldOutPrediction::horizon);
+  nb::class_<HeldOutPredictions>(m, "HeldOutPredictions", "The last predictions of one horizon.")
+      .def("__len__", &HeldOutPredictions::size)
+      .def(
+          "columns", [](const HeldOutPredictions& predictions) { return HeldOutColumns(predictions); },
+          "Their numbers, as arrays.");
+  nb::class_<HeldOutColumns>(m, "HeldOutColumns",
+                             "Predictions and what was measured, an array for each kind of number.")
+      .def(nb::init<const std::vector<const HeldOutPrediction*>&>(), "predictions"_a)
+      .def_ro("run", &HeldOutColumns::run)
+      .def_ro("structure", &HeldOutColumns::structure)
+      .def_ro("start", &HeldOutColumns::start)
+      .def_ro("end", &HeldOutColumns::end)
+      .def_ro("inflation", &HeldOutColumns::inflation)
+      .def_ro("dof", &HeldOutColumns::dof)
+      .def_ro("nominal_nis", &HeldOutColumns::nominal_nis)
+      .def_ro("learned_until", &HeldOutColumns::learned_until)
+      .def_ro("pose", &HeldOutColumns::pose)
+      .def_ro("measured", &HeldOutColumns::measured)
+      .def_ro("baseline", &HeldOutColumns::baseline)
+      .def_ro("in_sample", &HeldOutColumns::in_sample)
+      .def_ro("covariance", &HeldOutColumns::covariance, "[N, 9], row by row.");
   nb::class_<StructureUpdate>(m, "StructureUpdate", "How one structure took a segment in.")
       .def_ro("nis", &StructureUpdate::nis)
       .def_ro("weight", &StructureUpdate::weight)

@@ -2,7 +2,10 @@
 // Predicting from what was known, and learning how large errors are.
 #include "slipwise/online/held_out.hpp"
 
+#include <algorithm>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 namespace slipwise {
 namespace {
@@ -12,7 +15,58 @@ constexpr std::size_t kKept = 16;   // errors after which a fit is kept: those o
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
 
+std::vector<const HeldOutPrediction*> pointers(const HeldOutPredictions& predictions) {
+  std::vector<const HeldOutPrediction*> found;
+  found.reserve(predictions.size());
+  for (std::size_t i = 0; i < predictions.size(); ++i) {
+    found.push_back(&predictions[i]);
+  }
+  return found;
+}
+
 }  // namespace
+
+void HeldOutPredictions::keep(std::shared_ptr<const HeldOutPrediction> prediction) {
+  kept_.push_back(std::move(prediction));
+  if (kept_.size() > kMost) {
+    kept_.pop_front();
+  }
+}
+
+HeldOutColumns::HeldOutColumns(const HeldOutPredictions& predictions) : HeldOutColumns(pointers(predictions)) {}
+
+HeldOutColumns::HeldOutColumns(const std::vector<const HeldOutPrediction*>& predictions) {
+  if (std::ranges::find(predictions, nullptr) != predictions.end()) {
+    throw std::invalid_argument("a prediction is missing");
+  }
+  const auto count = static_cast<Eigen::Index>(predictions.size());
+  for (Numbers* numbers : {&run, &structure}) {
+    numbers->resize(count);
+  }
+  for (Rows<1>* column : {&start, &end, &inflation, &dof, &nominal_nis, &learned_until}) {
+    column->resize(count);
+  }
+  for (Rows<3>* rows : {&pose, &measured, &baseline, &in_sample}) {
+    rows->resize(count, 3);
+  }
+  covariance.resize(count, 9);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const HeldOutPrediction& each = *predictions[static_cast<std::size_t>(i)];
+    run[i] = static_cast<std::int64_t>(each.run);
+    structure[i] = static_cast<std::int64_t>(each.structure);
+    start[i] = each.start;
+    end[i] = each.end;
+    inflation[i] = each.student.inflation;
+    dof[i] = each.student.dof;
+    nominal_nis[i] = each.nominal_nis;
+    learned_until[i] = each.learned_until;
+    pose.row(i) = each.pose;
+    measured.row(i) = each.measured;
+    baseline.row(i) = each.baseline;
+    in_sample.row(i) = each.in_sample;
+    covariance.row(i) = each.covariance.reshaped<Eigen::RowMajor>();
+  }
+}
 
 HorizonErrors::HorizonErrors() {
   Known nothing{.until = -std::numeric_limits<double>::infinity(), .students = {}};

@@ -114,7 +114,7 @@ LearnedModel MotionLearner::model() const {
   complete.end_run();
   LearnedModel learned{.known = complete.known_.back(),
                        .students = {},
-                       .held_out = {},
+                       .held_out = complete.held_out_,
                        .weights = complete.hypotheses_.weights(),
                        .range = complete.stream_.range(),
                        .steepest = complete.steepest_,
@@ -124,9 +124,8 @@ LearnedModel MotionLearner::model() const {
   const double spacing = complete.stream_.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
   learned.known.slip = supported(learned.known.slip, spacing, learned.segments);
-  for (std::size_t i = 0; i < complete.errors_.size(); ++i) {
-    learned.students.push_back(complete.errors_[i].nominal(learned.known.motion->structure));
-    learned.held_out.emplace_back(complete.held_out_[i].begin(), complete.held_out_[i].end());
+  for (const HorizonErrors& errors : complete.errors_) {
+    learned.students.push_back(errors.nominal(learned.known.motion->structure));
   }
   return learned;
 }

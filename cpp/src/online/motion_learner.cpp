@@ -26,7 +26,6 @@ constexpr std::size_t kMostWheelSegments = 200;    // in which limits are looked
 constexpr std::size_t kMostCommandSegments = 100;  // by which they are judged
 constexpr int kSlices = 8;                         // of refits that a push may do where no segment waits: some 100 us
 constexpr std::size_t kMostEvents = 10000;
-constexpr std::size_t kMostHeldOut = 4096;  // predictions per horizon that are kept
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
@@ -337,28 +336,22 @@ void MotionLearner::judge(const TargetSegment& target) {
   errors.learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
-  const HeldOutPrediction prediction{.run = runs_,
-                                     .horizon = target.horizon,
-                                     .start = segment.start,
-                                     .end = segment.end,
-                                     .pose = expected.pose,
-                                     .covariance = student.inflation * expected.covariance,
-                                     .student = student,
-                                     .nominal_nis = nominal_squared,
-                                     .structure = structure,
-                                     .measured = measured,
-                                     .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven),
-                                     .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
-                                     .learned_until = segment.initial ? segment.start : std::min(used, segment.start)};
-  auto& kept = held_out_[target.horizon];
-  kept.push_back(prediction);
-  if (kept.size() > kMostHeldOut) {
-    kept.pop_front();
-  }
-  say({.kind = LearnerEvent::Kind::HeldOut,
-       .run = runs_,
-       .t = segment.end,
-       .prediction = std::make_shared<const HeldOutPrediction>(prediction)});
+  const auto prediction = std::make_shared<const HeldOutPrediction>(
+      HeldOutPrediction{.run = runs_,
+                        .horizon = target.horizon,
+                        .start = segment.start,
+                        .end = segment.end,
+                        .pose = expected.pose,
+                        .covariance = student.inflation * expected.covariance,
+                        .student = student,
+                        .nominal_nis = nominal_squared,
+                        .structure = structure,
+                        .measured = measured,
+                        .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven),
+                        .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
+                        .learned_until = segment.initial ? segment.start : std::min(used, segment.start)});
+  held_out_[target.horizon].keep(prediction);
+  say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction});
 }
 
 void MotionLearner::say(LearnerEvent event) {

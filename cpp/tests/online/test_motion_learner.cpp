@@ -178,8 +178,8 @@ TEST_CASE("runs are not joined, and what was learned stays") {
   CHECK(after.segments > before.segments);
   CHECK(after.held_out[0].back().run == 1);
   for (const auto& predictions : after.held_out) {
-    for (const HeldOutPrediction& each : predictions) {
-      CHECK(each.end - each.start < 6.0);
+    for (std::size_t i = 0; i < predictions.size(); ++i) {
+      CHECK(predictions[i].end - predictions[i].start < 6.0);
     }
   }
 }

@@ -161,11 +161,11 @@ def held_out_predictions(
         horizons: of its predictions [s].
         drive: the runs that were pushed, where they come from a log.
     """
-    return predictions_of(model.held_out, horizons, drive)
+    return predictions_of([each.columns() for each in model.held_out], horizons, drive)
 
 
 def predictions_of(
-    held_out: Sequence[Sequence[_core.HeldOutPrediction]],
+    held_out: Sequence[_core.HeldOutColumns],
     horizons: Sequence[float],
     drive: tuple[PreparedRun, ...] = (),
 ) -> tuple[tuple[Predictions, ...], tuple[Predictions, ...]]:
@@ -176,60 +176,53 @@ def predictions_of(
         horizons: theirs [s].
         drive: the runs that were pushed, where they come from a log.
     """
-    records = [[_Record(each, drive) for each in rows] for rows in held_out]
-    each = list(zip(horizons, records, strict=True))
-    learned = tuple(_predictions("learned", horizon, rows) for horizon, rows in each)
-    return learned, tuple(_baseline(horizon, rows) for horizon, rows in each)
+    learned = tuple(
+        _predictions(horizon, columns, drive) for horizon, columns in zip(horizons, held_out, strict=True)
+    )
+    return learned, tuple(_baseline(own, columns) for own, columns in zip(learned, held_out, strict=True))
 
 
-class _Record:
-    """A prediction that was held against what was measured."""
-
-    def __init__(self, held_out: _core.HeldOutPrediction, drive: tuple[PreparedRun, ...]) -> None:
-        if not drive:
-            self.held_out, self.run, self.learned_until = held_out, held_out.run, held_out.learned_until
-            return
-        run = drive[held_out.run]
-        begin = min(float(run.inputs.t[0]), float(run.run.poses.t[0]), held_out.start)
-        self.held_out, self.run = held_out, run.index
-        self.learned_until = max(begin, held_out.learned_until)
-
-
-def _predictions(method: str, horizon: float, records: list[_Record]) -> Predictions:
-    rows = [record.held_out for record in records]
-    measured = _vectors([row.measured for row in rows])
-    left = residual(measured, _vectors([row.in_sample for row in rows]))
-    covariance = np.array([row.covariance for row in rows]).reshape(-1, 3, 3)
+def _predictions(
+    horizon: float, columns: _core.HeldOutColumns, drive: tuple[PreparedRun, ...]
+) -> Predictions:
+    run, learned_until = columns.run, columns.learned_until
+    if drive and len(run):
+        first = np.array([min(float(each.inputs.t[0]), float(each.run.poses.t[0])) for each in drive])
+        learned_until = np.maximum(np.minimum(first[run], columns.start), learned_until)
+        run = np.array([each.index for each in drive], dtype=np.int64)[run]
     return Predictions(
-        method=method,
+        method="learned",
         horizon=horizon,
-        run=np.array([record.run for record in records], dtype=np.int64),
-        t_start=np.array([row.start for row in rows]),
-        t_end=np.array([row.end for row in rows]),
-        pose=_vectors([row.pose for row in rows]),
-        covariance=covariance,
-        inflation=np.array([row.student.inflation for row in rows]),
-        dof=np.array([row.student.dof for row in rows]),
-        nominal_nis=np.array([row.nominal_nis for row in rows]),
-        structure=np.array([row.structure for row in rows], dtype=np.int64),
-        measured=measured,
-        learned_until=np.array([record.learned_until for record in records]),
-        in_sample=np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2]))),
+        run=run,
+        t_start=columns.start,
+        t_end=columns.end,
+        pose=columns.pose,
+        covariance=columns.covariance.reshape(-1, 3, 3),
+        inflation=columns.inflation,
+        dof=columns.dof,
+        nominal_nis=columns.nominal_nis,
+        structure=columns.structure,
+        measured=columns.measured,
+        learned_until=learned_until,
+        in_sample=_errors(columns.measured, columns.in_sample),
     )
 
 
-def _baseline(horizon: float, records: list[_Record]) -> Predictions:
+def _baseline(own: Predictions, columns: _core.HeldOutColumns) -> Predictions:
     """The kinematic baseline at the same segments, of which only the errors are asked."""
-    rows = [record.held_out for record in records]
-    own, pose = _predictions("none", horizon, records), _vectors([row.baseline for row in rows])
-    left = residual(own.measured, pose)
-    errors = np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2])))
-    changed = {"pose": pose, "in_sample": errors, "learned_until": own.t_start}
-    return Predictions(**(vars(own) | changed))
+    return replace(
+        own,
+        method="none",
+        pose=columns.baseline,
+        in_sample=_errors(columns.measured, columns.baseline),
+        learned_until=own.t_start,
+    )
 
 
-def _vectors(rows: Sequence[Floats]) -> Floats:
-    return np.array(rows, dtype=np.float64).reshape(-1, 3)
+def _errors(measured: Floats, predicted: Floats) -> Floats:
+    """Position [m] and heading [rad] errors, [N, 2]."""
+    left = residual(measured, predicted)
+    return np.column_stack((np.hypot(left[:, 0], left[:, 1]), np.abs(left[:, 2])))
 
 
 def _history(

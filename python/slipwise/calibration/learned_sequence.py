@@ -133,7 +133,8 @@ def learn_sequence(
                     windows.append(event)
             if progress is not None:
                 progress((place + done) / len(drives))
-        visited.append(_visited(learner, predictions_of(held_out, horizons, runs)[0], windows, runs))
+        columns = [_core.HeldOutColumns(each) for each in held_out]
+        visited.append(_visited(learner, predictions_of(columns, horizons, runs)[0], windows, runs))
         learned += windows if options.keep is not None else []
     bank = learner.surfaces()
     judged, right = bank.labels

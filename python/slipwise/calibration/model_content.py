@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -55,12 +56,16 @@ class ModelFacts:
     labels: schema.LabelSection | None = None  # what labels of them were worth
 
 
-def judgement_of(learned: Learned) -> Judgement:
-    """Judge the predictions at the longest horizon with enough of them."""
-    counts = [len(p) for p in learned.predictions]
+def judged_horizon(counts: Sequence[int]) -> int:
+    """Return which horizon is judged, of `counts` predictions each: the longest one with enough of them."""
     enough = [k for k, count in enumerate(counts) if count >= 2 * FEWEST_WINDOWS]
     some = [k for k, count in enumerate(counts) if count]
-    chosen = enough[-1] if enough else (some or [0])[0]
+    return enough[-1] if enough else (some or [0])[0]
+
+
+def judgement_of(learned: Learned) -> Judgement:
+    """Judge the predictions at the longest horizon with enough of them."""
+    chosen = judged_horizon([len(p) for p in learned.predictions])
     return judge(learned.predictions[chosen], learned.baseline[chosen])
 
 

@@ -14,11 +14,18 @@ from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.judgement import Judgement
-from slipwise.calibration.learned_log import held_out_predictions, kept_posterior
+from slipwise.calibration.learned_log import kept_posterior, predictions_of
 from slipwise.calibration.learned_sequence import SurfaceSummary, summary_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.limit_words import advice_on_limits
-from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
+from slipwise.calibration.model_content import (
+    Judged,
+    Learned,
+    ModelFacts,
+    judged_horizon,
+    judgement_of,
+    model_content,
+)
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
@@ -311,14 +318,15 @@ class MotionLearner:
 
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
         found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
-        predictions, baseline = held_out_predictions(model, JUDGING_HORIZONS)
-        students = zip(predictions, model.students, strict=True)
+        each = list(zip(JUDGING_HORIZONS, model.held_out, model.students, strict=True))
+        horizon, held_out, _ = each[judged_horizon([len(predictions) for _, predictions, _ in each])]
+        predictions, baseline = predictions_of([held_out.columns()], [horizon])
         return Learned(
             kept_posterior(model, found),
             posterior_of(model.slip, model.disturbance),
             predictions,
             baseline,
-            {p.horizon: student_of(student) for p, student in students if len(p)},
+            {h: student_of(student) for h, predictions, student in each if len(predictions)},
             None,
             tuple(basis.name for basis in self._settings.bases()),
             None if found is None else found.search,

@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 Shares = tuple[float, float, float]  # within the 50, 90 and 95 % ellipsoids
 
 RESAMPLES = 1000
-LARGEST_CHUNK = 1_000_000  # starts of blocks drawn at a time, so that memory does not grow with the log
+LARGEST_CHUNK = 1 << 16  # starts of blocks drawn at a time: they stay in the cache, and memory does not grow
 BLOCK_WINDOWS = 3  # windows do not overlap, so a block of three is at least three horizons long
 SEED = 20100830  # fixed, so that the same log gives the same intervals
 # Quantiles of the chi-square distribution with 3 degrees of freedom.

@@ -6,8 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <memory>
+#include <type_traits>
+#include <vector>
 
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/disturbance/slip_disturbance.hpp"
@@ -40,6 +43,57 @@ struct HeldOutPrediction {
   Eigen::Vector3d baseline;    ///< what the kinematic baseline predicts
   Eigen::Vector3d in_sample;   ///< the same model once it had learned the segment (thesis, Table 6.2)
   double learned_until;        ///< stamp of the last measurement that the prediction uses [s]
+};
+
+/// The last predictions of one horizon, oldest first. Copies share them, so that a copy is small however many there
+/// are.
+class HeldOutPredictions {
+ public:
+  static constexpr std::size_t kMost = 4096;
+
+  /// Keeps a prediction; the oldest goes where there are more than `kMost`.
+  void keep(std::shared_ptr<const HeldOutPrediction> prediction);
+  std::size_t size() const { return kept_.size(); }
+  const HeldOutPrediction& operator[](std::size_t i) const { return *kept_[i]; }
+  const HeldOutPrediction& back() const { return *kept_.back(); }
+
+  /// Names what is saved: the predictions, one after the other.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    if constexpr (std::is_const_v<Self>) {
+      a(self.kept_.size());
+      for (const auto& each : self.kept_) {
+        a(*each);
+      }
+    } else {
+      std::deque<HeldOutPrediction> read;
+      a(read);
+      self.kept_.clear();
+      for (const HeldOutPrediction& each : read) {
+        self.kept_.push_back(std::make_shared<const HeldOutPrediction>(each));
+      }
+    }
+  }
+
+ private:
+  std::deque<std::shared_ptr<const HeldOutPrediction>> kept_;
+};
+
+/// The same numbers one kind after the other, [N] each, as statistics take them.
+struct HeldOutColumns {
+  template <int kColumns>
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, kColumns, kColumns == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  using Numbers = Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>;
+
+  /// \throws std::invalid_argument when one of the pointers is null.
+  explicit HeldOutColumns(const std::vector<const HeldOutPrediction*>& predictions);
+  explicit HeldOutColumns(const HeldOutPredictions& predictions);
+
+  Numbers run;
+  Numbers structure;
+  Rows<1> start, end, inflation, dof, nominal_nis, learned_until;
+  Rows<3> pose, measured, baseline, in_sample;
+  Rows<9> covariance;  ///< row by row
 };
 
 /// The errors of one horizon: each structure's are a population of their own.

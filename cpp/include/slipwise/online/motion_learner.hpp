@@ -83,12 +83,12 @@ struct Odometry {
 /// What was learned so far.
 struct LearnedModel {
   Knowledge known;
-  std::vector<StudentT> students;                        ///< per horizon, nothing recent being known
-  std::vector<std::vector<HeldOutPrediction>> held_out;  ///< per horizon, the last of them
-  std::array<double, kStructures> weights;               ///< of the structures
-  std::array<double, 4> range;                           ///< least and greatest speed, then yaw rate, of the inputs
-  double steepest;                                       ///< greatest roll or pitch [rad]
-  double seconds;                                        ///< of all segments learned
+  std::vector<StudentT> students;            ///< per horizon, nothing recent being known
+  std::vector<HeldOutPredictions> held_out;  ///< per horizon, the last of them
+  std::array<double, kStructures> weights;   ///< of the structures
+  std::array<double, 4> range;               ///< least and greatest speed, then yaw rate, of the inputs
+  double steepest;                           ///< greatest roll or pitch [rad]
+  double seconds;                            ///< of all segments learned
   std::size_t segments;
   RejectionCounts rejected;
 };
@@ -215,7 +215,7 @@ class MotionLearner {
   PoseFilter pose_filter_;                      ///< not saved
   MotionMonitor monitor_;                       ///< not saved
   std::vector<HorizonErrors> errors_;
-  std::vector<std::deque<HeldOutPrediction>> held_out_;
+  std::vector<HeldOutPredictions> held_out_;
   std::deque<LearnerEvent> events_;
   std::size_t dropped_events_ = 0;
   RejectionCounts rejected_{};
