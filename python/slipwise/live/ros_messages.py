@@ -91,13 +91,19 @@ class RosMessages:
         self._key_value = types["diagnostic_msgs/msg/KeyValue"]
         self._diagnostic = types["diagnostic_msgs/msg/DiagnosticStatus"]
 
-    def of(self, output: Output) -> list[RosMessage]:
-        """Return the messages that say what `output` says."""
+    def of(self, output: Output, heard: Callable[[str], bool] = lambda _topic: True) -> list[RosMessage]:
+        """Return the messages that say what `output` says.
+
+        Args:
+            output: what the node gives.
+            heard: whether somebody listens on a topic of TOPICS; where not, what comes again and again is
+                left out: odometry, twist and the path of the present command.
+        """
         match output:
             case Odometry():
-                return self._odometry(output)
+                return self._odometry(output, heard)
             case Path():
-                return self._path(output)
+                return self._path(output) if output.asked or heard("predicted_path") else []
             case Status():
                 return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
             case ModelText():
@@ -107,16 +113,23 @@ class RosMessages:
             case AppliedParameters():
                 return []  # for the node that it names alone
 
-    def _odometry(self, now: Odometry) -> list[RosMessage]:
+    def _odometry(self, now: Odometry, heard: Callable[[str], bool]) -> list[RosMessage]:
+        whole, alone = heard("odometry"), heard("twist")
+        if not (whole or alone):
+            return []
         stamp = stamp_ns(now.t)
         v, vy, omega = now.twist.tolist()
         twist = self._twist(self._vector(v, vy, 0.0), self._vector(0.0, 0.0, omega))
         uncertain = self._uncertain_twist(twist, _spatial(now.twist_covariance))
-        pose = self._uncertain_pose(self._pose_of(*now.pose.tolist()), _spatial(now.pose_covariance))
-        child = _text(now.child_frame)
-        whole = self._types[ODOMETRY](self._head(stamp, _text(now.frame)), child, pose, uncertain)
-        alone = self._types[TWIST](self._head(stamp, child), uncertain)
-        return [self._message("odometry", stamp, whole), self._message("twist", stamp, alone)]
+        child, found = _text(now.child_frame), []
+        if whole:
+            pose = self._uncertain_pose(self._pose_of(*now.pose.tolist()), _spatial(now.pose_covariance))
+            message = self._types[ODOMETRY](self._head(stamp, _text(now.frame)), child, pose, uncertain)
+            found.append(self._message("odometry", stamp, message))
+        if alone:
+            message = self._types[TWIST](self._head(stamp, child), uncertain)
+            found.append(self._message("twist", stamp, message))
+        return found
 
     def _path(self, path: Path) -> list[RosMessage]:
         frame = _text(path.frame)

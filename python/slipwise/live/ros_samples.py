@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.errors import SettingsError
+from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Pose, Wheels
 from slipwise.logs.bag_streams import deviation_of
 from slipwise.logs.joints import SideMotion
@@ -140,12 +141,12 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
 
     def pose(message: Any, t: float) -> Pose | None:
         x, y, _, *rest = values(message)
-        q, good = unit_quaternions(np.array([rest[:4]]))
-        if not good[0]:
+        qx, qy, qz, qw, var_x, var_y, var_yaw = rest
+        angles = rotation_of(qx, qy, qz, qw)
+        if angles is None:
             return None
-        roll, pitch, yaw = (float(angle[0]) for angle in angles_of(q))
-        std_xy = _known(deviation_of(np.array([rest[4:6]])))
-        std_yaw = _known(deviation_of(np.array([rest[6:7]])))
+        roll, pitch, yaw = angles
+        std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
         tilt = (roll, pitch) if roll or pitch else (None, None)
         return Pose(t, x, y, yaw + offset, std_xy, std_yaw, message.header.frame_id, *tilt)
 

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from typing import Any
 
 from slipwise.errors import SlipwiseError
+from slipwise.live.cdr_reader import reader_of
+from slipwise.live.listeners import Listeners
 from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
 from slipwise.live.ros_messages import TOPICS, RosMessages
@@ -54,7 +56,7 @@ class RosTransport:
     ) -> None:
         self._wire, self._roles, self._options = wire, roles, options
         self._name, self._override = name, override_topic
-        self._messages = RosMessages(name)
+        self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._stamps = Stamps()
         self._notices: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -87,13 +89,16 @@ class RosTransport:
         self._caller.start()
 
     def publish(self, output: Output) -> None:
-        """Publish an output; parameters of other nodes are set by a thread of its own."""
+        """Publish an output where somebody listens; parameters of other nodes are set by a thread of its own.
+
+        What is latched, notes and answers are published all the same: they come once.
+        """
         if isinstance(output, AppliedParameters):
             self._calls.put(output)
             return
-        if isinstance(output, Status) and not self._is_news(output):
+        if isinstance(output, Status) and not (self._heard("diagnostics") and self._is_news(output)):
             return
-        for message in self._messages.of(output):
+        for message in self._messages.of(output, self._heard):
             with contextlib.suppress(SlipwiseError):
                 self._wire.publish(
                     self._full(message.topic), message.type, message.payload, latched=message.latched
@@ -127,6 +132,9 @@ class RosTransport:
             self._calls.put(None)
             self._wire.close()
 
+    def _heard(self, topic: str) -> bool:
+        return self._listeners.on(self._full(topic))
+
     def _full(self, topic: str) -> str:
         return f"/{self._name}/{topic}"
 
@@ -153,10 +161,11 @@ class RosTransport:
 
     def _take(self, topic: str, kind: str, convert: ToSample, on_sample: OnSample) -> None:
         """Subscribe; a message that cannot be read is said once, and left out."""
+        read = reader_of(kind, self._reading)
 
         def take(payload: bytes) -> None:
             try:
-                message = self._reading.deserialize_cdr(payload, kind)
+                message = read(payload)
                 samples = convert(message, self._stamps.of(message, time.time()))
             except Exception as problem:
                 if topic not in self._faulty:

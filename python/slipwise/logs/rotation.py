@@ -7,7 +7,7 @@ import numpy as np
 
 from slipwise.logs.log import Bools, Floats
 
-_NORM_TOLERANCE = 1e-2
+NORM_TOLERANCE = 1e-2
 
 
 def unit_quaternions(q: Floats) -> tuple[Floats, Bools]:
@@ -18,7 +18,7 @@ def unit_quaternions(q: Floats) -> tuple[Floats, Bools]:
     """
     with np.errstate(over="ignore", invalid="ignore"):  # a damaged message can hold anything
         norm = np.linalg.norm(q, axis=1)
-    good = np.abs(norm - 1.0) <= _NORM_TOLERANCE
+    good = np.abs(norm - 1.0) <= NORM_TOLERANCE
     unit = np.tile([0.0, 0.0, 0.0, 1.0], (len(q), 1))
     unit[good] = q[good] / norm[good, None]
     return unit, np.asarray(good)

@@ -173,7 +173,8 @@ class ZenohWire:
             heard, publisher = topic in self._wanted, self._publishers.get(topic)
             matching = publisher is not None and publisher.entity.matching_status.matching
             found = [endpoint for endpoint in self._of_others() if endpoint.topic == topic]
-        return sum(heard if endpoint.publishes else matching for endpoint in found)
+        known: int = sum(heard if endpoint.publishes else matching for endpoint in found)
+        return max(known, int(matching))  # who is no node of ROS announces no endpoint
 
     def notices(self) -> list[str]:
         """Return what is to be said since the last call: no router, and topics on which nothing comes."""

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot on ROS is told: what comes again and again only where somebody listens, the rest always."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from live.sample_outputs import odometry_at, straight_path, waiting_status
+
+from slipwise.live.outputs import ModelText, Note
+from slipwise.live.ros_samples import to_pose, to_wheels
+from slipwise.live.ros_transport import RosTransport
+from slipwise.live.samples import Pose, Sample, Wheels
+from slipwise.live.wires.ros_types import ros_types
+from slipwise.live.wires.wire import WireTopic
+from slipwise.logs.messages import ODOMETRY
+from slipwise.logs.options import LogOptions
+from slipwise.logs.role_choice import Topic
+from slipwise.logs.topics import Roles
+
+CHOSEN = Topic("/odom", ODOMETRY, 1)
+
+
+class Wire:
+    """Keeps what is published, and hands over what a test says."""
+
+    name = "a test's"
+
+    def __init__(self, *heard: str) -> None:
+        self.heard, self.published = set(heard), list[str]()
+        self.takers: dict[str, Callable[[bytes], None]] = {}
+
+    def topics(self) -> list[WireTopic]:
+        return []
+
+    def subscribe(
+        self, topic: str, _type_name: str, on_message: Callable[[bytes], None], *, latched: bool = False
+    ) -> None:
+        assert not latched
+        self.takers[topic] = on_message
+
+    def publish(self, topic: str, _type_name: str, payload: bytes, *, latched: bool = False) -> None:
+        assert latched == (topic == "/slipwise/model")
+        assert payload
+        self.published.append(topic.removeprefix("/slipwise/"))
+
+    def advertise(self, _topic: str, _type_name: str, *, latched: bool = False) -> None:
+        del latched
+
+    def call(self, _service: str, _type_name: str, _request: bytes, *, timeout: float) -> bytes | None:
+        del timeout
+        return None
+
+    def connections(self, topic: str) -> int:
+        return int(topic.removeprefix("/slipwise/") in self.heard)
+
+    def notices(self) -> list[str]:
+        return []
+
+    def close(self) -> None:
+        pass
+
+
+def transport_on(wire: Wire) -> RosTransport:
+    roles = Roles(command=None, wheel=CHOSEN, pose=CHOSEN, imu=None, guessed=(), advice={})
+    return RosTransport(wire, roles, LogOptions(), name="slipwise")
+
+
+def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
+    wire = Wire()
+    transport = transport_on(wire)
+    for output in (odometry_at(1.0), straight_path(), waiting_status()):
+        transport.publish(output)
+    assert wire.published == []
+    for once in (ModelText(1.0, "x: 1"), Note(1.0, "said"), straight_path(asked=True)):
+        transport.publish(once)
+    assert wire.published == ["model", "diagnostics", "prediction", "prediction_json"]
+
+
+@pytest.mark.parametrize("topic", ["odometry", "twist", "predicted_path", "diagnostics"])
+def test_who_listens_to_a_topic_hears_that_one(topic: str) -> None:
+    wire = Wire(topic)
+    transport = transport_on(wire)
+    for output in (odometry_at(1.0), straight_path(), waiting_status()):
+        transport.publish(output)
+    assert wire.published == [topic]
+
+
+def test_an_odometry_that_is_wheels_and_pose_gives_both_as_decoding_in_full_does() -> None:
+    wire = Wire()
+    transport = transport_on(wire)
+    samples: list[Sample] = []
+    transport.subscribe(samples.append)
+    sent = Wire("odometry")
+    messages: list[bytes] = []
+    sent.publish = lambda _topic, _kind, payload, *, latched=False: messages.append(payload)  # type: ignore[method-assign]
+    transport_on(sent).publish(odometry_at(12.5))
+    wire.takers["/odom"](messages[0])
+    wire.takers["/odom"](messages[0][:40])  # cut off: said once, left out
+    message = ros_types().deserialize_cdr(messages[0], ODOMETRY)
+    whole = [to_wheels(ODOMETRY, LogOptions())(message, 12.5), to_pose(ODOMETRY, LogOptions())(message, 12.5)]
+    assert samples == whole
+    assert isinstance(samples[0], Wheels)
+    assert isinstance(samples[1], Pose)
+    (said,) = transport.notices()
+    assert said.startswith("messages of /odom that cannot be read are left out")
+    transport.close()
