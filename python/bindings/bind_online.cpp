@@ -8,6 +8,8 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
+#include <cmath>
+
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
 #include "slipwise/online/motion_learner.hpp"
@@ -54,7 +56,8 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .y = row[2],
                          .yaw = row[3],
                          .frame = static_cast<long>(row[4]),
-                         .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{}});
+                         .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
+                         .position = std::isnan(row[3])});
   }
   return run;
 }
@@ -116,7 +119,7 @@ void bind_recordings(nb::module_& m) {
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
           "unknown, or "
-          "both left away.");
+          "both left away. A yaw of NaN says that only the position was measured.");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)
       .def_ro("t", &Rejected::t)
@@ -306,6 +309,14 @@ void bind_online(nb::module_& m) {
             learner.push_pose({.t = t, .x = x, .y = y, .yaw = yaw, .frame = frame, .std = {std_xy, std_yaw}}, learned);
           },
           "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true)
+      .def(
+          "push_position",
+          [](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned) {
+            learner.push_pose(
+                {.t = t, .x = x, .y = y, .yaw = 0.0, .frame = frame, .std = {.xy = std_xy}, .position = true}, learned);
+          },
+          "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true,
+          "A position without a heading, which is taken from the course of its path.")
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
           "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,

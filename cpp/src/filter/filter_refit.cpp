@@ -46,7 +46,7 @@ void FilterRefit::weight(const DrivenSegment& driven) {
     return;
   }
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  if (!model_.learned().dynamics && last_ && std::abs(segment.start - last_->end) < kSameStamp) {
+  if (!model_.learned().dynamics && !segment.chords && last_ && std::abs(segment.start - last_->end) < kSameStamp) {
     const PoseStdRatio& met = segment.pose_std_ratio.front();
     shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), scale);
   }

@@ -9,7 +9,7 @@
 namespace slipwise {
 
 Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise) {
-  return slip_covariance(at.path, noise) + pose_noise_covariance(segment.measured, noise, segment.pose_std_ratio);
+  return slip_covariance(at.path, noise) + pose_noise_covariance(at.path, segment.measured, noise);
 }
 
 IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,

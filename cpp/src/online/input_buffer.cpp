@@ -136,6 +136,18 @@ InputBuffer::Driven InputBuffer::driven(double start, double end) const {
   return sum;
 }
 
+Pose2 InputBuffer::reckoned(double start, double end) const {
+  Pose2 pose;
+  for (std::size_t i = std::max<std::size_t>(count_until(start), 1) - 1; i < samples_.size() && samples_[i].t < end;
+       ++i) {
+    const double until = i + 1 < samples_.size() ? std::min(samples_[i + 1].t, end) : end;
+    const auto& [v, vy, omega] = samples_[i].twist;
+    const double seconds = std::max(until - std::max(samples_[i].t, start), 0.0);
+    pose = compose(pose, exp(Eigen::Vector3d(v, vy, omega) * seconds));
+  }
+  return pose;
+}
+
 InputHistory InputBuffer::slice(double start, double end, SliceKind kind,
                                 const std::vector<InputSample>& future) const {
   Thinned thinned;

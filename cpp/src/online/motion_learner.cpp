@@ -134,7 +134,7 @@ void MotionLearner::push_attitude(double t, double roll, double pitch) {
 
 void MotionLearner::push_pose(const MeasuredPose& pose, bool learned) {
   see_stamp(pose.t);
-  if (stream_.push_pose(pose, learned)) {
+  if (stream_.push_pose(pose, learned) && !pose.position) {
     pose_filter_.push(pose);
     monitor_.push(pose);
   }

@@ -23,6 +23,8 @@ constexpr std::array<Words, kReasons> kWords{{
     {.name = "unknown-input", .text = "the input is unknown (older than allowed) for a stretch"},
     {.name = "standing-still", .text = "the robot was commanded to stand still for the whole segment"},
     {.name = "heading-ambiguous", .text = "between two poses the robot may have turned by more than half a turn"},
+    {.name = "no-course",
+     .text = "a position to which no chord leads: the robot hardly moved, or not as its inputs say"},
 }};
 
 const Words& words(Reason reason) { return kWords[static_cast<std::size_t>(reason)]; }

@@ -27,6 +27,30 @@ double median_of(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
+/// The second position, headed by another chord where its own begins at the first: the turn between such a pair says
+/// nothing that their distance does not. Nothing where it has no other.
+std::optional<MeasuredPose> headed_apart(const MeasuredPose& first, MeasuredPose second) {
+  if (second.headings[0] && second.headings[0]->chord.from == first.t) {
+    std::swap(second.headings[0], second.headings[1]);
+    if (!second.headings[0]) {
+      return std::nullopt;
+    }
+    second.yaw = second.headings[0]->yaw;
+  }
+  return second;
+}
+
+/// From when on inputs must be known for a segment between these [s].
+double earliest(const MeasuredPose& first, const MeasuredPose& second) {
+  const auto chord_start = [](const MeasuredPose& pose) {
+    return pose.headings[0] ? pose.headings[0]->chord.from : pose.t;
+  };
+  return std::min({first.t, chord_start(first), chord_start(second)});
+}
+
+/// Whether what makes the position's heading was measured from then on [s].
+bool begins_after(const MeasuredPose& pose, double t) { return !pose.headings[0] || pose.headings[0]->chord.from >= t; }
+
 double speed_of(const BodyTwist& fastest) { return std::max(fastest.v, fastest.omega); }
 
 }  // namespace
@@ -90,6 +114,14 @@ std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputBu
     poses_.clear();
     unknown_since_.reset();
   }
+  if (chord_after_) {
+    if (!begins_after(pose.pose, *chord_after_)) {
+      poses_.assign(1, pose);
+      return out;
+    }
+    poses_.clear();
+    chord_after_.reset();
+  }
   poses_.push_back(pose);
   cut(length_, false, inputs, out);
   return out;
@@ -107,25 +139,28 @@ void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>
     const double whole = poses_.back().pose.t - poses_.front().pose.t;
     length = kLeastFraction * length <= whole && whole < length ? whole : length;
   }
-  if (!unknown_since_) {
+  if (!unknown_since_ && !chord_after_) {
     cut(length, true, inputs, out);
   }
   poses_.clear();
   any_ = false;
   unknown_since_.reset();
+  chord_after_.reset();
 }
 
 /// Where `last`, no pose follows; otherwise a segment is cut once there is a pose that is late enough to end it.
 void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out) {
-  while (poses_.size() > 1 && !unknown_since_ && (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
+  while (poses_.size() > 1 && !unknown_since_ && !chord_after_ &&
+         (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
     const TimedPose& start = poses_.front();
     const double interval = start.interval > 0.0 ? start.interval : poses_[1].interval;
     const double tolerance = std::max(0.5 * interval, rules_.length_tolerance * length);
     const auto end = nearest(start.pose.t + length, tolerance, last);
     std::size_t next = 1;
     if (end && *end > 0) {
-      const auto wrong = problem(*end, inputs);
-      out.push_back({.first = start.pose, .second = poses_[*end].pose, .rejected = wrong});
+      const auto second = headed_apart(start.pose, poses_[*end].pose);
+      const auto wrong = second ? problem(*end, inputs) : std::optional(Reason::NoCourse);
+      out.push_back({.first = start.pose, .second = second.value_or(poses_[*end].pose), .rejected = wrong});
       next = next_start(*end, wrong, inputs);
     }
     any_ = true;
@@ -152,12 +187,12 @@ std::optional<std::size_t> SegmentCutter::nearest(double wanted, double toleranc
 
 /// Why the first pose and this one make no segment, if they do not.
 std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer& inputs) const {
-  const double from = poses_.front().pose.t;
+  const double from = earliest(poses_.front().pose, poses_[end].pose);
   const double to = poses_[end].pose.t;
   if (inputs.empty() || inputs.unknown_since(from, to)) {
     return Reason::UnknownInput;
   }
-  const BodyTwist fastest = inputs.fastest(from, to);
+  const BodyTwist fastest = inputs.fastest(poses_.front().pose.t, to);
   if (speed_of(fastest) <= rules_.still_speed) {
     return Reason::StandingStill;
   }
@@ -166,6 +201,19 @@ std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer&
     longest = std::max(longest, poses_[i].gap);
   }
   return fastest.omega * longest > std::numbers::pi ? std::optional(Reason::AmbiguousHeading) : std::nullopt;
+}
+
+/// The first position whose chord begins no earlier than the last segment ended. Errors of a chord that two segments
+/// share would count twice as if they were independent.
+std::size_t SegmentCutter::next_apart(std::size_t end) {
+  const double ended = poses_[end].pose.t;
+  for (std::size_t i = end + 1; i < poses_.size(); ++i) {
+    if (begins_after(poses_[i].pose, ended)) {
+      return i;
+    }
+  }
+  chord_after_ = ended;
+  return poses_.size() - 1;  // the last is kept: its frame goes on
 }
 
 /// How many poses come before the next segment's start.
@@ -189,7 +237,10 @@ std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> pro
   if (problem == Reason::AmbiguousHeading) {
     return 1;
   }
-  return stride_ ? std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_ - kStrideRounding)) : end;
+  if (stride_) {
+    return std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_ - kStrideRounding));
+  }
+  return poses_[end].pose.position && !rules_.share_chords ? next_apart(end) : end;
 }
 
 }  // namespace slipwise

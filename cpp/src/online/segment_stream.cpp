@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/course.hpp"
 
 namespace slipwise {
 namespace {
@@ -41,10 +42,13 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
       slip_(kSlipLength, settings.rules, true),
       wheel_cutter_(kWheelLength, settings.rules, true),
-      twists_(settings.rules, settings.sensor) {
+      twists_(settings.rules, settings.sensor),
+      chords_(settings.sensor) {
   double longest = settings.segment_length;
+  SegmentRules predicted = settings.rules;
+  predicted.share_chords = true;
   for (const double horizon : settings.horizons) {
-    targets_.emplace_back(horizon, settings.rules, false);
+    targets_.emplace_back(horizon, predicted, false);
     longest = std::max(longest, horizon);
   }
   keep_ += 2.0 * longest;
@@ -125,10 +129,16 @@ void SegmentStream::push_attitude(double t, double roll, double pitch) {
 
 bool SegmentStream::push_pose(const MeasuredPose& pose, bool learned) {
   const auto allowed = [](double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); };
-  const std::array numbers{pose.x, pose.y, pose.yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
+  const double yaw = pose.position ? 0.0 : pose.yaw;
+  const std::array numbers{pose.x, pose.y, yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
   const bool taken = arrives(Stream::Pose, pose.t, numbers);
+  if (taken && learned && pose.position != position_last_) {
+    ++breaks_;
+    position_last_ = pose.position;
+  }
   if (taken && learned) {
     poses_.push_back(pose);
+    poses_.back().yaw = yaw;
     poses_.back().frame += kFramesApart * breaks_;
   } else if (taken && learned_last_) {
     ++breaks_;
@@ -192,14 +202,19 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     reject(Stream::Pose, Reason::PoseJump, pose.t);
   }
   for (const MeasuredPose& pose : gated.accepted) {
-    const auto timed = timer_.push(pose, settings_.rules.late_factor);
+    auto timed = timer_.push(pose, settings_.rules.late_factor);
     if (!timed) {
       reject(Stream::Pose, Reason::LatePose, pose.t);
       continue;
     }
+    timed = headed(*std::move(timed), chords_);
+    if (!timed) {
+      reject(Stream::Pose, Reason::NoCourse, pose.t);
+      continue;
+    }
     if (settings_.from_commands && wheels_ever_) {
       emit_slip(slip_.push(*timed, wheels_));
-    } else if (settings_.from_commands) {
+    } else if (settings_.from_commands && !pose.position) {  // a course lags behind the heading by half its chord
       emit_twists(twists_.push(*timed, commands_));
     }
     emit_learned(learned_.push(*timed, inputs()));
@@ -207,6 +222,18 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       emit_targets(i, targets_[i].push(*timed, inputs()));
     }
   }
+}
+
+/// A pose as it is; a position with the heading that its course makes, where it has one.
+std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& chords) const {
+  if (timed.pose.position) {
+    const auto found = chords.push(timed.pose, gate_inputs(timed.pose.t));
+    if (!found) {
+      return std::nullopt;
+    }
+    timed.pose = *found;
+  }
+  return timed;
 }
 
 void SegmentStream::finish_cutters() {
@@ -280,13 +307,16 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gy = cut.first.gy,
                   .sensor = settings_.sensor,
                   .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
+  if (cut.first.headings[0] && cut.second.headings[0]) {
+    segment.chords = {cut.first.headings[0]->chord, cut.second.headings[0]->chord};
+  }
   stand_on_ground(segment, foreseen);
   if (!by_wheels) {
     set_actuator_state(segment);
   }
   const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
   const double back = by_wheels ? kWheelsBack : kLookBack;
-  return {.inputs = (by_wheels ? wheels_ : commands_).slice(segment.start - back, segment.end, kind),
+  return {.inputs = (by_wheels ? wheels_ : commands_).slice(path_start(segment) - back, segment.end, kind),
           .segment = std::move(segment),
           .known_at = known_at};
 }
@@ -295,7 +325,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
 void SegmentStream::set_actuator_state(Segment& segment) const {
   segment.initial = wheels_.known_at(segment.start);
   if (segment.initial) {
-    InputHistory until_start = wheels_.slice(segment.start - kWheelsBack, segment.start, SliceKind::Wheels);
+    InputHistory until_start = wheels_.slice(path_start(segment) - kWheelsBack, segment.start, SliceKind::Wheels);
     segment.known =
         MeasuredActuator{.twist = std::make_shared<const InputHistory>(std::move(until_start)), .until = segment.start};
   }
@@ -304,7 +334,8 @@ void SegmentStream::set_actuator_state(Segment& segment) const {
 /// What tilts the robot: where it is `foreseen`, as far as is known at the start.
 void SegmentStream::stand_on_ground(Segment& segment, bool foreseen) const {
   const double oldest = settings_.unknown_after;
-  segment.ground = foreseen ? tilts_.from(segment.start, oldest) : tilts_.along(segment.start, segment.end, oldest);
+  segment.ground =
+      foreseen ? tilts_.from(segment.start, oldest) : tilts_.along(path_start(segment), segment.end, oldest);
 }
 
 /// Inputs are kept for segments that have begun, unless poses do not come for long.
@@ -331,11 +362,15 @@ std::vector<DrivenSegment> SegmentStream::pending_segments() const {
   PoseAccuracy accuracy = accuracy_;
   PoseGate gate = gate_;
   PoseTimer timer = timer_;
+  ChordFinder chords = chords_;
   SegmentCutter cutter = learned_;
   std::vector<DrivenSegment> found;
   for (const MeasuredPose& raw : poses_) {
     for (const MeasuredPose& pose : gate.push(complete(raw, accuracy), gate_inputs(raw.t)).accepted) {
-      const auto timed = timer.push(pose, settings_.rules.late_factor);
+      auto timed = timer.push(pose, settings_.rules.late_factor);
+      if (timed) {
+        timed = headed(*std::move(timed), chords);
+      }
       for (const SegmentCut& cut : timed ? cutter.push(*timed, inputs()) : std::vector<SegmentCut>{}) {
         if (!cut.rejected) {
           found.push_back(driven(cut, !settings_.from_commands, raw.t));

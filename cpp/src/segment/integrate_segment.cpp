@@ -20,7 +20,7 @@ using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor
 using LearnedColumns = Eigen::Matrix<double, 4, Eigen::Dynamic, Eigen::ColMajor, 4, kActuatorParameters>;
 
 ActuatorSpan window_of(const Segment& segment) {
-  return {.start = segment.start, .end = segment.end, .initial = segment.initial, .known = segment.known};
+  return {.start = path_start(segment), .end = segment.end, .initial = segment.initial, .known = segment.known};
 }
 
 Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters, const Segment& segment) {
@@ -43,7 +43,7 @@ class GrowingPath {
     path_.times.reserve(steps + 1);
     path_.poses.reserve(steps + 1);
     path_.tangents.reserve(steps);
-    path_.times.push_back(segment.start);
+    path_.times.push_back(path_start(segment));
     path_.poses.emplace_back();
     path_.pose_std_ratio = segment.pose_std_ratio;
   }
@@ -65,9 +65,11 @@ class GrowingPath {
 
   double time() const { return path_.times.back(); }
 
-  SegmentPath finish(std::vector<ActuatorStep> drive, const Pose2& sensor) && {
+  SegmentPath finish(std::vector<ActuatorStep> drive, const Pose2& sensor,
+                     const std::optional<CoursePlaces>& course = std::nullopt) && {
     path_.drive = std::move(drive);
     path_.sensor = sensor;
+    path_.course = course;
     return std::move(path_);
   }
 
@@ -123,18 +125,18 @@ struct SensitivitySums {
   }
 
   /// Phi(n, 0), carried from the robot to the sensor.
-  static Eigen::Matrix3d at_sensor(const SegmentPath& path) {
-    const Pose2& end = path.poses.back();
-    return sensor_by_robot(end, path.sensor) * transition(Pose2{}, end);
+  static Eigen::Matrix3d at_sensor(const Pose2& end, const Pose2& sensor) {
+    return sensor_by_robot(end, sensor) * transition(Pose2{}, end);
   }
 
-  Eigen::Matrix<double, 3, Eigen::Dynamic> by_slip(const SegmentPath& path) const { return at_sensor(path) * slip; }
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_slip(const Pose2& end, const Pose2& sensor) const {
+    return at_sensor(end, sensor) * slip;
+  }
 
   /// J = Phi(n, 0) times the sums.
-  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const SegmentPath& path, const MotionModel& model,
+  Eigen::Matrix<double, 3, Eigen::Dynamic> at(const Pose2& end, const Pose2& sensor, const MotionModel& model,
                                               const ActuatorModel& at) const {
-    const Pose2& end = path.poses.back();
-    const Eigen::Matrix3d phi = at_sensor(path);
+    const Eigen::Matrix3d phi = at_sensor(end, sensor);
     Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian(3, model.size());
     jacobian.leftCols(model.slip_size()) = phi * slip;
     if (model.actuator_size() > 0) {
@@ -142,7 +144,7 @@ struct SensitivitySums {
           phi * actuator * model.actuator_scales(at).asDiagonal();
     }
     if (model.learned().sensor_extrinsics) {
-      jacobian.rightCols<kExtrinsicsParameters>() = sensor_by_extrinsics(end, path.sensor);
+      jacobian.rightCols<kExtrinsicsParameters>() = sensor_by_extrinsics(end, sensor);
     }
     return jacobian;
   }
@@ -166,6 +168,28 @@ struct GroundUnder {
   }
 };
 
+/// Cuts steps for what the segment needs; returns where the points of its course are, if it has one.
+std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segment) {
+  if (segment.ground) {
+    cut_for_ground(drive);
+  }
+  return segment.chords ? std::optional(cut_for_course(drive, segment)) : std::nullopt;
+}
+
+/// The derivative of a course by those of the sensor's poses at its points; those at the path's start have none.
+Eigen::Matrix<double, 3, Eigen::Dynamic> of_course(
+    const SegmentPath& path, const std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints>& at_points,
+    Eigen::Index parameters) {
+  const ByPosition by_position = course_by_position(path.course_positions(), *path.course);
+  Eigen::Matrix<double, 3, Eigen::Dynamic> sum = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, parameters);
+  for (std::size_t i = 0; i < kCoursePoints; ++i) {
+    if (path.course->at[i] > 0) {
+      sum += by_position[i] * at_points[i].topRows<2>();
+    }
+  }
+  return sum;
+}
+
 /// By the slip parameters, and by the others too where `kAll`. After each step but the last, `see` is handed the path,
 /// the steps and the sums so far.
 template <bool kAll, class See>
@@ -177,11 +201,14 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
                                     : actuator_steps(inputs, actuator, window_of(segment));
-  if (segment.ground) {
-    cut_for_ground(drive);
-  }
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment);
+  const Pose2 sensor = sensor_of(model, parameters, segment);
+  std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints> at_points;
   GrowingPath path(segment, drive.steps.size());
   SensitivitySums sums(model);
+  const auto at_sensor = [&] {
+    return kAll ? sums.at(path.pose(), sensor, model, actuator) : sums.by_slip(path.pose(), sensor);
+  };
   std::vector<double> features(model.basis().size());
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
@@ -207,13 +234,21 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
     if (learned && !learned->isZero(0.0)) {
       sums.actuator += by_tangent * tangent_by(step, *learned, along, slip);
     }
+    for (std::size_t i = 0; course && i < kCoursePoints; ++i) {
+      if (course->at[i] == k + 1) {
+        at_points[i] = at_sensor();
+      }
+    }
     if (k + 1 < drive.steps.size()) {
       see(path, std::span(drive.steps).first(k + 1), sums);
     }
   }
-  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
+  Eigen::Matrix<double, 3, Eigen::Dynamic> by_parameter = at_sensor();
+  SegmentPath finished = std::move(path).finish(std::move(drive.steps), sensor, course);
+  if (course) {
+    by_parameter = of_course(finished, at_points, by_parameter.cols());
+  }
   const Pose2 predicted = finished.sensor_motion();
-  auto by_parameter = kAll ? sums.at(finished, model, actuator) : sums.by_slip(finished);
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
 
@@ -222,7 +257,18 @@ void see_nothing(const GrowingPath& /*path*/, std::span<const ActuatorStep> /*st
 
 }  // namespace
 
-Pose2 SegmentPath::sensor_motion() const { return slipwise::sensor_motion(poses.back(), sensor); }
+CoursePositions SegmentPath::course_positions() const {
+  CoursePositions points;
+  for (std::size_t i = 0; i < kCoursePoints; ++i) {
+    const Pose2 seen = slipwise::sensor_motion(poses[course->at[i]], sensor);
+    points[i] = {seen.x, seen.y};
+  }
+  return points;
+}
+
+Pose2 SegmentPath::sensor_motion() const {
+  return course ? course_motion(course_positions(), *course) : slipwise::sensor_motion(poses.back(), sensor);
+}
 
 Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
   return compose(compose(sensor, measured), inverse(sensor));
@@ -233,9 +279,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   model.check(parameters);
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
-  if (segment.ground) {
-    cut_for_ground(drive);
-  }
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment);
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const ActuatorStep& step : drive.steps) {
@@ -250,7 +294,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
                                              : rk4_displacement(tangent);
     path.append(step.duration, tangent, displacement, arc);
   }
-  return std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment));
+  return std::move(path).finish(std::move(drive.steps), sensor_of(model, parameters, segment), course);
 }
 
 SegmentLinearization linearize_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -281,7 +325,7 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
     }
     SegmentPath so_far = GrowingPath(path).finish({steps.begin(), steps.end()}, sensor);
     const Pose2 predicted = so_far.sensor_motion();
-    auto by_parameter = sums.at(so_far, model, actuator);
+    auto by_parameter = sums.at(so_far.poses.back(), sensor, model, actuator);
     found.push_back({std::move(so_far), predicted, std::move(by_parameter)});
   };
   auto whole = linearized<true>(model, parameters, inputs, segment, see);

@@ -16,6 +16,46 @@ Eigen::Matrix3d end_by_tangent(const SegmentPath& path, std::size_t k) {
   return transition(path.poses[k + 1], path.poses.back()) * world;
 }
 
+/// How steps move the chart that a segment's measurement is compared with.
+class ChartBySteps {
+ public:
+  explicit ChartBySteps(const SegmentPath& path) : path_(path) {
+    if (path.course) {
+      by_position_ = course_by_position(path.course_positions(), *path.course);
+    }
+  }
+
+  /// Derivative by the tangent of step k: of the robot's chart at the end, or between positions of the course's.
+  Eigen::Matrix3d by_tangent(std::size_t k) const {
+    return path_.course ? course_by_tangent(k) : end_by_tangent(path_, k);
+  }
+  /// What leads from there to the chart of the measurement.
+  Eigen::Matrix3d observed() const {
+    return path_.course ? Eigen::Matrix3d(Eigen::Matrix3d::Identity())
+                        : sensor_by_robot(path_.poses.back(), path_.sensor);
+  }
+
+ private:
+  Eigen::Matrix3d course_by_tangent(std::size_t k) const {
+    Eigen::Matrix3d world = chart_jacobian(path_.tangents[k]);
+    world.topRows<2>() = rotation(path_.poses[k].theta) * world.topRows<2>().eval();
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < kCoursePoints; ++i) {
+      const std::size_t place = path_.course->at[i];
+      if (place > k) {
+        const Pose2& pose = path_.poses[place];
+        const Eigen::Matrix3d moved =
+            sensor_by_robot(pose, path_.sensor) * transition(path_.poses[k + 1], pose) * world;
+        sum += by_position_[i] * moved.topRows<2>();
+      }
+    }
+    return sum;
+  }
+
+  const SegmentPath& path_;
+  ByPosition by_position_;
+};
+
 /// H of derivations/uncertainty.md: a start measured too far left and turned too far left moves the end right and back.
 Eigen::Matrix3d end_by_start(const Pose2& measured) {
   Eigen::Matrix3d by_start = -Eigen::Matrix3d::Identity();
@@ -40,10 +80,11 @@ std::array<double, 3> motion_of(const ActuatorStep& step) {
 }  // namespace
 
 Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& noise) {
+  const ChartBySteps chart(path);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();  // column c: effect of a slip that is the same fraction all along
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
-    const Eigen::Matrix3d by_tangent = end_by_tangent(path, k);
+    const Eigen::Matrix3d by_tangent = chart.by_tangent(k);
     const std::array<double, 3> motion = motion_of(path.drive[k]);
     const double moving_time = motion[0] > 0.0 ? path.drive[k].duration : 0.0;
     for (Eigen::Index c = 0; c < 3; ++c) {
@@ -54,27 +95,50 @@ Eigen::Matrix3d slip_covariance(const SegmentPath& path, const MotionNoise& nois
     }
   }
   covariance += constant * constant.transpose();
-  const Eigen::Matrix3d observed = sensor_by_robot(path.poses.back(), path.sensor);
+  const Eigen::Matrix3d observed = chart.observed();
   return observed * covariance * observed.transpose();
 }
 
 Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise) {
+  const ChartBySteps chart(path);
   Eigen::Matrix3d constant = Eigen::Matrix3d::Zero();
   for (std::size_t k = 0; k < path.tangents.size(); ++k) {
-    const Eigen::Matrix3d by_tangent = end_by_tangent(path, k);
+    const Eigen::Matrix3d by_tangent = chart.by_tangent(k);
     const std::array<double, 3> motion = motion_of(path.drive[k]);
     for (Eigen::Index c = 0; c < 3; ++c) {
       const auto i = static_cast<std::size_t>(c);
       constant.col(c) += by_tangent.col(c) * (noise.fraction[i] * motion[i]);
     }
   }
-  return sensor_by_robot(path.poses.back(), path.sensor) * constant;
+  return chart.observed() * constant;
 }
 
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
                                       const std::array<PoseStdRatio, 2>& ratio) {
   const Eigen::Matrix3d from_start = end_by_start(measured);
   return from_start * pose_covariance(noise, ratio[0]) * from_start.transpose() + pose_covariance(noise, ratio[1]);
+}
+
+Eigen::Matrix3d pose_noise_covariance(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise) {
+  if (!path.course) {
+    return pose_noise_covariance(measured, noise, path.pose_std_ratio);
+  }
+  const auto& at = path.course->at;
+  ByPosition by = course_by_position(path.course_positions(), *path.course);
+  if (at[kEndChord] == at[kStart]) {  // one position, one error
+    by[kStart] += by[kEndChord];
+    by[kEndChord].setZero();
+  }
+  if (at[kEndChord] == at[kStartChord]) {
+    by[kStartChord] += by[kEndChord];
+    by[kEndChord].setZero();
+  }
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t i = 0; i < kCoursePoints; ++i) {
+    const double std = path.pose_std_ratio[i < kEndChord ? 0 : 1].xy * noise.pose_std_xy;
+    covariance += std * std * by[i] * by[i].transpose();
+  }
+  return covariance;
 }
 
 Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
@@ -91,8 +155,7 @@ Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen
 
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(measured, noise, path.pose_std_ratio),
-                           scale);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(path, measured, noise), scale);
 }
 
 }  // namespace slipwise

@@ -56,7 +56,7 @@ SlipRatioUpdate SlipRatioFilter::learn(const InputHistory& wheels, const Segment
   const auto at = linearize_slip_ratios(wheels, segment, slip(), settings_.wheel_separation);
   const Eigen::Matrix3d& h = at.by_slip_ratios;
   const Eigen::Matrix3d noise = slip_covariance(at.segment.path, settings_.noise) +
-                                pose_noise_covariance(segment.measured, settings_.noise, segment.pose_std_ratio);
+                                pose_noise_covariance(at.segment.path, segment.measured, settings_.noise);
   SlipRatioUpdate update{.innovation = segment.measured.vector() - at.segment.predicted.vector(),
                          .innovation_covariance = h * prior * h.transpose() + noise,
                          .nis = 0.0,

@@ -11,6 +11,7 @@
 #include "slipwise/actuator/input_history.hpp"
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/lie/body_twist.hpp"
+#include "slipwise/lie/se2.hpp"
 
 namespace slipwise {
 
@@ -65,6 +66,8 @@ class InputBuffer {
     double known;     ///< [s]
   };
   Driven driven(double start, double end) const;
+  /// The motion over [start, end] [s] that the inputs held then make, T_start_end.
+  Pose2 reckoned(double start, double end) const;
 
   /// The samples that act in [start, end], then `future` ones up to `end`, as the core's inputs.
   InputHistory slice(double start, double end, SliceKind kind, const std::vector<InputSample>& future = {}) const;

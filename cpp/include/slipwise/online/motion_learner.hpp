@@ -106,6 +106,7 @@ class MotionLearner {
   void end_run();
   void push_command(double t, const BodyTwist& twist);
   void push_wheels(double t, const BodyTwist& twist);
+  /// A pose, or a position alone, whose heading is taken from the course of its path; odometry needs poses.
   /// A pose that is not `learned` from serves odometry and the monitor alone; no segment lies across it.
   void push_pose(const MeasuredPose& pose, bool learned = true);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.

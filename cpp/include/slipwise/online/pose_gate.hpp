@@ -10,10 +10,18 @@
 #include "slipwise/filter/speed_range.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
+#include "slipwise/segment/segment.hpp"
 
 namespace slipwise {
 
-/// A measured pose of the pose sensor, and what tilts the robot then.
+/// A heading that is made of the course of a chord.
+struct ChordHeading {
+  double yaw;  ///< [rad], unwrapped along the frame
+  Chord chord;
+};
+
+/// A measured pose of the pose sensor, and what tilts the robot then; or a measured position, whose yaw is made of the
+/// course of its chord.
 struct MeasuredPose {
   double t;    ///< [s]
   double x;    ///< [m]
@@ -24,6 +32,8 @@ struct MeasuredPose {
   double gy = 0.0;  ///< along its y axis [m/s^2]
   PoseStd std = {};
   PoseStdRatio std_ratio = {};
+  bool position = false;                                     ///< whether only the position was measured
+  std::array<std::optional<ChordHeading>, 2> headings = {};  ///< of a position: the first in use, and another
 };
 
 /// What the gate makes of the poses.

@@ -27,9 +27,10 @@ enum class Reason : std::uint8_t {
   LatePose,
   UnknownInput,
   StandingStill,
-  AmbiguousHeading
+  AmbiguousHeading,
+  NoCourse
 };
-inline constexpr std::size_t kReasons = 12;
+inline constexpr std::size_t kReasons = 13;
 constexpr std::size_t enumerators(Reason /*type*/) { return kReasons; }
 
 /// A short stable name, such as "duplicate-stamp".

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -76,6 +77,7 @@ class SegmentStream {
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
   /// Whether it may be used; otherwise it is rejected.
+  /// No segment lies between a pose and what is a position alone.
   bool push_pose(const MeasuredPose& pose, bool learned = true);
 
   /// What became complete since the last call, in the order in which it is to be learned.
@@ -113,6 +115,7 @@ class SegmentStream {
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_, self.learned_last_);
+    a(self.chords_, self.position_last_);
   }
 
  private:
@@ -122,6 +125,7 @@ class SegmentStream {
   void process_wheels(double until);
   void process_pose(const MeasuredPose& raw);
   void process_accepted(const GatedPoses& gated);
+  std::optional<TimedPose> headed(TimedPose timed, ChordFinder& chords) const;
   void emit_learned(const std::vector<SegmentCut>& cuts);
   void emit_slip(const std::vector<SegmentCut>& cuts);
   void emit_twists(const std::vector<TwistStretch>& stretches);
@@ -163,6 +167,8 @@ class SegmentStream {
   std::vector<Rejected> rejected_;
   long breaks_ = 0;           ///< times that poses were not learned from
   bool learned_last_ = true;  ///< whether the last pose was
+  ChordFinder chords_;
+  bool position_last_ = false;  ///< whether the last pose was a position alone
 };
 
 }  // namespace slipwise

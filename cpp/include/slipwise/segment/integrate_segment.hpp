@@ -6,11 +6,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "slipwise/actuator/input_history.hpp"
 #include "slipwise/lie/se2.hpp"
 #include "slipwise/motion/motion_model.hpp"
+#include "slipwise/segment/course.hpp"
 #include "slipwise/segment/segment.hpp"
 
 namespace slipwise {
@@ -18,7 +20,7 @@ namespace slipwise {
 /// Exact: exponential of each step's mean twist. Rk4: the thesis's Runge-Kutta steps, for comparison.
 enum class Integrator : std::uint8_t { Exact, Rk4 };
 
-/// The robot's path observed from its start.
+/// The robot's path observed from its start. Between positions it begins where the first of their chords does.
 struct SegmentPath {
   std::vector<double> times;                        ///< [steps + 1], [s], in pose stamps
   std::vector<Pose2> poses;                         ///< [steps + 1], the first is the origin
@@ -26,8 +28,11 @@ struct SegmentPath {
   std::vector<ActuatorStep> drive;                  ///< [steps], the drive without slip
   Pose2 sensor;                                     ///< pose in base_link of the sensor that measures the path
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the segment's measured poses
+  std::optional<CoursePlaces> course = {};          ///< where the segment lies between positions
 
-  /// The sensor's motion, X^-1 T X: what `Segment::measured` is compared with.
+  /// Where the sensor is at the points of the course, seen from the path's start.
+  CoursePositions course_positions() const;
+  /// The sensor's motion, X^-1 T X, or between positions that by courses: what `Segment::measured` is compared with.
   Pose2 sensor_motion() const;
   /// The robot's motion that a sensor's motion tells, X M X^-1.
   Pose2 robot_motion(const Pose2& measured) const;

@@ -19,6 +19,12 @@ struct PoseStdRatio {
   double yaw = 1.0;
 };
 
+/// The straight line to a measured position from an earlier one. Its course makes a heading there.
+struct Chord {
+  double from = 0.0;    ///< stamp of the earlier position [s]
+  double offset = 0.0;  ///< what adds to the course to make the heading, as far as the inputs tell [rad]
+};
+
 struct Segment {
   double start;                                     ///< stamp of the first pose [s]
   double end;                                       ///< stamp of the second pose [s]
@@ -30,6 +36,8 @@ struct Segment {
   Pose2 sensor = {};                                ///< known pose in base_link of what `measured` is the motion of
   std::array<PoseStdRatio, 2> pose_std_ratio = {};  ///< of the first and the second pose
   std::shared_ptr<const Ground> ground = {};        ///< what tilts the robot; nothing on level ground
+  /// Where the poses are positions: the chords to the first and to the second, whose courses stand for headings.
+  std::optional<std::array<Chord, 2>> chords = {};
 };
 
 }  // namespace slipwise

@@ -19,6 +19,9 @@ Eigen::Matrix3d constant_slip(const SegmentPath& path, const MotionNoise& noise)
 /// standard deviations times its ratios.
 Eigen::Matrix3d pose_noise_covariance(const Pose2& measured, const MotionNoise& noise,
                                       const std::array<PoseStdRatio, 2>& ratio = {});
+/// The same of the segment that `path` predicts, along which `measured` was driven; between positions, noise goes
+/// through all that make the courses.
+Eigen::Matrix3d pose_noise_covariance(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise);
 /// Covariance of the chart of a measured motion with that of the one before it, where they meet at one measured pose.
 Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, const MotionNoise& noise,
                                   const PoseStdRatio& ratio = {});
