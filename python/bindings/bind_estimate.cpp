@@ -38,6 +38,7 @@ void bind_settings(nb::module_& m) {
   nb::class_<PriorSettings>(m, "PriorSettings")
       .def(nb::init<>())
       .def_rw("slip_fraction", &PriorSettings::slip_fraction)
+      .def_rw("straight_side_slip_std", &PriorSettings::straight_side_slip_std)
       .def_rw("clock_offset_std", &PriorSettings::clock_offset_std)
       .def_rw("sensor", &PriorSettings::sensor)
       .def_rw("extrinsics_std", &PriorSettings::extrinsics_std)

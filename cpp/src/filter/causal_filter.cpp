@@ -40,7 +40,7 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
 }
 
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
-  Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
+  Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior);
   if (!started_) {
     state_.estimate = before_ = prior_estimate(model_, speeds, settings_.prior);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {

@@ -2,6 +2,7 @@
 // Priors in physical units (derivations/priors.md).
 #include "slipwise/filter/prior.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "slipwise/linear/cholesky.hpp"
@@ -26,10 +27,24 @@ Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds
   return std;
 }
 
+Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, const PriorSettings& settings) {
+  Eigen::VectorXd std = slip_prior_std(basis, speeds, settings.slip_fraction);
+  if (settings.straight_side_slip_std) {
+    const Eigen::VectorXd straight =
+        basis.linearize_features({.v = speeds.v, .omega = 0.0, .gx = 0.0, .gy = 0.0}).value;
+    for (std::size_t i = basis.begin(Channel::Lat); i < basis.end(Channel::Lat); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      const double feature = std::max(std::abs(straight[at]), kLeastFeature);
+      std[at] = std::min(std[at], *settings.straight_side_slip_std * speeds.v / feature);
+    }
+  }
+  return std;
+}
+
 Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds, const PriorSettings& settings) {
   Estimate prior{Eigen::VectorXd::Zero(model.size()), Eigen::MatrixXd::Zero(model.size(), model.size())};
   Eigen::VectorXd std(model.size());
-  std.head(model.slip_size()) = slip_prior_std(model.basis(), speeds, settings.slip_fraction);
+  std.head(model.slip_size()) = slip_prior_std(model.basis(), speeds, settings);
   Eigen::Index at = model.slip_size();
   if (model.learned().dynamics) {
     prior.mean.segment<2>(at).setConstant(std::log(settings.time_constant));

@@ -48,9 +48,6 @@ double earliest(const MeasuredPose& first, const MeasuredPose& second) {
   return std::min({first.t, chord_start(first), chord_start(second)});
 }
 
-/// Whether what makes the position's heading was measured from then on [s].
-bool begins_after(const MeasuredPose& pose, double t) { return !pose.headings[0] || pose.headings[0]->chord.from >= t; }
-
 double speed_of(const BodyTwist& fastest) { return std::max(fastest.v, fastest.omega); }
 
 }  // namespace
@@ -114,14 +111,6 @@ std::vector<SegmentCut> SegmentCutter::push(const TimedPose& pose, const InputBu
     poses_.clear();
     unknown_since_.reset();
   }
-  if (chord_after_) {
-    if (!begins_after(pose.pose, *chord_after_)) {
-      poses_.assign(1, pose);
-      return out;
-    }
-    poses_.clear();
-    chord_after_.reset();
-  }
   poses_.push_back(pose);
   cut(length_, false, inputs, out);
   return out;
@@ -139,19 +128,17 @@ void SegmentCutter::end_frame(const InputBuffer& inputs, std::vector<SegmentCut>
     const double whole = poses_.back().pose.t - poses_.front().pose.t;
     length = kLeastFraction * length <= whole && whole < length ? whole : length;
   }
-  if (!unknown_since_ && !chord_after_) {
+  if (!unknown_since_) {
     cut(length, true, inputs, out);
   }
   poses_.clear();
   any_ = false;
   unknown_since_.reset();
-  chord_after_.reset();
 }
 
 /// Where `last`, no pose follows; otherwise a segment is cut once there is a pose that is late enough to end it.
 void SegmentCutter::cut(double length, bool last, const InputBuffer& inputs, std::vector<SegmentCut>& out) {
-  while (poses_.size() > 1 && !unknown_since_ && !chord_after_ &&
-         (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
+  while (poses_.size() > 1 && !unknown_since_ && (last || poses_.back().pose.t >= poses_.front().pose.t + length)) {
     const TimedPose& start = poses_.front();
     const double interval = start.interval > 0.0 ? start.interval : poses_[1].interval;
     const double tolerance = std::max(0.5 * interval, rules_.length_tolerance * length);
@@ -203,19 +190,6 @@ std::optional<Reason> SegmentCutter::problem(std::size_t end, const InputBuffer&
   return fastest.omega * longest > std::numbers::pi ? std::optional(Reason::AmbiguousHeading) : std::nullopt;
 }
 
-/// The first position whose chord begins no earlier than the last segment ended. Errors of a chord that two segments
-/// share would count twice as if they were independent.
-std::size_t SegmentCutter::next_apart(std::size_t end) {
-  const double ended = poses_[end].pose.t;
-  for (std::size_t i = end + 1; i < poses_.size(); ++i) {
-    if (begins_after(poses_[i].pose, ended)) {
-      return i;
-    }
-  }
-  chord_after_ = ended;
-  return poses_.size() - 1;  // the last is kept: its frame goes on
-}
-
 /// How many poses come before the next segment's start.
 std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs) {
   const auto first_from = [&](double t) {
@@ -237,10 +211,7 @@ std::size_t SegmentCutter::next_start(std::size_t end, std::optional<Reason> pro
   if (problem == Reason::AmbiguousHeading) {
     return 1;
   }
-  if (stride_) {
-    return std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_ - kStrideRounding));
-  }
-  return poses_[end].pose.position && !rules_.share_chords ? next_apart(end) : end;
+  return stride_ ? std::max<std::size_t>(1, first_from(poses_.front().pose.t + *stride_ - kStrideRounding)) : end;
 }
 
 }  // namespace slipwise

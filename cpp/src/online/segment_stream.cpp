@@ -45,10 +45,8 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       twists_(settings.rules, settings.sensor),
       chords_(settings.sensor) {
   double longest = settings.segment_length;
-  SegmentRules predicted = settings.rules;
-  predicted.share_chords = true;
   for (const double horizon : settings.horizons) {
-    targets_.emplace_back(horizon, predicted, false);
+    targets_.emplace_back(horizon, settings.rules, false);
     longest = std::max(longest, horizon);
   }
   keep_ += 2.0 * longest;

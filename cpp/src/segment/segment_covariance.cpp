@@ -133,7 +133,11 @@ Eigen::Matrix3d pose_noise_covariance(const SegmentPath& path, const Pose2& meas
     by[kStartChord] += by[kEndChord];
     by[kEndChord].setZero();
   }
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  // A course is no better a heading than a measured one. Without that, a segment with hardly any motion, whose chords
+  // are almost the same, would seem to measure their difference exactly.
+  MotionNoise headings = noise;
+  headings.pose_std_xy = 0.0;
+  Eigen::Matrix3d covariance = pose_noise_covariance(measured, headings, path.pose_std_ratio);
   for (std::size_t i = 0; i < kCoursePoints; ++i) {
     const double std = path.pose_std_ratio[i < kEndChord ? 0 : 1].xy * noise.pose_std_xy;
     covariance += std * std * by[i] * by[i].transpose();

@@ -59,7 +59,7 @@ class CausalFilter {
   Eigen::VectorXd prior_std() const;
   /// Of slip, [slip], at other speeds.
   Eigen::VectorXd slip_std_at(const ReferenceSpeeds& speeds) const {
-    return slip_prior_std(model_.basis(), speeds, settings_.prior.slip_fraction);
+    return slip_prior_std(model_.basis(), speeds, settings_.prior);
   }
   /// Learned factor of the noise variances of (x, y, theta).
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }

@@ -19,7 +19,10 @@ struct ReferenceSpeeds {
 };
 
 struct PriorSettings {
-  double slip_fraction = 0.3;       ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
+  double slip_fraction = 0.3;  ///< standard deviation of a term's slip as a fraction of the commanded twist [-]
+  /// Of the side-slip angle of a robot that drives straight [rad]; without it, slip_fraction alone holds. Positions do
+  /// not tell it from the heading.
+  std::optional<double> straight_side_slip_std = {};
   double clock_offset_std = 0.2;    ///< about 0, also of delays without an actuator model [s]
   double time_constant = 0.3;       ///< median time constant [s]
   double delay = 0.1;               ///< median transport delay [s]
@@ -34,6 +37,8 @@ struct PriorSettings {
 
 /// Standard deviation of each slip parameter: fraction * reference of its channel / |term at the reference speeds|.
 Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, double fraction);
+/// The same by all that settings say of slip.
+Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, const PriorSettings& settings);
 /// The posterior before any data.
 Estimate prior_estimate(const MotionModel& model, const ReferenceSpeeds& speeds, const PriorSettings& settings);
 /// The same data under a slip prior of other standard deviations (exact for the Gaussian posterior; the prior mean is

@@ -19,7 +19,6 @@ struct SegmentRules {
   double late_factor = 2.5;        ///< a pose after a gap of more than this many median intervals is late: never an end
   double length_tolerance = 0.05;  ///< a segment may be this fraction longer or shorter than asked for
   double still_speed = 0.02;       ///< [m/s, rad/s] a segment whose inputs never exceed this teaches nothing
-  bool share_chords = false;       ///< whether the chord at a segment's end may be that at the next one's start
 };
 
 /// The median time between poses of late, taken again every 64 intervals.
@@ -99,8 +98,7 @@ class SegmentCutter {
   /// Names what is saved.
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
-    a(self.length_, self.rules_, self.whole_frames_, self.stride_, self.poses_, self.any_, self.unknown_since_,
-      self.chord_after_);
+    a(self.length_, self.rules_, self.whole_frames_, self.stride_, self.poses_, self.any_, self.unknown_since_);
   }
 
  private:
@@ -108,7 +106,6 @@ class SegmentCutter {
   std::optional<std::size_t> nearest(double wanted, double tolerance, bool last) const;
   std::optional<Reason> problem(std::size_t end, const InputBuffer& inputs) const;
   std::size_t next_start(std::size_t end, std::optional<Reason> problem, const InputBuffer& inputs);
-  std::size_t next_apart(std::size_t end);
   void end_frame(const InputBuffer& inputs, std::vector<SegmentCut>& out);
 
   double length_ = 0.0;
@@ -118,7 +115,6 @@ class SegmentCutter {
   std::deque<TimedPose> poses_;          ///< of the frame, from the next segment's start on
   bool any_ = false;                     ///< whether the frame lost poses at its beginning already
   std::optional<double> unknown_since_;  ///< the next segment starts once the input is known again
-  std::optional<double> chord_after_;    ///< the next segment starts once a chord begins no earlier than that
 };
 
 }  // namespace slipwise
