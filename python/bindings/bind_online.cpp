@@ -54,7 +54,7 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
     run.poses.push_back({.t = row[0],
                          .x = row[1],
                          .y = row[2],
-                         .yaw = row[3],
+                         .yaw = std::isnan(row[3]) ? 0.0 : row[3],
                          .frame = static_cast<long>(row[4]),
                          .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
                          .position = std::isnan(row[3])});

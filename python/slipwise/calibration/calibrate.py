@@ -32,7 +32,7 @@ from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import LogError, ModelError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
-from slipwise.logs.log import Log
+from slipwise.logs.log import Log, has_course
 from slipwise.models import schema
 from slipwise.models.model import Model
 
@@ -216,7 +216,7 @@ def judged_on(
         wheels_logged=has_wheels(windows.drive),
         wheels_advice=log.advice.get("wheel", ""),
     )
-    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name))
+    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
     if not any(each.spoils for each in found):
         kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)
         limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=wheels)

@@ -8,9 +8,18 @@ from collections.abc import Sequence
 from slipwise import _core
 from slipwise.calibration.settings import Settings
 
+STRAIGHT_SIDE_SLIP = (
+    0.03  # rad, standard deviation of side slip that does not change, where headings are courses
+)
+
 
 def core_settings(
-    settings: Settings, input_name: str, horizons: Sequence[float], *, remember: bool = False
+    settings: Settings,
+    input_name: str,
+    horizons: Sequence[float],
+    *,
+    remember: bool = False,
+    positions: bool = False,
 ) -> _core.LearnerSettings:
     """Return the core's settings.
 
@@ -19,6 +28,7 @@ def core_settings(
         input_name: "command" or "wheel".
         horizons: of the predictions that are held against what was measured [s].
         remember: keep surfaces that were driven on, and recall them.
+        positions: headings are courses of positions, which do not tell a side slip that is always the same.
 
     Raises:
         SettingsError: a basis or a term is unknown.
@@ -38,6 +48,12 @@ def core_settings(
     hypotheses.cascaded, hypotheses.direct = "cascaded" in tried, "direct" in tried
     hypotheses.baseline = "baseline" in tried
     hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
+    if positions:
+        causal = hypotheses.filter
+        prior = causal.prior
+        prior.straight_side_slip_std = STRAIGHT_SIDE_SLIP
+        causal.prior = prior
+        hypotheses.filter = causal
     if remember:
         surfaces = _core.SurfaceSettings()
         surfaces.remember = True

@@ -17,6 +17,7 @@ from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import course_of
+from slipwise.logs.log import has_course
 from slipwise.segments import recording_of
 
 Floats = NDArray[np.float64]
@@ -67,7 +68,8 @@ def learn_log(
     Raises:
         SettingsError: a basis or a term is unknown.
     """
-    core = core_settings(settings, drive[0].input_name, horizons)
+    positions = has_course(run.run for run in drive)
+    core = core_settings(settings, drive[0].input_name, horizons, positions=positions)
     learner, events = _core.MotionLearner(core), []
     for done in pushed(learner, drive):
         events += [event for event in learner.events() if keep is not None and event.kind == LEARNED]

@@ -24,6 +24,7 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
+from slipwise.logs.log import has_course
 from slipwise.models.model import Model
 
 _WORDS = {
@@ -154,7 +155,9 @@ def _begun(
     start: Model | None,
 ) -> _core.MotionLearner:
     input_name = drives[0][0].input_name
-    learner = _core.MotionLearner(core_settings(settings, input_name, horizons, remember=True))
+    positions = has_course(run.run for drive in drives for run in drive)
+    core = core_settings(settings, input_name, horizons, remember=True, positions=positions)
+    learner = _core.MotionLearner(core)
     if start is not None:
         begin_with(learner, start, input_name, wheels=any(has_wheels(drive) for drive in drives))
     return learner

@@ -21,6 +21,10 @@ from slipwise.models.schema import HeldOut
 
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
+_COURSES = (
+    "Only positions were measured: headings are courses of the path, their errors are errors of the course, and a "
+    "side slip that is always the same is not seen."
+)
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 
@@ -43,6 +47,7 @@ class LogFacts:
     contradictions: tuple[Contradiction, ...] = ()
     shortage: tuple[str, ...] = ()  # why there are so few segments, and what to do, where they are too few
     input_name: str = "command"
+    positions: bool = False  # only positions were measured
 
 
 def identified(posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
@@ -106,7 +111,8 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
     ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
-    return tuple(sentence for sentence in (honest, *partly) if sentence)
+    courses = _COURSES if facts.positions else ""
+    return tuple(sentence for sentence in (honest, *partly, courses) if sentence)
 
 
 def _figures(held_out: HeldOut) -> str:

@@ -13,7 +13,7 @@ from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
 from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
-from slipwise.logs.navsat import east_north_up, heading_from_imu, heading_from_path, tilt_from_imu
+from slipwise.logs.navsat import course_of_path, east_north_up, heading_from_imu, tilt_from_imu
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
@@ -199,8 +199,8 @@ def fix_stream(
 ) -> RawStream:
     """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
 
-    Heading, roll and pitch are the IMU's where there is one; otherwise the heading is the direction of the
-    path while the robot moves.
+    Heading, roll and pitch are the IMU's where there is one; otherwise they are positions, of which the heading
+    is the direction of the path.
     """
     values = samples.values
     position = np.isfinite(values[:, :2]).all(axis=1)
@@ -218,14 +218,16 @@ def fix_stream(
         if orientation is not None:
             yaw, known = heading_from_imu(t, orientation.t, orientation.yaw)
             tilts = orientation.tilts_at(t)
-    if known.any():
-        context.notes.append("headings, roll and pitch are those of the IMU")
-    else:
-        yaw[good], known[good] = heading_from_path(t[good], x[good], y[good], inputs)
+    course = not known.any()
+    if course:
+        order = np.flatnonzero(good)[np.argsort(t[good], kind="stable")]
+        yaw[order], known[order] = course_of_path(t[order], x[order], y[order], inputs), True
         context.notes.append(f"{samples.topic} has no headings: they are the direction of the path")
+    else:
+        context.notes.append("headings, roll and pitch are those of the IMU")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
     columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": deviation_of(values[:, 4:6]), **tilts}
-    return context.stream("poses", samples, columns, good & known)
+    return replace(context.stream("poses", samples, columns, good & known), course=course)
 
 
 def deviation_of(variances: Floats) -> Floats:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.driven_windows import driven_windows
 from slipwise.logs.held import UNKNOWN_AFTER
-from slipwise.logs.log import Inputs, Log, Run
+from slipwise.logs.log import Inputs, Log, Run, has_course
 from slipwise.logs.motion_windows import MotionWindows, motion_windows
 from slipwise.logs.repeated_wheels import repeated_wheels
 from slipwise.logs.standstill import standstill
@@ -32,7 +32,9 @@ def contradictions(
     speed = unlikely_speed(driven, words)
     still = None if speed is not None else standstill(windows, _starts(log, input_name), _CAUSES[input_name])
     found = [speed, still]
-    if still is None or not still.spoils:
+    if (still is None or not still.spoils) and not has_course(
+        log.runs
+    ):  # a course tells nothing of a heading
         other = "wheel" if input_name == "command" else "command"
         others = driven_windows(_windows(log, other, unknown_after), sensor_yaw)
         alone = others.direction.real > 0.5

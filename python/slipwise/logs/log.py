@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -61,6 +61,7 @@ class Poses:
     pitch: Floats | None = None  # [M] rad
     std_xy: Floats | None = None  # [M] m, NaN where it is not known
     std_yaw: Floats | None = None  # [M] rad, NaN where it is not known
+    course: bool = False  # only positions were measured: the yaw is the direction of the path
     # As measured, where outliers were rejected and frames split at jumps; poses made from these have none.
     measured: Poses | None = field(default=None, init=False)
 
@@ -156,6 +157,11 @@ class Log:
         return f"<Log: {runs}, {seconds:.0f} s; {', '.join(name for name, there in has.items() if there)}>"
 
 
+def has_course(runs: Iterable[Run]) -> bool:
+    """Say whether positions stand for poses, so that headings are the direction of the path."""
+    return any(run.poses.course for run in runs)
+
+
 def empty_poses() -> Poses:
     """Return no poses at all."""
     none = np.empty(0)
@@ -171,7 +177,7 @@ def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
     """Refuse a series whose columns do not fit together; the only place where this is checked."""
     name = type(series).__name__
     length = len(series.t)
-    for column in (column for column in fields(series) if column.init):
+    for column in (column for column in fields(series) if column.init and column.name != "course"):
         values = getattr(series, column.name)
         if values is None:
             continue

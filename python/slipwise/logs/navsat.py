@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from slipwise.logs.log import Bools, Floats, Inputs
+from slipwise.logs.streams import RawStream
 
 _A = 6378137.0  # [m] WGS-84 semi-major axis
 _F = 1.0 / 298.257223563  # WGS-84 flattening
@@ -64,6 +67,25 @@ def _near(t: Floats, imu_t: Floats) -> Bools:
     after = np.clip(np.searchsorted(imu_t, t), 0, len(imu_t) - 1)
     before = np.maximum(after - 1, 0)
     return np.asarray(np.minimum(np.abs(imu_t[after] - t), np.abs(imu_t[before] - t)) <= _MAX_IMU_AGE)
+
+
+def course_of_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> Floats:
+    """Return a heading for each position [N]: that of the path, held and turned evenly where there is none.
+
+    It serves pictures and checks of a log. What is learned takes its own courses, with all that follows from it
+    (derivations/course.md).
+    """
+    yaw, known = heading_from_path(t, x, y, inputs)
+    if not known.any():
+        return np.zeros(len(t))
+    every = np.interp(t, t[known], np.unwrap(yaw[known]))
+    return np.asarray(np.arctan2(np.sin(every), np.cos(every)))
+
+
+def with_course(stream: RawStream, inputs: Inputs | None) -> RawStream:
+    """Return clean positions with the direction of their path as their yaw."""
+    yaw = course_of_path(stream.t, stream.columns["x"], stream.columns["y"], inputs)
+    return replace(stream, columns={**stream.columns, "yaw": yaw}, course=True)
 
 
 def heading_from_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> tuple[Floats, Bools]:

@@ -26,7 +26,8 @@ def find_jumps(poses: Poses, inputs: Inputs, unknown_after: float) -> Jumps:
     An input is unknown once it is older than `unknown_after` [s].
     """
     rows = np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
-    measured = np.column_stack((poses.t, poses.x, poses.y, poses.yaw, poses.frame.astype(np.float64)))
+    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
+    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
     nothing = np.empty((0, 4))
     gated = _core.gate_poses(_core.Recording(nothing, rows, np.empty((0, 3)), measured), unknown_after)
     accepted = np.asarray(gated.accepted)
@@ -56,6 +57,7 @@ def without_jumps(poses: Poses, jumps: Jumps) -> Poses:
         y=poses.y[keep],
         yaw=poses.yaw[keep],
         frame=jumps.frame[keep],
+        course=poses.course,
         **others,
     )
     object.__setattr__(clean, "measured", poses)

@@ -12,7 +12,7 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Inputs, Log, Run, Source, empty_poses
-from slipwise.logs.navsat import heading_from_path
+from slipwise.logs.navsat import with_course
 from slipwise.logs.options import AUTO, LogOptions
 from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motion
 from slipwise.logs.pose_file import read_pose_file
@@ -128,12 +128,7 @@ def _with_stream(run: Run, stream: RawStream, tally: Tally, *, headed: bool) -> 
     if headed:
         return replace(run, poses=to_poses(stream, tally))
     inputs: Inputs | None = run.wheels if run.wheels is not None else run.commands
-    yaw, known = heading_from_path(stream.t, stream.columns["x"], stream.columns["y"], inputs)
-    first = stream.place(int(stream.rows[np.argmin(known)]))
-    tally.add("no-heading", "positions without a heading", count=int((~known).sum()), where=first)
-    return replace(
-        run, poses=to_poses(replace(stream, columns={**stream.columns, "yaw": yaw}).select(known), tally)
-    )
+    return replace(run, poses=to_poses(with_course(stream, inputs), tally))
 
 
 def _apart(poses: RawStream, spans: list[tuple[float, float]]) -> str:

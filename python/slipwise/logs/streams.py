@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +32,12 @@ class RawStream:
     rows: NDArray[np.int64]  # [N]
     place: Callable[[int], str]
     optional: frozenset[str] = field(default_factory=frozenset)
+    course: bool = False  # of positions: the yaw is the direction of the path
 
     def select(self, keep: Bools) -> RawStream:
         """Return the samples where `keep` [N] is true."""
         columns = {name: values[keep] for name, values in self.columns.items()}
-        return RawStream(self.name, self.t[keep], columns, self.rows[keep], self.place, self.optional)
+        return replace(self, t=self.t[keep], columns=columns, rows=self.rows[keep])
 
 
 def clean_stream(stream: RawStream, tally: Tally) -> RawStream:
@@ -88,7 +89,15 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
         if deviation is not None:
             others[name] = np.where(deviation > 0.0, deviation, np.nan)
     others = {name: None if v is None or np.isnan(v).all() else v for name, v in others.items()}
-    return Poses(t=clean.t, x=columns["x"], y=columns["y"], yaw=columns["yaw"], frame=frame, **others)
+    return Poses(
+        t=clean.t,
+        x=columns["x"],
+        y=columns["y"],
+        yaw=columns["yaw"],
+        frame=frame,
+        course=stream.course,
+        **others,
+    )
 
 
 def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:

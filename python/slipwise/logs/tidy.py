@@ -21,13 +21,15 @@ from slipwise.logs.log import (
     Inputs,
     Ints,
     Log,
+    Poses,
     Run,
     Source,
     empty_poses,
 )
+from slipwise.logs.navsat import with_course
 from slipwise.logs.options import LogOptions
 from slipwise.logs.run_name import run_name
-from slipwise.logs.streams import RawStream, order_codes, to_inputs, to_poses
+from slipwise.logs.streams import RawStream, clean_stream, order_codes, to_inputs, to_poses
 from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
     KNOWN,
@@ -131,10 +133,12 @@ def _fresh(table: Table, pose: dict[str, Floats], tally: Tally, notes: list[str]
     """Return the rows in which a pose was measured rather than held."""
     if "pose_new" in table.names:
         return np.asarray(table.numbers("pose_new", tally) == 1.0)
-    there = np.isfinite(pose["x"]) | np.isfinite(pose["y"]) | np.isfinite(pose["yaw"])
+    there = np.isfinite(pose["x"]) | np.isfinite(pose["y"])
+    if "yaw" in pose:
+        there |= np.isfinite(pose["yaw"])
     where = np.flatnonzero(there)
     same = np.ones(max(len(where) - 1, 0), bool)
-    for name in ("x", "y", "yaw", *(name for name in ("z", "roll", "pitch", "frame") if name in pose)):
+    for name in (name for name in ("x", "y", "yaw", "z", "roll", "pitch", "frame") if name in pose):
         values = pose[name][where]
         same &= (values[1:] == values[:-1]) | (np.isnan(values[1:]) & np.isnan(values[:-1]))
     if "run" in table.names:
@@ -177,15 +181,21 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
         return RawStream(role, t, values, numbers, table.place, optional=frozenset(OPTIONAL_POSE_COLUMNS))
 
     extra = {key: values[index] for key, values in rows.extra.items()}
-    return Run(
-        name=name,
-        commands=_inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None,
-        wheels=_inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None,
-        poses=to_poses(stream("poses", rows.pose).select(rows.fresh[index]), tally)
-        if rows.pose
-        else empty_poses(),
-        extra={"t": t, **extra} if extra else {},
-    )
+    commands = _inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None
+    wheels = _inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None
+    poses = empty_poses()
+    if rows.pose:
+        fresh = stream("poses", rows.pose).select(rows.fresh[index])
+        poses = _poses(fresh, wheels if wheels is not None else commands, tally)
+    extra = {"t": t, **extra} if extra else {}
+    return Run(name=name, commands=commands, wheels=wheels, poses=poses, extra=extra)
+
+
+def _poses(stream: RawStream, inputs: Inputs | None, tally: Tally) -> Poses:
+    """Make poses; of a table without a yaw column, positions."""
+    if "yaw" in stream.columns:
+        return to_poses(stream, tally)
+    return to_poses(with_course(clean_stream(stream, tally), inputs), tally)
 
 
 def _inputs(stream: RawStream, tally: Tally) -> Inputs | None:

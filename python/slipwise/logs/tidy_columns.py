@@ -57,7 +57,7 @@ def require_columns(table: Table, *, poses: bool, described: bool = False) -> No
         LogError: it does not; the error names what is missing and what was found.
     """
     names = table.names
-    missing = [name for name in ("t", *(("x", "y", "yaw") if poses else ())) if name not in names]
+    missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
     commands = "cmd_v" in names or "cmd_vx" in names
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     if not commands and not wheels and not described:

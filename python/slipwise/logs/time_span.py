@@ -62,4 +62,4 @@ def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
 def _kept_poses(poses: Poses, keep: Bools) -> Poses:
     others = {name: None if v is None else v[keep] for name, v in poses.optional().items()}
     t, x, y, yaw = (column[keep] for column in (poses.t, poses.x, poses.y, poses.yaw))
-    return Poses(t=t, x=x, y=y, yaw=yaw, frame=poses.frame[keep], **others)
+    return Poses(t=t, x=x, y=y, yaw=yaw, frame=poses.frame[keep], course=poses.course, **others)

@@ -94,7 +94,7 @@ def _columns(run: Run) -> dict[str, NDArray[Any]]:
                 put(f"{prefix}_vy", inputs.t, inputs.vy)
             put(f"{prefix}_omega", inputs.t, inputs.omega)
     poses = run.poses
-    for name in ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS):
+    for name in ("x", "y", *(() if poses.course else ("yaw",)), *OPTIONAL_POSE_COLUMNS):
         values = getattr(poses, name)
         if values is not None:
             put(name, poses.t, values)

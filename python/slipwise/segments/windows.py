@@ -70,7 +70,8 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     """Return what was measured in a run, a row each in the order of the stamps.
 
     Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame,
-    std_xy, std_yaw), with deviations of 0 where they are not known.
+    std_xy, std_yaw), with deviations of 0 where they are not known and a yaw of NaN where only positions were
+    measured.
     """
     poses = run.poses if run.poses.measured is None else run.poses.measured
     attitudes = np.empty((0, 3))
@@ -81,7 +82,8 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
         np.zeros(len(poses)) if std is None else np.nan_to_num(std, nan=0.0)
         for std in (poses.std_xy, poses.std_yaw)
     ]
-    measured = np.column_stack((poses.t, poses.x, poses.y, poses.yaw, poses.frame, *deviations))
+    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
+    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations))
     return input_rows(run.commands), input_rows(run.wheels), attitudes, measured
 
 
