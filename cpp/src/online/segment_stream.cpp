@@ -17,12 +17,11 @@
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kSlipLength, 1.0);     // [s] of segments behind wheel speeds
-SLIPWISE_TUNING(kWheelLength, 1.0);    // [s] wheel speeds tell a step's response from its start on
-constexpr double kLookBack = 20.0;     // [s] of inputs before a segment; an actuator remembers no more
-constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
-constexpr double kWheelsBack = 3.0;    // [s] of wheel speeds before a segment; no clock offset is larger
-constexpr double kLongestGap = 120.0;  // [s] between poses, after which the segment before it may still end
+SLIPWISE_TUNING(kSlipLength, 1.0);                // [s] of segments behind wheel speeds
+SLIPWISE_TUNING(kWheelLength, 1.0);               // [s] wheel speeds tell a step's response from its start on
+constexpr double kLookBack = 20.0;                // [s] of inputs before a segment; an actuator remembers no more
+constexpr double kWheelsBack = 3.0;               // [s] of wheel speeds before a segment; no clock offset is larger
+constexpr double kLongestGap = 120.0;             // [s] between poses, after which the segment before it may still end
 constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a break and after it are never the same
 constexpr double kSpare = 10.0;                   // [s] that inputs are kept for longer than a segment may need
 constexpr double kNever = std::numeric_limits<double>::infinity();
@@ -222,18 +221,6 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
   }
 }
 
-/// A pose as it is; a position with the heading that its course makes, where it has one.
-std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& chords) const {
-  if (timed.pose.position) {
-    const auto found = chords.push(timed.pose, gate_inputs(timed.pose.t));
-    if (!found) {
-      return std::nullopt;
-    }
-    timed.pose = *found;
-  }
-  return timed;
-}
-
 void SegmentStream::finish_cutters() {
   if (settings_.from_commands) {
     emit_wheel_segments(wheel_cutter_.finish(commands_));
@@ -245,55 +232,6 @@ void SegmentStream::finish_cutters() {
   emit_learned(learned_.finish(inputs()));
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     emit_targets(i, targets_[i].finish(inputs()));
-  }
-}
-
-void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
-  for (const SegmentCut& cut : cuts) {
-    if (!cut.rejected) {
-      const double start = cut.first.t;
-      const double end = cut.second.t;
-      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kActuatorBack, end, SliceKind::Commands),
-                                       .wheels = wheels_.slice(start, end, SliceKind::Wheels),
-                                       .start = start,
-                                       .end = end});
-    }
-  }
-}
-
-void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
-  for (const SegmentCut& cut : cuts) {
-    if (!cut.rejected) {
-      items_.emplace_back(SlipSegment{driven(cut, true, now_)});
-    }
-  }
-}
-
-void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
-  for (const TwistStretch& stretch : stretches) {
-    items_.emplace_back(
-        TwistSegment{{.commands = commands_.slice(stretch.start - kActuatorBack, stretch.end, SliceKind::Commands),
-                      .wheels = InputHistory(stretch.t, stretch.twist),
-                      .start = stretch.start,
-                      .end = stretch.end}});
-  }
-}
-
-void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
-  for (const SegmentCut& cut : cuts) {
-    if (cut.rejected) {
-      reject(Stream::Pose, *cut.rejected, cut.first.t);
-    } else {
-      items_.emplace_back(driven(cut, !settings_.from_commands, now_));
-    }
-  }
-}
-
-void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
-  for (const SegmentCut& cut : cuts) {
-    if (!cut.rejected) {
-      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_, true)});
-    }
   }
 }
 

@@ -8,9 +8,7 @@ from collections.abc import Sequence
 from slipwise import _core
 from slipwise.calibration.settings import Settings
 
-STRAIGHT_SIDE_SLIP = (
-    0.03  # rad, standard deviation of side slip that does not change, where headings are courses
-)
+STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
 
 def core_settings(

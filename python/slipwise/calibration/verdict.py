@@ -22,8 +22,8 @@ from slipwise.models.schema import HeldOut
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
 _COURSES = (
-    "Only positions were measured: headings are courses of the path, their errors are errors of the course, and a "
-    "side slip that is always the same is not seen."
+    "Only positions were measured: headings are courses of the path, their errors are errors of the course, "
+    "and a side slip that is always the same is not seen."
 )
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 

@@ -199,7 +199,7 @@ def fix_stream(
 ) -> RawStream:
     """Make the pose stream of satellite fixes (latitude, longitude, altitude, status, variances) [N, 6].
 
-    Heading, roll and pitch are the IMU's where there is one; otherwise they are positions, of which the heading
+    Heading, roll and pitch are the IMU's where there is one; otherwise they are positions, and their heading
     is the direction of the path.
     """
     values = samples.values

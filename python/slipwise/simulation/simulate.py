@@ -136,6 +136,7 @@ def _measure(scenario: Scenario, truth: Truth, seed: int) -> Poses:
         frame=np.zeros(truth.t.size, dtype=np.int64),
         std_xy=np.full(truth.t.size, scenario.std_xy),
         std_yaw=np.full(truth.t.size, scenario.std_yaw),
+        course=False,
         **_tilts(scenario, truth, seed),
     )
 

@@ -154,7 +154,7 @@ def test_missing_columns_are_named_with_those_found(tmp_path: Path) -> None:
     with pytest.raises(LogError) as caught:
         open_log(table(tmp_path, "0,1", header="time,speed"))
     message = str(caught.value)
-    assert "missing columns: t; x; y; yaw; cmd_v and cmd_omega" in message
+    assert "missing columns: t; x; y; cmd_v and cmd_omega" in message
     assert "found time, speed" in message
     assert "\n" not in message
 

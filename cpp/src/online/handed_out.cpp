@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What cutters cut, handed out as segments; positions get their heading first.
+#include <optional>
+#include <utility>
+
+#include "slipwise/online/segment_stream.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
+
+}  // namespace
+
+/// A pose as it is; a position with the heading that its course makes, where it has one.
+std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& chords) const {
+  if (timed.pose.position) {
+    const auto found = chords.push(timed.pose, gate_inputs(timed.pose.t));
+    if (!found) {
+      return std::nullopt;
+    }
+    timed.pose = *found;
+  }
+  return timed;
+}
+
+void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      const double start = cut.first.t;
+      const double end = cut.second.t;
+      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kActuatorBack, end, SliceKind::Commands),
+                                       .wheels = wheels_.slice(start, end, SliceKind::Wheels),
+                                       .start = start,
+                                       .end = end});
+    }
+  }
+}
+
+void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      items_.emplace_back(SlipSegment{driven(cut, true, now_)});
+    }
+  }
+}
+
+void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
+  for (const TwistStretch& stretch : stretches) {
+    items_.emplace_back(
+        TwistSegment{{.commands = commands_.slice(stretch.start - kActuatorBack, stretch.end, SliceKind::Commands),
+                      .wheels = InputHistory(stretch.t, stretch.twist),
+                      .start = stretch.start,
+                      .end = stretch.end}});
+  }
+}
+
+void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (cut.rejected) {
+      reject(Stream::Pose, *cut.rejected, cut.first.t);
+    } else {
+      items_.emplace_back(driven(cut, !settings_.from_commands, now_));
+    }
+  }
+}
+
+void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
+  for (const SegmentCut& cut : cuts) {
+    if (!cut.rejected) {
+      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_, true)});
+    }
+  }
+}
+
+}  // namespace slipwise
