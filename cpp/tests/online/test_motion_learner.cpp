@@ -194,6 +194,41 @@ TEST_CASE("a robot whose turns slip is learned") {
   }
 }
 
+TEST_CASE("a robot whose turns slip is learned from positions alone, and where one is a pose it joins nothing") {
+  for (const bool from_commands : {false, true}) {
+    CAPTURE(from_commands);
+    Recording run = streamed_robot(5, 240.0);
+    for (MeasuredPose& pose : run.poses) {
+      pose.position = true;
+      pose.yaw = std::numeric_limits<double>::quiet_NaN();
+    }
+    LearnerSettings settings = learner_settings(from_commands);
+    settings.hypotheses.bases = {named_basis("full-linear-6")};
+    settings.hypotheses.filter.prior.straight_side_slip_std = 0.03;
+    MotionLearner learner(settings);
+    push(learner, run);
+    learner.end_run();
+    const auto model = learner.model();
+    CHECK(model.segments > 60);
+    const Estimate& learned = model.known.motion->estimate;
+    const double std = std::sqrt(learned.covariance(5, 5));
+    CHECK(std < 0.03);
+    CHECK(std::abs(learned.mean[5] + 1.0 / 3.0) < 3.0 * std);
+
+    MotionLearner saved = MotionLearner::load(learner.save());
+    CHECK(saved.save() == learner.save());
+
+    MotionLearner mixed(settings);
+    for (std::size_t i = 0; i < run.poses.size(); i += 2) {
+      run.poses[i].position = false;
+      run.poses[i].yaw = 0.0;
+    }
+    push(mixed, run);
+    mixed.end_run();
+    CHECK(mixed.model().segments == 0);
+  }
+}
+
 TEST_CASE("poses that are said to be poor spoil less, and poses said to be alike are poses without a word") {
   Recording run = streamed_robot(4, 2.0 * kSeconds);
   std::mt19937_64 random(7);
