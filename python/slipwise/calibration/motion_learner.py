@@ -82,7 +82,12 @@ class MotionLearner:
     """
 
     def __init__(
-        self, input: str = "command", settings: Settings | None = None, *, remember: bool = False
+        self,
+        input: str = "command",
+        settings: Settings | None = None,
+        *,
+        remember: bool = False,
+        positions: bool = False,
     ) -> None:
         """Start with nothing learned.
 
@@ -90,6 +95,7 @@ class MotionLearner:
             input: "command" or "wheel": what motion is predicted from.
             settings: what to learn and how.
             remember: keep the surfaces that are driven on, and recall them where they come back.
+            positions: positions will come (`push_position`), and no poses.
 
         Raises:
             SettingsError: there is no such input, or a basis or a term is unknown.
@@ -98,8 +104,9 @@ class MotionLearner:
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
         self._input, self._settings = input, settings or Settings()
         self._core = _core.MotionLearner(
-            core_settings(self._settings, input, JUDGING_HORIZONS, remember=remember)
+            core_settings(self._settings, input, JUDGING_HORIZONS, remember=remember, positions=positions)
         )
+        self._positions = positions
         self._runs: list[str] = []
         self._wheels = False
 
@@ -144,6 +151,25 @@ class MotionLearner:
                 joined across it.
         """
         self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0, learned)
+
+    def push_position(
+        self, t: float, x: float, y: float, std_xy: float | None = None, frame: int = 0
+    ) -> None:
+        """Take a measured position without a heading, such as that of a GNSS antenna.
+
+        Args:
+            t: stamp [s].
+            x: position [m].
+            y: position [m].
+            std_xy: standard deviation of x and of y [m], where the sensor says it.
+            frame: positions of different frames are not compared.
+
+        Raises:
+            SettingsError: the learner was made for poses.
+        """
+        if not self._positions:
+            raise SettingsError("this learner expects poses", advice="make it with positions=True")
+        self._core.push_position(t, x, y, frame, std_xy or 0.0)
 
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
@@ -298,7 +324,7 @@ class MotionLearner:
             return model_of_log(learned, log, self._input, self._settings)
         judgement = judgement_of(learned)
         known = identified(learned.identifiable, wheels_logged=self._wheels)
-        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input))
+        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
         kept = learned.kept.limits is not None
         of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)
         verdict = replace(verdict, advice=(*verdict.advice, *of_limits))
@@ -339,6 +365,7 @@ class MotionLearner:
             "settings": self._settings.model_dump(mode="json"),
             "runs": self._runs,
             "wheels": self._wheels,
+            "positions": self._positions,
         }
         head = json.dumps(facts).encode()
         body = len(head).to_bytes(_LENGTH_BYTES, "little") + head + self._core.save()
@@ -356,7 +383,8 @@ class MotionLearner:
             split = _LENGTH_BYTES + int.from_bytes(body[:_LENGTH_BYTES], "little")
             facts = json.loads(body[_LENGTH_BYTES:split])
             core = _core.MotionLearner.load(body[split:])
-            learner = cls(facts["input"], make_settings(facts["settings"], where="saved settings"))
+            settings = make_settings(facts["settings"], where="saved settings")
+            learner = cls(facts["input"], settings, positions=bool(facts["positions"]))
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
         except (ValueError, TypeError, KeyError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Learning from positions without headings: true within its own uncertainty, live as from a log."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.calibration import Settings, calibrate, make_settings
+from slipwise.calibration.core_settings import STRAIGHT_SIDE_SLIP, core_settings
+from slipwise.calibration.learned_log import learn_log
+from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.prepared_run import prepare_run
+from slipwise.errors import SettingsError
+from slipwise.logs import Inputs, Log, Run
+from slipwise.simulation.known_robot import KnownRobot, known_run
+
+Floats = NDArray[np.float64]
+
+BASIS = _core.named_basis("full-linear-6")
+SLIP = (-0.05, 0.02, 0.01, 0.15, -0.02, -0.3)  # side slip in turns, and a hundredth of the speed always
+SECONDS = 240.0
+ANTENNA = (0.3, 0.1, 0.0)
+SETTINGS = make_settings({"basis": "full-linear-6", "sensor_extrinsics": {"x": 0.3, "y": 0.1}})
+HORIZONS = (1.0, 2.0, 5.0)
+
+
+def commands(random: np.random.Generator) -> Inputs:
+    """Arcs, reverse, standstill and turns on the spot, each for 1.5 s."""
+    count = int(SECONDS / 1.5)
+    v, omega = random.uniform(0.4, 1.5, count), random.uniform(-0.8, 0.8, count)
+    for k in range(0, count - 20, 20):
+        v[k + 6 : k + 10] *= -1.0
+        v[k + 14 : k + 16] = omega[k + 14 : k + 16] = 0.0
+        v[k + 17], omega[k + 17] = 0.0, 0.7
+    held_v, held_omega = np.repeat(v, 10), np.repeat(omega, 10)
+    return Inputs(t=0.15 * np.arange(10 * count), v=held_v, vy=np.zeros(10 * count), omega=held_omega)
+
+
+def drifting(t: Floats, std: float, random: np.random.Generator) -> Floats:
+    """An error [N, 2] that is correlated over 10 s."""
+    keep = np.exp(-np.diff(t, prepend=t[0]) / 10.0)
+    error = np.zeros((len(t), 2))
+    error[0] = std * random.standard_normal(2)
+    for k in range(1, len(t)):
+        error[k] = keep[k] * error[k - 1] + std * np.sqrt(1.0 - keep[k] ** 2) * random.standard_normal(2)
+    return error
+
+
+def positions_log(seed: int, *, drift: float = 0.0) -> Log:
+    random = np.random.default_rng(seed)
+    robot = KnownRobot(lag=(0.2, 0.3), delay=(0.1, 0.15), basis=BASIS, slip=SLIP, sensor=ANTENNA)
+    run = known_run(robot, commands(random), (0.0, SECONDS), random=random)
+    apart = drifting(run.poses.t, drift, random)
+    poses = replace(run.poses, x=run.poses.x + apart[:, 0], y=run.poses.y + apart[:, 1], course=True)
+    return Log(runs=(replace(run, poses=poses),))
+
+
+def slip_errors(log: Log, input_name: str) -> tuple[Floats, Floats, float]:
+    """Errors over their standard deviations, these, and the part of predictions inside 95 % ellipsoids."""
+    learned = learn_log(prepare_run(log, input_name), SETTINGS, HORIZONS)
+    error = learned.kept.mean[:6] - SLIP
+    std = np.sqrt(np.diag(learned.kept.covariance))[:6]
+    first = learned.predictions[0]
+    apart = first.measured - first.pose
+    apart[:, 2] = np.angle(np.exp(1j * apart[:, 2]))
+    squares = np.einsum("ni,ni->n", apart, np.linalg.solve(first.covariance, apart[..., None])[..., 0])
+    inside = [
+        _core.fraction_inside(square, dof) < 0.95 for square, dof in zip(squares, first.dof, strict=True)
+    ]
+    return error / std, std, float(np.mean(inside))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("input_name", "drift"), [("wheel", 0.0), ("wheel", 0.3), ("command", 0.0)])
+def test_slip_is_true_within_its_uncertainty_with_white_and_with_drifting_positions(
+    input_name: str, drift: float
+) -> None:
+    found = [slip_errors(positions_log(seed, drift=drift), input_name) for seed in range(8)]
+    z, std = np.array([each[0] for each in found]), np.array([each[1] for each in found])
+    assert np.abs(z).max() < 4.0
+    assert np.sqrt(np.mean(z**2, axis=0)).max() < 1.7
+    assert 0.85 < np.mean([each[2] for each in found]) <= 1.0
+    turning, side_slip = std[:, 5].mean(), std[:, 3].mean()
+    assert turning < (0.04 if drift else 0.02)
+    assert side_slip < (0.08 if drift else 0.03)
+    assert std[:, 2] == pytest.approx(STRAIGHT_SIDE_SLIP, rel=0.05)  # nothing is claimed to be known of it
+
+
+def test_live_positions_teach_what_the_log_of_them_does() -> None:
+    log = positions_log(3)
+    learner = MotionLearner("wheel", SETTINGS, positions=True)
+    learner.start_run("drive")
+    run = log.runs[0]
+    assert run.wheels is not None
+    for k, (t, v, omega) in enumerate(zip(run.wheels.t, run.wheels.v, run.wheels.omega, strict=True)):
+        learner.push_wheels(t, v, omega)
+        learner.push_position(run.poses.t[k], run.poses.x[k], run.poses.y[k])
+    restored = MotionLearner.load(learner.save())
+    assert restored.save() == learner.save()
+    live = learner.model(limits=False).content
+    recorded = calibrate(log, settings=SETTINGS, input="wheel").model.content
+    apart = np.abs(np.array([p.value for p in live.parameters]) - [p.value for p in recorded.parameters])
+    std = np.array([p.std for p in recorded.parameters])
+    assert (apart < 0.05 * std + 1e-9).all()  # the log has one position more at its end
+    assert "Only positions were measured" in live.verdict.sentence
+    assert "Only positions were measured" in recorded.verdict.sentence
+
+
+def test_a_learner_of_poses_refuses_positions() -> None:
+    with pytest.raises(SettingsError, match="positions=True"):
+        MotionLearner("wheel").push_position(0.0, 0.0, 0.0)
+
+
+def test_without_positions_no_prior_changes() -> None:
+    plain = core_settings(Settings(), "wheel", HORIZONS)
+    assert plain.hypotheses.filter.prior.straight_side_slip_std is None
+    with_positions = core_settings(Settings(), "wheel", HORIZONS, positions=True)
+    assert with_positions.hypotheses.filter.prior.straight_side_slip_std == STRAIGHT_SIDE_SLIP
+
+
+def test_positions_and_what_moves_between_them_survive_a_table(tmp_path: Path) -> None:
+    from slipwise.logs import open_log, save_log
+
+    run: Run = positions_log(1).runs[0]
+    save_log(Log(runs=(run,)), tmp_path / "a.csv")
+    assert "yaw" not in (tmp_path / "a.csv").read_text().splitlines()[0]
+    again = open_log(tmp_path / "a.csv").runs[0].poses
+    assert again.course
+    np.testing.assert_allclose(again.x, run.poses.x, atol=1e-9)
+    moving = np.hypot(np.diff(again.x, prepend=again.x[0]), np.diff(again.y, prepend=again.y[0])) > 0.03
+    apart = np.angle(np.exp(1j * (again.yaw - run.poses.yaw)))[moving]
+    assert np.median(np.abs(apart)) < 0.2
