@@ -55,6 +55,7 @@ class LiveTable(_Table):
     address: str | None = None  # Zenoh's router, or where UDP is listened for, as host:port
     override_topic: str | None = None  # std_msgs/Bool: an operator drives
     input: Literal["command", "wheel"] | None = None
+    positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so
     model: str | None = None  # start model
     cache: str | None = None  # folder
     save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +17,7 @@ from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import kept_posterior, predictions_of
 from slipwise.calibration.learned_sequence import SurfaceSummary, summary_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
+from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.model_content import (
     Judged,
@@ -42,36 +43,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
-_KINDS = {
-    _core.EventKind.SegmentLearned: "segment-learned",
-    _core.EventKind.Rejected: "rejected",
-    _core.EventKind.TerrainChange: "terrain-change",
-    _core.EventKind.HeldOut: "held-out",
-    _core.EventKind.Refit: "refit",
-}
-
-
-@dataclass(frozen=True)
-class Event:
-    """Something that a learner has to say."""
-
-    kind: str  # "segment-learned", "rejected", "terrain-change", "held-out" or "refit"
-    run: str
-    t: float  # s
-    reason: str = ""  # why something was rejected
-    nis: float | None = None  # of a segment learned: its normalised innovation squared, 3 degrees of freedom
-
-
-@dataclass(frozen=True, eq=False)
-class PredictedPath:
-    """Where the robot will be, in the frame of the pose sensor at the start."""
-
-    start: float  # s, stamp of the newest measurement
-    t: Floats  # [N] s, stamps of the poses; the last is at the horizon
-    poses: Floats  # [N, 3] x, y [m], yaw [rad], the yaw not wrapped
-    covariance: Floats  # [N, 3, 3] of a Student t each
-    dof: Floats  # [N] its degrees of freedom; few are heavy tails
-    structure: str  # of the model that predicts: "joint", "cascaded", "direct" or "baseline"
 
 
 class MotionLearner:
@@ -152,8 +123,15 @@ class MotionLearner:
         """
         self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0, learned)
 
-    def push_position(
-        self, t: float, x: float, y: float, std_xy: float | None = None, frame: int = 0
+    def push_position(  # noqa: PLR0913 (a measurement has as many numbers)
+        self,
+        t: float,
+        x: float,
+        y: float,
+        std_xy: float | None = None,
+        frame: int = 0,
+        *,
+        learned: bool = True,
     ) -> None:
         """Take a measured position without a heading, such as that of a GNSS antenna.
 
@@ -163,13 +141,14 @@ class MotionLearner:
             y: position [m].
             std_xy: standard deviation of x and of y [m], where the sensor says it.
             frame: positions of different frames are not compared.
+            learned: whether slip may be learned from it; else nothing is joined across it.
 
         Raises:
             SettingsError: the learner was made for poses.
         """
         if not self._positions:
             raise SettingsError("this learner expects poses", advice="make it with positions=True")
-        self._core.push_position(t, x, y, frame, std_xy or 0.0)
+        self._core.push_position(t, x, y, frame, std_xy or 0.0, learned)
 
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
@@ -177,16 +156,7 @@ class MotionLearner:
 
     def events(self) -> list[Event]:
         """Return what happened since the last call."""
-        return [
-            Event(
-                _KINDS[event.kind],
-                self._run(event.run),
-                event.t,
-                event.reason_text if event.kind == _core.EventKind.Rejected else "",
-                _nis(event) if event.kind == _core.EventKind.SegmentLearned else None,
-            )
-            for event in self._core.events()
-        ]
+        return [event_of(event, self._run(event.run)) for event in self._core.events()]
 
     def predict(
         self, inputs: Sequence[tuple[float, float, float]] | ArrayLike, *, horizon: float
@@ -299,6 +269,11 @@ class MotionLearner:
         return self.judged_model(limits=limits)[0]
 
     @property
+    def positions(self) -> bool:
+        """Whether it learns from positions, and not from poses."""
+        return self._positions
+
+    @property
     def settings(self) -> Settings:
         """What is learned and how."""
         return self._settings
@@ -402,8 +377,3 @@ class MotionLearner:
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""
-
-
-def _nis(event: _core.LearnerEvent) -> float:
-    """The NIS of the structure that predicts."""
-    return float(event.updates[int(np.argmax(event.weights))].nis)

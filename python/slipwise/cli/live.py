@@ -116,6 +116,8 @@ def live(
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, seed, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
+        if robot.positions:
+            chosen = live_settings(chosen, {"positions": True})
         if robot.log is not None:
             chosen = for_the_ground_of(robot.log, chosen)
         watchers = watchers_for(shown, chosen.live)

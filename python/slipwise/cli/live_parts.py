@@ -30,6 +30,7 @@ class Robot:
     input_name: str
     run: str | None  # name of the run that begins; None: the transport says
     log: Log | None = None  # that is replayed
+    positions: bool = False  # poses come without a heading
 
 
 @dataclass(frozen=True)
@@ -116,14 +117,15 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
     from slipwise.calibration.prepared_run import choose_input
     from slipwise.live.replay import Replay
     from slipwise.logs import open_log
+    from slipwise.logs.log import has_course
 
     log = open_log(replay, options=options)
     input_name = table.input or choose_input(log)
-    return Robot(Replay(log, input_name, rate=rate), input_name, None, log)
+    return Robot(Replay(log, input_name, rate=rate), input_name, None, log, has_course(log.runs))
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
-    from slipwise.live.ros_roles import find_roles
+    from slipwise.live.ros_roles import find_roles, only_positions
     from slipwise.live.ros_transport import RosTransport
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
@@ -138,11 +140,15 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
             say(note)
         input_name = table.input or ("command" if roles.command is not None else "wheel")
         say(f"learning from {input_name}s; the node is /{table.name}")
+        if only_positions(roles):
+            say(
+                f"{roles.pose.name if roles.pose else ''} has no heading, and no IMU tells it: positions only"
+            )
         transport = RosTransport(wire, roles, options, name=table.name, override_topic=table.override_topic)
     except BaseException:
         wire.close()
         raise
-    return Robot(transport, input_name, "live")
+    return Robot(transport, input_name, "live", positions=only_positions(roles))
 
 
 def _results(path: Path | None) -> Any:

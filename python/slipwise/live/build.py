@@ -66,7 +66,7 @@ def build_node(
         learner, valid = found.learner, found.valid
         if found.said:
             said.note(math.nan, found.said)
-    learner = learner or MotionLearner(input_name, settings)
+    learner = learner or MotionLearner(input_name, settings, positions=table.positions)
     learning = Learning(learner, start, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
     gates = Gates(rules, input_name=input_name)

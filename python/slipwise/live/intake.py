@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from slipwise.calibration.motion_learner import Event, MotionLearner
+from slipwise.calibration.learner_answers import Event
+from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
 from slipwise.live.gates import Gates
 from slipwise.live.said import Said
@@ -82,6 +83,9 @@ class Intake:
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
         number = self._frames.setdefault(pose.frame, len(self._frames))
+        if self._learner.positions:
+            self._learner.push_position(pose.t, pose.x, pose.y, pose.std_xy, number, learned=learned)
+            return
         self._learner.push_pose(
             pose.t, pose.x, pose.y, pose.yaw, pose.std_xy, pose.std_yaw, number, learned=learned
         )

@@ -6,7 +6,8 @@ from __future__ import annotations
 import math
 
 from slipwise.calibration.judgement import Judgement
-from slipwise.calibration.motion_learner import Event, MotionLearner
+from slipwise.calibration.learner_answers import Event
+from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import SlipwiseError
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said

@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.motion_learner import MotionLearner, PredictedPath
+from slipwise.calibration.learner_answers import PredictedPath
+from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.outputs import Floats, Odometry, Path
 from slipwise.live.samples import Pose
 

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 
 from slipwise.live.wires.wire import RosWire
-from slipwise.logs.messages import TF
+from slipwise.logs.messages import NAV_SAT_FIX, TF
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import NONE, Topic
 from slipwise.logs.topics import NOTHING_YET, Roles, choose_topics, weigh_topics
@@ -55,6 +55,11 @@ def find_roles(
             said = True
             say(f"waiting for {missing}; there is {', '.join(sorted(names)[:8]) or 'no topic at all'}")
         time.sleep(LOOK_EVERY)
+
+
+def only_positions(roles: Roles) -> bool:
+    """Say whether poses are satellite fixes to which no IMU gives a heading."""
+    return roles.pose is not None and roles.pose.type == NAV_SAT_FIX and roles.imu is None
 
 
 def _all_given(options: LogOptions) -> bool:

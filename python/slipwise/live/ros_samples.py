@@ -154,9 +154,13 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
 
 
 class FixPoses:
-    """Poses of satellite fixes with the orientation of an IMU, in the tangent plane at the first fix."""
+    """Poses of satellite fixes with the orientation of an IMU, in the tangent plane at the first fix.
 
-    def __init__(self, options: LogOptions) -> None:
+    Without an IMU (`headed` is false) they are positions: their yaw is NaN.
+    """
+
+    def __init__(self, options: LogOptions, *, headed: bool = True) -> None:
+        self._headed = headed
         self._offset = options.pose_yaw_offset
         self._origin: tuple[float, float, float] | None = None
         self._imu: tuple[float, float, float, float] | None = None  # stamp [s], roll, pitch, yaw [rad]
@@ -175,12 +179,14 @@ class FixPoses:
             return None
         fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
         self._origin = self._origin or fix
-        if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
-            return None
-        _, roll, pitch, yaw = self._imu
         x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
         std_xy = _known(deviation_of(np.array([variances])))
         frame = message.header.frame_id
+        if not self._headed:
+            return Pose(t, x, y, math.nan, std_xy, frame=frame)
+        if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
+            return None
+        _, roll, pitch, yaw = self._imu
         return Pose(t, x, y, yaw + self._offset, std_xy, frame=frame, roll=roll, pitch=pitch)
 
 

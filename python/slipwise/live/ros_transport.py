@@ -148,7 +148,7 @@ class RosTransport:
             kind = roles.wheel.type
             converters.append((roles.wheel.name, kind, to_wheels(kind, options)))
         if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
-            fixes = FixPoses(options)
+            fixes = FixPoses(options, headed=roles.imu is not None)
             converters.append((roles.pose.name, NAV_SAT_FIX, fixes.take_fix))
             if roles.imu is not None:
                 self._take(roles.imu.name, IMU, fixes.take_imu, on_sample)

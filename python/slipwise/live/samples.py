@@ -36,7 +36,7 @@ class Pose:
     t: float  # s
     x: float  # m
     y: float  # m
-    yaw: float  # rad, counter-clockwise
+    yaw: float  # rad, counter-clockwise; NaN where the position alone is measured
     std_xy: float | None = None  # m, where the sensor says it
     std_yaw: float | None = None  # rad
     frame: str = ""  # poses of different frames are not compared

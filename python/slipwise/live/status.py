@@ -35,7 +35,10 @@ class DrivenPath:
         self._poses: deque[tuple[float, float, float]] = deque(maxlen=KEPT_POSES)
 
     def take(self, x: float, y: float, yaw: float) -> None:
-        """Take a measured pose: x, y [m], yaw [rad]."""
+        """Take a measured pose: x, y [m], yaw [rad]; a position, with a yaw of NaN, heads away from the last."""
+        if np.isnan(yaw):
+            before = self._poses[-1] if self._poses else (x, y, 0.0)
+            yaw = float(np.arctan2(y - before[1], x - before[0]))
         if not np.isfinite((x, y, yaw)).all():
             return
         if self._poses and np.hypot(x - self._poses[-1][0], y - self._poses[-1][1]) < APART:

@@ -147,8 +147,7 @@ def _table_poses(path: Path, table: Table, columns: Mapping[str, str], tally: Ta
     names = table.names
     turned = "yaw" in names or set(_QUATERNION) <= set(names)
     missing = [name for name in ("t", "x", "y") if name not in names]
-    if missing or not turned:
-        missing += [] if turned else ["yaw, or qx, qy, qz and qw"]
+    if missing:
         found = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
         advice = f"found {found}; say which is which, such as --columns t=time,x=east"
         raise LogError(f"missing columns: {'; '.join(missing)}", where=str(path), advice=advice)
@@ -158,7 +157,7 @@ def _table_poses(path: Path, table: Table, columns: Mapping[str, str], tally: Ta
         values["frame"] = table.codes("frame")[0].astype(np.float64)
     t, rows = table.numbers("t", tally), np.arange(len(table))
     stream = RawStream("poses", t, values, rows, table.place, frozenset(OPTIONAL_POSE_COLUMNS))
-    if "yaw" in names:
+    if "yaw" in names or not turned:
         return stream
     return _turned(stream, np.stack([table.numbers(name, tally) for name in _QUATERNION], axis=1), tally)
 

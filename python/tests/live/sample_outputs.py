@@ -11,7 +11,7 @@ import numpy as np
 from sample_logs import Drive, simulated_run
 
 from slipwise import MotionLearner, Settings, _core
-from slipwise.calibration.motion_learner import PredictedPath
+from slipwise.calibration.learner_answers import PredictedPath
 from slipwise.errors import SettingsError
 from slipwise.live.outputs import (
     Floats,

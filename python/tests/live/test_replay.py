@@ -8,6 +8,7 @@ import json
 import socket
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -15,7 +16,7 @@ from sample_logs import Drive, simulated_log
 from scripted_node import SLIP
 
 import slipwise as sw
-from slipwise.calibration import Settings
+from slipwise.calibration import Settings, make_settings
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.errors import SettingsError
 from slipwise.live.build import Built, build_node
@@ -58,6 +59,18 @@ def test_replayed_it_is_what_calibrate_writes_to_the_byte(log: Log, input_name: 
     built.node.run()
     model, _ = built.learning.learner.judged_model(log=log)
     assert model.to_yaml() == sw.calibrate(log, input=input_name).model.to_yaml()
+
+
+@pytest.mark.parametrize("input_name", ["wheel", "command"])
+def test_replayed_positions_are_what_calibrate_writes_to_the_byte(log: Log, input_name: str) -> None:
+    runs = tuple(replace(run, poses=replace(run.poses, course=True)) for run in log.runs)
+    positions = Log(runs=runs)
+    settings = make_settings({"live": {"positions": True}})
+    built = build_node(Replay(positions, input_name, rate=0.0), input_name, settings)
+    built.node.run()
+    model, _ = built.learning.learner.judged_model(log=positions)
+    assert model.content.verdict.sentence.count("Only positions were measured") == 1
+    assert model.to_yaml() == sw.calibrate(positions, input=input_name, settings=settings).model.to_yaml()
 
 
 def test_runs_of_a_log_stay_apart() -> None:

@@ -112,6 +112,17 @@ def test_fixes_are_poses_with_the_heading_of_an_imu_of_the_same_time() -> None:
     assert fixes.take_fix(fix(48.0), 9.0) is None  # the heading is old
 
 
+def test_fixes_without_an_imu_are_positions() -> None:
+    fixes = FixPoses(LogOptions(), headed=False)
+    first, second = fixes.take_fix(fix(48.0), 1.0), fixes.take_fix(fix(48.0 + 1e-5), 2.0)
+    assert first is not None
+    assert second is not None
+    assert math.isnan(second.yaw)
+    assert second.y - first.y == pytest.approx(1.112, abs=1e-2)
+    assert second.std_xy == pytest.approx(0.1)
+    assert fixes.take_fix(fix(48.0, status=-1), 3.0) is None
+
+
 def test_stamps_are_those_of_headers_and_others_are_dated_by_their_clock() -> None:
     stamps, no_header = Stamps(), twist(1.0, 0.0, 0.0)
     assert stamps.of(no_header, 1000.0) == 1000.0
