@@ -141,9 +141,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         input_name = table.input or ("command" if roles.command is not None else "wheel")
         say(f"learning from {input_name}s; the node is /{table.name}")
         if only_positions(roles):
-            say(
-                f"{roles.pose.name if roles.pose else ''} has no heading, and no IMU tells it: positions only"
-            )
+            say("satellite fixes without an IMU: positions only, headings are courses of the path")
         transport = RosTransport(wire, roles, options, name=table.name, override_topic=table.override_topic)
     except BaseException:
         wire.close()

@@ -35,7 +35,7 @@ class DrivenPath:
         self._poses: deque[tuple[float, float, float]] = deque(maxlen=KEPT_POSES)
 
     def take(self, x: float, y: float, yaw: float) -> None:
-        """Take a measured pose: x, y [m], yaw [rad]; a position, with a yaw of NaN, heads away from the last."""
+        """Take a measured pose: x, y [m], yaw [rad]; a position (its yaw is NaN) heads away from the last."""
         if np.isnan(yaw):
             before = self._poses[-1] if self._poses else (x, y, 0.0)
             yaw = float(np.arctan2(y - before[1], x - before[0]))
