@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parent.parent
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("archive",),
     ("lie", "linear"),
-    ("vehicle", "slip", "actuator"),
+    ("vehicle", "slip", "actuator", "terrain"),
     ("motion",),
     ("segment", "rollout"),
     ("filter", "planning"),

@@ -23,6 +23,7 @@ NB_MODULE(_core, m) {
   bind_dynamics(m);
   bind_limits(m);
   bind_archive(m);
+  bind_terrain(m);
   bind_surfaces(m);
   bind_online(m);
 }

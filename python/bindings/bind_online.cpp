@@ -343,6 +343,7 @@ void bind_online(nb::module_& m) {
             learner.start_drive({.label = label, .date = date});
           },
           "label"_a = "", "date"_a = "", "Another drive begins, on a surface that is remembered or a new one.")
+      .def("cue_terrain", &MotionLearner::cue_terrain, "answer"_a, "A sensor says what the terrain is now.")
       .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
       .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")

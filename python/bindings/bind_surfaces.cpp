@@ -3,6 +3,7 @@
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -63,6 +64,7 @@ void bind_surfaces(nb::module_& m) {
       .def_ro("segments", &Surface::segments)
       .def_ro("visits", &Surface::visits)
       .def_ro("last_seen", &Surface::last_seen)
+      .def_ro("classes", &Surface::classes, "Classes of terrain that sensors named on it, in visits.")
       .def_prop_ro("speeds", [](const Surface& surface) {
         return std::array<double, 2>{surface.speeds.v, surface.speeds.omega};
       });
@@ -93,18 +95,20 @@ void bind_surfaces(nb::module_& m) {
           "__init__",
           [](KnownSurface* self, const std::string& name, const std::array<double, 3>& seconds_and_speeds,
              const std::array<std::size_t, 2>& segments_and_visits, const std::string& last_seen,
-             const NamedMemory& memory) {
+             const NamedMemory& memory, const ClassCounts& classes) {
             const auto& [seconds, v, omega] = seconds_and_speeds;
             new (self) KnownSurface{.facts = {.name = name,
                                               .seconds = seconds,
                                               .segments = segments_and_visits[0],
                                               .visits = segments_and_visits[1],
                                               .last_seen = last_seen,
-                                              .speeds = {.v = v, .omega = omega}},
+                                              .speeds = {.v = v, .omega = omega},
+                                              .classes = classes},
                                     .memory = memory};
           },
-          "name"_a, "seconds_and_speeds"_a, "segments_and_visits"_a, "last_seen"_a, "memory"_a,
-          "Seconds driven, and the speed [m/s] and yaw rate [rad/s] covered; segments learned and visits.");
+          "name"_a, "seconds_and_speeds"_a, "segments_and_visits"_a, "last_seen"_a, "memory"_a, "classes"_a,
+          "Seconds driven, and the speed [m/s] and yaw rate [rad/s] covered; segments learned and visits; classes of "
+          "terrain that sensors named on it, in visits.");
   nb::class_<KnownBefore>(m, "KnownBefore", "What a learner begins with.")
       .def(
           "__init__",
@@ -121,6 +125,17 @@ void bind_surfaces(nb::module_& m) {
       .def_prop_ro("labels", [](const SurfaceBank& bank) {
         return std::array<double, 2>{bank.labels().all, bank.labels().right};
       });
+  m.def(
+      "surfaces_of_class",
+      [](const std::string& name, const std::vector<std::pair<std::string, ClassCounts>>& surfaces) {
+        std::vector<NamedClasses> named;
+        for (const auto& [surface, classes] : surfaces) {
+          named.push_back({surface, classes});
+        }
+        return surfaces_of_class(name, named);
+      },
+      "name"_a, "surfaces"_a,
+      "P(surface | class) of each surface, a name and its classes in visits, and last of a new one.");
   nb::enum_<SurfaceEvent::Kind>(m, "SurfaceEventKind", "What happened to a surface.")
       .value("Opened", SurfaceEvent::Kind::Opened)
       .value("Recalled", SurfaceEvent::Kind::Recalled)

@@ -22,6 +22,7 @@ void bind_limits(nanobind::module_& m);
 void bind_regression(nanobind::module_& m);
 void bind_estimators(nanobind::module_& m);
 void bind_archive(nanobind::module_& m);
+void bind_terrain(nanobind::module_& m);
 void bind_surfaces(nanobind::module_& m);
 void bind_dynamics(nanobind::module_& m);
 void bind_online(nanobind::module_& m);

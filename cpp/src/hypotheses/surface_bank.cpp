@@ -60,6 +60,8 @@ void SurfaceBank::flush(Surface& surface) {
   surface.seconds += seconds_;
   surface.segments += segments_;
   surface.last_seen = date_.empty() ? surface.last_seen : date_;
+  add_visit(heard_, surface.classes);
+  heard_.clear();
   seconds_ = 0.0;
   segments_ = 0;
   speeds_ = {};
@@ -135,6 +137,9 @@ void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   older.seconds += newer.seconds;
   older.segments += newer.segments;
   older.visits += newer.visits;
+  for (const auto& [name, count] : newer.classes) {
+    count_in(older.classes, name) += count;
+  }
   older.used = std::max(older.used, newer.used);
   older.last_seen = std::max(older.last_seen, newer.last_seen);
   older.speeds = fastest(older.speeds, newer.speeds);
@@ -210,6 +215,8 @@ std::vector<SurfaceCandidate> SurfaceBank::candidates_of_change() const {
 void SurfaceBank::open(const Averages& averages, const DisturbanceModel& law, std::vector<SurfaceCandidate> candidates,
                        double since) {
   weigh_by_label(candidates);
+  heard_in_trial_.clear();
+  heard_factors_.assign(candidates.size(), 0.0);
   for_each(averages, [&](std::size_t i, ModelAverage& average) {
     std::vector<SurfaceMemory> known;
     for (const Surface& surface : surfaces_) {  // an average that began later has not learned the older ones
@@ -230,6 +237,8 @@ void SurfaceBank::start_drive(const Averages& averages, const DisturbanceModel& 
   date_ = start.date;
   label_ = start.label;
   wanted_ = surfaces_.empty() ? label_ : "";
+  heard_.clear();
+  doubted_for_.clear();
   if (!surfaces_.empty()) {
     open(averages, law, candidates_of_start(), kNow);
     present_.reset();
@@ -333,6 +342,7 @@ bool SurfaceBank::settle(const Averages& averages, std::size_t leader, const Dis
   if (candidate.kind != Kind::Present && !at_start) {
     leave_present(averages, law);
   }
+  hear_on(candidate.kind);
   take(candidate, judge_label(candidate, recalled, sure), probability, segments);
   return true;
 }

@@ -35,6 +35,10 @@ void MotionHypotheses::cue_surface(const DisturbanceModel& law, const std::strin
   bank_.cue(averages(), law, label);
 }
 
+void MotionHypotheses::hear_terrain(const DisturbanceModel& law, const TerrainAnswer& answer) {
+  bank_.hear(averages(), law, answer);
+}
+
 bool MotionHypotheses::consider_surfaces(const DisturbanceModel& law) {
   return bank_.consider(averages(), leader(), law);
 }

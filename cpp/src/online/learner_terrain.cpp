@@ -41,6 +41,14 @@ void MotionLearner::cue_surface(const std::string& label) {
   known_.back() = now_known(known_.back().until);
 }
 
+void MotionLearner::cue_terrain(const TerrainAnswer& answer) {
+  check_answer(answer);
+  work_through();  // what waits was driven before
+  hypotheses_.hear_terrain(disturbance_.law(), answer);
+  note_surfaces(runs_, newest());
+  known_.back() = now_known(known_.back().until);
+}
+
 void MotionLearner::begin_with(const KnownBefore& known, const DisturbanceModel& law, bool wheels) {
   hypotheses_.begin_with(known, settings_.stream.segment_length, wheels);
   if (settings_.learn_disturbance) {

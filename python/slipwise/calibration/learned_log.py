@@ -126,7 +126,7 @@ def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None
 LEARNED = _core.EventKind.SegmentLearned
 
 
-Cue = tuple[float, str]  # a stamp [s] and the name of the surface from then on
+Cue = tuple[float, str | _core.TerrainAnswer]  # a stamp [s], and the surface by name or what a sensor says
 
 
 def pushed(
@@ -137,20 +137,27 @@ def pushed(
     Args:
         learner: what is given the measurements.
         drive: the runs, in the order of time.
-        cues: of each run, when somebody named the surface; the learner gets the name at that time.
+        cues: of each run, when somebody said what the surface is; the learner is told at that time.
     """
     for place, run in enumerate(drive):
         learner.start_run()
-        names = dict(cues[place]) if place < len(cues) else {}
-        edges = np.unique([*np.linspace(*run.run.span, STEPS + 1)[1:-1], *names])
+        said = dict(cues[place]) if place < len(cues) else {}
+        edges = np.unique([*np.linspace(*run.run.span, STEPS + 1)[1:-1], *said])
         for k, since in enumerate([-np.inf, *edges.tolist()]):
-            if since in names:
-                learner.cue_surface(names[since])
+            if since in said:
+                _tell(learner, said[since])
             until = float(edges[k]) if k < len(edges) else np.inf
             learner.push(recording_of(run.run, since, until))
             yield (place + (k + 1) / (len(edges) + 1)) / len(drive)
     learner.end_run()
     yield 1.0
+
+
+def _tell(learner: _core.MotionLearner, surface: str | _core.TerrainAnswer) -> None:
+    if isinstance(surface, str):
+        learner.cue_surface(surface)
+    else:
+        learner.cue_terrain(surface)
 
 
 def held_out_predictions(

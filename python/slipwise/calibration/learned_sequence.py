@@ -25,6 +25,7 @@ from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
 from slipwise.logs.log import has_course
+from slipwise.calibration.terrain_cues import Labels, check_labels, cues_of
 from slipwise.models.model import Model
 
 _WORDS = {
@@ -89,6 +90,7 @@ class SequenceOptions:
 
     start: Model | None = None  # whose robot and surfaces are known
     labels: tuple[str, ...] = ()  # of each log; without them, those of its column `terrain`
+    terrain: Labels | None = None  # what sensors said of each run's surface, in place of both
     keep: Keep | None = None  # what a model file needs beside predictions
 
 
@@ -114,15 +116,18 @@ def learn_sequence(
 
     Raises:
         SettingsError: a basis or a term is unknown, or not that of the model to begin with.
+        LogError: what sensors said of the surface goes with no run.
         ModelError: the model to begin with has another input, or no memory of surfaces.
     """
+    if options.terrain is not None:
+        check_labels(options.terrain, drives)
     learner = _begun(drives, settings, horizons, options.start)
     visited: list[VisitedLog] = []
     runs: tuple[PreparedRun, ...] = ()
     learned: list[_core.LearnerEvent] = []
     learner.surface_events()
     for place, drive in enumerate(drives):
-        cues = _begin_drive(learner, drive, options.labels[place] if options.labels else None)
+        cues = _begin_drive(learner, drive, place, options)
         runs += drive
         held_out: list[list[_core.HeldOutPrediction]] = [[] for _ in horizons]
         windows: list[_core.LearnerEvent] = []
@@ -164,9 +169,13 @@ def _begun(
 
 
 def _begin_drive(
-    learner: _core.MotionLearner, drive: tuple[PreparedRun, ...], label: str | None
-) -> list[tuple[Cue, ...]]:
-    """Begin a log; returns the labels of each run that come while it is driven."""
+    learner: _core.MotionLearner, drive: tuple[PreparedRun, ...], place: int, options: SequenceOptions
+) -> Sequence[tuple[Cue, ...]]:
+    """Begin a log; returns what is said of the surface in each run while it is driven."""
+    if options.terrain is not None:
+        learner.start_drive("", date_of(drive))
+        return [cues_of(options.terrain, run) for run in drive]
+    label = options.labels[place] if options.labels else None
     cues = [labels_of(run.run) if label is None else () for run in drive]
     learner.start_drive(label or label_at_start(cues[0], drive[0].run), date_of(drive))
     return cues

@@ -38,7 +38,7 @@ from slipwise.models import Model
 from slipwise.models.schema import Range
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
 Floats = NDArray[np.float64]
 
@@ -251,6 +251,25 @@ class MotionLearner:
     def cue_surface(self, label: str = "") -> None:
         """Say that the surface changes now: to the one of this name, or to another where it is empty."""
         self._core.cue_surface(label)
+
+    def cue_terrain(self, probability: Mapping[str, float], *, unknown: float = 0.0) -> None:
+        """Take what a sensor says of the terrain under the robot now, such as `TerrainWatch.answers`.
+
+        Classes may have any names: on which surface each is said is learned. Where nothing remembers
+        surfaces, it says nothing.
+
+        Args:
+            probability: of each class that the sensor knows, were the terrain one of them; adds up to 1.
+            unknown: that it is none of them, were that as likely as not beforehand.
+
+        Raises:
+            SettingsError: these are no probabilities.
+        """
+        odds = np.array(list(probability.values()), dtype=np.float64)
+        try:
+            self._core.cue_terrain(_core.TerrainAnswer(list(probability), odds, unknown))
+        except (ValueError, TypeError) as problem:
+            raise SettingsError(str(problem).splitlines()[0], where="cue_terrain") from problem
 
     def surfaces(self) -> tuple[SurfaceSummary, ...]:
         """Return the surfaces that are remembered, the present one as it is known now."""

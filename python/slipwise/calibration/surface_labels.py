@@ -8,7 +8,6 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from slipwise.calibration.learned_log import Cue
 from slipwise.calibration.prepared_run import EPOCH_STAMPS, PreparedRun
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Run
@@ -17,13 +16,13 @@ from slipwise.models.schema import LONGEST_NAME
 COLUMN = "terrain"  # of a tidy log
 
 
-def labels_of(run: Run) -> tuple[Cue, ...]:
+def labels_of(run: Run) -> tuple[tuple[float, str], ...]:
     """Return when the column `terrain` names another surface, and its name; empty cells say nothing."""
     column = run.extra.get(COLUMN)
     if column is None:
         return ()
     stamps = np.asarray(run.extra["t"], dtype=np.float64)
-    cues: list[Cue] = []
+    cues: list[tuple[float, str]] = []
     for t, value in zip(stamps, column, strict=True):
         name = "" if value is None or value != value else str(value).strip()[:LONGEST_NAME]
         if name and np.isfinite(t) and (not cues or cues[-1][1] != name):
@@ -31,7 +30,7 @@ def labels_of(run: Run) -> tuple[Cue, ...]:
     return tuple(cues)
 
 
-def label_at_start(cues: Sequence[Cue], run: Run) -> str:
+def label_at_start(cues: Sequence[tuple[float, str]], run: Run) -> str:
     """Return the label that a run begins with; nothing where the first one comes later."""
     return cues[0][1] if cues and cues[0][0] <= run.span[0] else ""
 

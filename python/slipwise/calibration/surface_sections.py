@@ -43,6 +43,7 @@ def surface_sections(
                 slip=known.state.estimate.mean[:size].tolist(),
                 covariance=known.state.estimate.covariance[:size, :size].tolist(),
                 memory=_memory(known),
+                classes=dict(surface.classes),
             )
         )
     return tuple(sections)
@@ -163,4 +164,5 @@ def _known_surface(surface: SurfaceSection, memory: SurfaceMemorySection) -> _co
         (surface.segments, surface.visits),
         surface.last_seen,
         _core.SurfaceMemory(names, slips, weights, memory.observed),
+        list(surface.classes.items()),
     )

@@ -77,10 +77,12 @@ def calibrate(
       slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
       slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
       slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --terrain sand
+      slipwise calibrate --memory sand.csv asphalt.csv --terrain labels.csv -o monday.yaml
       slipwise calibrate drive.csv --no-report --json - | jq .verdict
     """  # noqa: D301
     from slipwise.cli.command_line import command_line
     from slipwise.cli.learn_logs import Asked, learn_logs, opened
+    from slipwise.cli.memory_options import label_files
     from slipwise.cli.output import Output, to_json
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -92,7 +94,8 @@ def calibrate(
     out = Output(json)
     named = settings or basis or estimator
     chosen = chosen_settings(settings, basis, estimator) if named or not memory else None
-    refuse_unwritable(output, report, out.written_file, inputs=(*logs, *log_options.files, settings))
+    read = (*logs, *log_options.files, settings, *label_files(terrain))
+    refuse_unwritable(output, report, out.written_file, inputs=read)
     asked = Asked(
         logs, log_options, input_name and input_name.value, chosen, smooth, memory, tuple(terrain or ())
     )

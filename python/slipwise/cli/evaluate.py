@@ -97,7 +97,7 @@ def evaluate(
       slipwise evaluate drive.csv --json - | jq '.scores[] | {method, horizon, position: .position.mean}'
     """  # noqa: D301
     from slipwise.cli.evaluation_verdict import verdict_on
-    from slipwise.cli.memory_options import refuse_labels, sequence_options
+    from slipwise.cli.memory_options import label_files, refuse_labels, sequence_options
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.run_folder import run_folder, write_settings
@@ -113,7 +113,7 @@ def evaluate(
         _options(horizons, methods, vendor_wheel_separation_multiplier, model or []),
         model or [],
     )
-    read = (*logs, *log_options.files, *models, settings)
+    read = (*logs, *log_options.files, *models, settings, *label_files(terrain))
     refuse_unwritable(predictions, report, out.written_file, inputs=read)
     if memory:
         from slipwise.cli.evaluate_memory import MemoryQuestion, evaluate_memory

@@ -27,11 +27,13 @@ def sequence_options(
     Raises:
         SettingsError: there are several models or no logs, or labels that do not go with the logs.
         ModelError: the model cannot be read.
+        LogError: a table of labels cannot be read.
     """
     from slipwise.calibration.learned_sequence import SequenceOptions
     from slipwise.calibration.surface_labels import given_labels
     from slipwise.errors import SettingsError
     from slipwise.models import load_model
+    from slipwise.terrain.label_file import read_labels
 
     if len(models) > 1:
         raise SettingsError(
@@ -42,7 +44,23 @@ def sequence_options(
     if not logs:
         raise SettingsError("no log was given", where="--memory", advice="give logs in the order of time")
     start = load_model(models[0]) if models else None
+    files = label_files(labels)
+    if files and len(files) < len(labels or ()):
+        raise SettingsError(
+            "surfaces are named by names and by tables of labels",
+            where="--terrain",
+            advice="give names or tables",
+        )
+    if files:
+        return SequenceOptions(start=start, terrain=read_labels(files))
     return SequenceOptions(start=start, labels=given_labels(labels or (), len(logs)))
+
+
+def label_files(labels: Sequence[str] | None) -> list[Path]:
+    """Return the tables among labels of surfaces; the others are names."""
+    from slipwise.terrain.label_file import is_label_file
+
+    return [Path(label) for label in labels or () if is_label_file(label)]
 
 
 def refuse_labels(labels: Sequence[str] | None) -> None:

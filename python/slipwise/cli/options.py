@@ -73,7 +73,8 @@ Labels = Annotated[
     list[str] | None,
     optional(
         "LABEL",
-        "With --memory: the surface of all logs, or given once for each; else the column `terrain` says it.",
+        "With --memory: the surface of all logs, or given once for each, or a table (.csv) of labels by run "
+        "and time as `slipwise terrain classify` writes it; else the column `terrain` says it.",
         "--terrain",
     ),
 ]

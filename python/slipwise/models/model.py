@@ -262,6 +262,9 @@ class Model:
         for key in ("surfaces", "labels"):
             if not content[key]:
                 del content[key]
+        for surface in content.get("surfaces", ()):
+            if not surface["classes"]:
+                del surface["classes"]
         body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
         return head + body
 

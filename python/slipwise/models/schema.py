@@ -238,6 +238,7 @@ class SurfaceSection(_Section):
     slip: list[Finite]  # one value per slip parameter, in their order
     covariance: list[list[Finite]]  # of these
     memory: SurfaceMemorySection | None = None  # without it, the surface serves predictions alone
+    classes: dict[str, NotNegative] = {}  # of terrain that sensors named on it, in visits
 
     @model_validator(mode="after")
     def _covariance_fits(self) -> SurfaceSection:

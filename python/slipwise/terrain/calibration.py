@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.terrain.experts import Experts
-from slipwise.terrain.pool import LEAST, Pool, Rejection, doubt_of, pooled
+from slipwise.terrain.pool import Pool, Rejection, doubt_of, pooled
 from slipwise.terrain.windows import Windows
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.bool_]
 
 MOST_OF_A_RUN = 30.0  # windows; a longer run counts no more
+EVENLY = Pool(1.0, 1.0, 0.0, 0.0, 0.0, ())  # experts before their exponents are fitted
 TOWARDS_ONE = 0.01  # penalty on exponents' squared distance from 1, in nats
 SHARES = tuple(float(share) for share in np.round(np.arange(0.05, 0.96, 0.05), 2))
 
@@ -55,8 +56,8 @@ class LeftOut:
         losses = []
         for vibration in self.vibration:
             rows = np.isfinite(vibration).all(axis=1)
-            joint = (vibration[rows] + LEAST) * (current[rows] + LEAST)
-            own = joint[np.arange(rows.sum()), truth[rows]] / joint.sum(axis=1)
+            joint = pooled(EVENLY, vibration[rows], current[rows])
+            own = joint[np.arange(rows.sum()), truth[rows]]
             losses.append(float(-np.log(own).mean()) if rows.any() else 0.0)
         return int(np.argmin(losses))
 

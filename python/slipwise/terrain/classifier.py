@@ -5,19 +5,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.errors import ModelError, SettingsError
 from slipwise.terrain.kernel_expert import KernelExpert
-from slipwise.terrain.pool import Pool, pooled, rejection_at
+from slipwise.terrain.pool import Pool, rejection_at
 from slipwise.terrain.tree_expert import TreeExpert
 from slipwise.terrain.windows import Cutting, Windows
 
 Floats = NDArray[np.float64]
 
 UNKNOWN = "unknown"
+KINDS = np.array(["", "current", "vibration", "both"], dtype=object)  # of windows, as the core counts them
 
 
 @dataclass(frozen=True)
@@ -36,28 +39,27 @@ class TerrainClassifier:
         Raises:
             ModelError: no window has a measurement that the classifier was trained with.
         """
-        shape = (len(windows), len(self.surfaces))
-        vibration, current = np.full(shape, np.nan), np.full(shape, np.nan)
-        newness = np.zeros(len(windows))
-        if self.vibration is not None:
-            rows = windows.has_vibration
-            vibration[rows] = self.vibration.probabilities(windows.vibration[rows])
-            newness[rows] = self.vibration.newness(windows.vibration[rows])
-        if self.current is not None:
-            rows = windows.has_current
-            current[rows] = self.current.probabilities(windows.current[rows])
-        kinds = kinds_of(vibration, current)
-        if len(windows) and not (kinds != "").any():
+        found = self.in_core.answers(windows.vibration, windows.current)
+        if len(windows) and not any(found.kind):
             raise ModelError(
                 "the log has none of the sensors that the classifier was trained with",
                 advice=f"it knows {' and '.join(sorted(self.pools))}",
             )
-        probability, unknown = np.full(shape, np.nan), np.full(len(windows), np.nan)
-        for kind, pool in self.pools.items():
-            rows = _equal(kinds, kind)
-            probability[rows] = pooled(pool, vibration[rows], current[rows])
-            unknown[rows] = pool.unknown(probability[rows], newness[rows])
-        return Answer(self.surfaces, kinds, probability, unknown)
+        return Answer(
+            self.surfaces, KINDS[np.asarray(found.kind, dtype=np.int64)], found.probability, found.unknown
+        )
+
+    @cached_property
+    def in_core(self) -> _core.TerrainClassifier:
+        """The classifier as the core evaluates it."""
+        pools = [self.pools[kind].in_core if kind in self.pools else None for kind in KINDS]
+        vibration, current = self.vibration, self.current
+        return _core.TerrainClassifier(
+            list(self.surfaces),
+            None if vibration is None else vibration.in_core,
+            None if current is None else current.in_core,
+            pools,
+        )
 
     def labels(self, answer: Answer, share: float) -> NDArray[np.object_]:
         """Return the most probable surface of each window, or "unknown"; empty without a measurement.
@@ -98,10 +100,3 @@ class Answer:
 
 def _equal(names: NDArray[np.object_], name: str) -> NDArray[np.bool_]:
     return np.array([own == name for own in names], dtype=bool)
-
-
-def kinds_of(vibration: Floats, current: Floats) -> NDArray[np.object_]:
-    """Return what each window has, [N], from the experts' answers [N, K], NaN where they have none."""
-    has_vibration, has_current = np.isfinite(vibration).all(axis=1), np.isfinite(current).all(axis=1)
-    names = np.array(["", "current", "vibration", "both"], dtype=object)
-    return np.asarray(names[2 * has_vibration + has_current])

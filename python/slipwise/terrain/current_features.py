@@ -6,6 +6,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
+
 Floats = NDArray[np.float64]
 
 #: Natural logarithms, but for the least currents [A] and the correlation.
@@ -27,7 +29,6 @@ CURRENT_FEATURES = (
     "right_over_speed",
     "left_right_correlation",
 )
-_AMPERES, _RIPPLE, _SPEED = 0.3, 0.1, 0.05  # A, A, m/s: what is added below a logarithm, the sensors' steps
 
 
 def current_features(values: Floats) -> Floats:
@@ -39,31 +40,4 @@ def current_features(values: Floats) -> Floats:
     Args:
         values: [n, 4] left and right current [A], left and right wheel speed [m/s], evenly sampled.
     """
-    left, right = np.abs(values[:, 0]), np.abs(values[:, 1])
-    speed_left, speed_right = np.abs(values[:, 2]).mean(), np.abs(values[:, 3]).mean()
-    total = left + right
-    features = []
-    for current in (left, right):
-        features += [_log(current.mean()), _log(current.std(), _RIPPLE), current.min(), _log(current.max())]
-    features += [
-        _log(total.mean()),
-        _log(total.std(), _RIPPLE),
-        _log(np.diff(total).std(), _RIPPLE),
-        _log(left.mean()) - _log(right.mean()),
-        _log(total.mean()) - _log(speed_left + speed_right, _SPEED),
-        _log(left.mean()) - _log(speed_left, _SPEED),
-        _log(right.mean()) - _log(speed_right, _SPEED),
-        _correlation(left, right),
-    ]
-    return np.array(features, dtype=np.float64)
-
-
-def _log(value: float, least: float = _AMPERES) -> float:
-    return float(np.log(value + least))
-
-
-def _correlation(left: Floats, right: Floats) -> float:
-    spread = left.std() * right.std()
-    if spread < 1e-9:
-        return 0.0
-    return float(((left - left.mean()) * (right - right.mean())).mean() / spread)
+    return np.asarray(_core.current_features(values))

@@ -4,13 +4,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
+
 Floats = NDArray[np.float64]
 
-SHARPNESS = 4.0  # of the softmax over indicators, before calibration
 NEAREST = 5  # windows of training whose mean distance says how new a window is
 
 
@@ -24,18 +26,18 @@ class KernelExpert:
     centres: Floats  # [N, D] standardised features
     weights: Floats  # [N, K]
 
+    @cached_property
+    def in_core(self) -> _core.KernelExpert:
+        """The expert as the core evaluates it."""
+        return _core.KernelExpert(self.mean, self.scale, self.width, self.centres, self.weights)
+
     def probabilities(self, features: Floats) -> Floats:
         """Return the probability of each surface, [M, K], for features [M, D]; not calibrated."""
-        kernel = np.exp(-self.width * self._distances(features))
-        return _softmax(SHARPNESS * (kernel @ self.weights))
+        return np.asarray(self.in_core.probabilities(features))
 
     def newness(self, features: Floats) -> Floats:
         """Return the log of the mean squared distance to the nearest windows of training, [M]."""
-        squared = np.partition(self._distances(features), NEAREST - 1, axis=1)[:, :NEAREST]
-        return np.asarray(np.log(squared.mean(axis=1) * self.width + 1e-6))
-
-    def _distances(self, features: Floats) -> Floats:
-        return squared_distances((features - self.mean) / self.scale, self.centres)
+        return np.asarray(self.in_core.newness(features))
 
 
 def fit_kernel_expert(features: Floats, indicators: Floats, *, width: float, ridge: float) -> KernelExpert:
@@ -51,19 +53,8 @@ def fit_kernel_expert(features: Floats, indicators: Floats, *, width: float, rid
     scale = np.where(scale > 1e-9, scale, 1.0)
     centres = (features - mean) / scale
     gamma = width / features.shape[1]
-    kernel = np.exp(-gamma * squared_distances(centres, centres))
+    kernel = np.exp(-gamma * _core.squared_distances(centres, centres))
     rarity = np.sqrt((indicators / (indicators.mean(axis=0) * indicators.shape[1])).sum(axis=1))
     target = indicators - 1.0 / indicators.shape[1]
     weights = np.linalg.solve(kernel + np.diag(ridge / rarity), target)
     return KernelExpert(mean, scale, gamma, centres, weights)
-
-
-def squared_distances(first: Floats, second: Floats) -> Floats:
-    """Return the squared distances between rows, [N, M], for [N, D] and [M, D]."""
-    squares = (first**2).sum(axis=1)[:, None] + (second**2).sum(axis=1)
-    return np.asarray(np.maximum(squares - 2.0 * first @ second.T, 0.0))
-
-
-def _softmax(scores: Floats) -> Floats:
-    raised = np.exp(scores - scores.max(axis=1, keepdims=True))
-    return np.asarray(raised / raised.sum(axis=1, keepdims=True))

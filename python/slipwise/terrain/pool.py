@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from slipwise import _core
 
-LEAST = 0.01  # of an expert's probability: nobody may rule a surface out alone
+Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -40,24 +40,22 @@ class Pool:
             probability: [N, K] pooled.
             newness: [N] of the vibration's expert.
         """
-        score = self.offset + self.doubt * doubt_of(probability) + self.newness * newness
-        return np.asarray(1.0 / (1.0 + np.exp(-np.clip(score, -50.0, 50.0))))
+        return np.asarray(self.in_core.unknown(probability, newness))
+
+    @property
+    def in_core(self) -> _core.ExpertPool:
+        """The pool as the core evaluates it."""
+        return _core.ExpertPool(self.vibration, self.current, self.offset, self.doubt, self.newness)
 
 
 def pooled(pool: Pool, vibration: Floats, current: Floats) -> Floats:
     """Return the pooled probabilities [N, K]; an expert whose exponent is 0 may hold NaN."""
-    logs = np.zeros(vibration.shape)
-    for exponent, expert in ((pool.vibration, vibration), (pool.current, current)):
-        if exponent != 0.0:
-            logs = logs + exponent * np.log(expert + LEAST)
-    raised = np.exp(logs - logs.max(axis=1, keepdims=True)) if len(logs) else logs
-    return np.asarray(raised / raised.sum(axis=1, keepdims=True))
+    return np.asarray(pool.in_core.pooled(vibration, current))
 
 
 def doubt_of(probability: Floats) -> Floats:
     """Return the log odds against the most probable surface, [N]."""
-    best = np.clip(probability.max(axis=1, initial=0.0), 1e-6, 1.0 - 1e-6)
-    return np.asarray(np.log((1.0 - best) / best))
+    return np.asarray(_core.doubt_of(probability))
 
 
 def rejection_at(rejections: tuple[Rejection, ...], share: float) -> Rejection:

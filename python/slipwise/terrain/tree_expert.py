@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tells surfaces apart by motor currents: trees as arrays of plain numbers, walked with numpy."""
+"""Tells surfaces apart by motor currents: trees as arrays of plain numbers, walked by the core."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+
+from slipwise import _core
+from slipwise.terrain.current_features import CURRENT_FEATURES
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -24,18 +28,11 @@ class Tree:
     right: Integers  # [nodes]
     leaves: Floats  # [leaves, K] share of each surface
 
-    def probabilities(self, features: Floats) -> Floats:
-        """Return the share of each surface in the leaf of each row, [M, K], for [M, D]."""
-        node = np.zeros(len(features), dtype=np.int64)
-        rows = np.arange(len(features))
-        while True:
-            column = self.feature[node]
-            inner = column != LEAF
-            if not inner.any():
-                return self.leaves[self.left[node]]
-            at = node[inner]
-            lower = features[rows[inner], column[inner]] <= self.threshold[at]
-            node[inner] = np.where(lower, self.left[at], self.right[at])
+    @property
+    def in_core(self) -> _core.TerrainTree:
+        """The tree as the core walks it."""
+        left, right = self.left.tolist(), self.right.tolist()
+        return _core.TerrainTree(self.feature.tolist(), self.threshold.tolist(), left, right, self.leaves)
 
 
 @dataclass(frozen=True)
@@ -44,6 +41,13 @@ class TreeExpert:
 
     trees: tuple[Tree, ...]
 
+    features: int = len(CURRENT_FEATURES)  # of a window, in which the trees look
+
+    @cached_property
+    def in_core(self) -> _core.TreeExpert:
+        """The expert as the core evaluates it."""
+        return _core.TreeExpert([tree.in_core for tree in self.trees], self.features)
+
     def probabilities(self, features: Floats) -> Floats:
         """Return the probability of each surface, [M, K], for features [M, D]; not calibrated."""
-        return np.asarray(np.mean([tree.probabilities(features) for tree in self.trees], axis=0))
+        return np.asarray(self.in_core.probabilities(features))

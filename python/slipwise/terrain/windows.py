@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.errors import LogError
 from slipwise.terrain.current_features import CURRENT_FEATURES, current_features
 from slipwise.terrain.recordings import Floats, Recording, Stream
 from slipwise.terrain.vibration_features import vibration_features, vibration_names
 
-LONGEST_GAP = 5.0  # sampling periods that a window may be without a sample
 SAME_RATE = 1.25  # rates that differ by less are one
 
 
@@ -121,16 +121,7 @@ def _on_grid(stream: Stream | None, start: float, seconds: float, rate: float) -
     """Return the stream at `rate` from `start` on [n, D]; None where samples are missing."""
     if stream is None or rate <= 0.0:
         return None
-    count = round(seconds * rate)
-    times = start + np.arange(count) / rate
-    low = max(int(np.searchsorted(stream.t, times[0], side="right")) - 1, 0)
-    high = min(int(np.searchsorted(stream.t, times[-1])) + 1, len(stream.t))
-    t = stream.t[low:high]
-    most = LONGEST_GAP / rate
-    if len(t) < 2 or t[0] > times[0] + most or t[-1] < times[-1] - most or np.diff(t).max() > most:
-        return None
-    columns = [np.interp(times, t, column) for column in stream.values[low:high].T]
-    return np.stack(columns, axis=1)
+    return _core.even_samples(stream.t, stream.values, start, (seconds, rate))
 
 
 def _rate(stream: Stream) -> float:

@@ -27,6 +27,20 @@ MEMORY = 4 << 30  # bytes
 
 # Arrays of any length are right here, or the lengths are compared where the object is used.
 ANY_LENGTH = {
+    "VibrationBands.features samples",
+    "current_features samples",
+    "even_samples values",
+    "squared_distances first",
+    "squared_distances second",
+    "KernelExpert.__init__ weights",
+    "KernelExpert.probabilities features",
+    "KernelExpert.newness features",
+    "TerrainTree.__init__ leaves",
+    "TreeExpert.probabilities features",
+    "ExpertPool.unknown probability",
+    "doubt_of probability",
+    "TerrainClassifier.answers vibration",
+    "TerrainClassifier.answers current",
     "BayesianRegression.__init__ weight_std",
     "BayesianRegression.predict_rows features",
     "CostmapView.__init__ cells",

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from bindings.sound_surfaces import SURFACE_ARGUMENTS, SURFACE_OBJECTS, remembering_learner
+from bindings.sound_terrain import TERRAIN_ARGUMENTS, TERRAIN_OBJECTS
 from bindings.sound_vehicles import VEHICLE_ARGUMENTS, VEHICLE_OBJECTS
 from bindings.stub_calls import Bound, bound_functions
 
@@ -178,6 +179,7 @@ def _small_mppi() -> _core.MppiSettings:
 
 OBJECTS: dict[str, Callable[[], Any]] = {
     **SURFACE_OBJECTS,
+    **TERRAIN_OBJECTS,
     **VEHICLE_OBJECTS,
     "AverageState": lambda: _average().state(),
     "BayesianRegression": _regression,
@@ -235,6 +237,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
 _square, _list3 = 0.01 * np.eye(SIZE), [0.01, 0.01, 0.01]
 ARGUMENTS: dict[str, Callable[[], Any]] = {
     **SURFACE_ARGUMENTS,
+    **TERRAIN_ARGUMENTS,
     **VEHICLE_ARGUMENTS,
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "HeldOutColumns.__init__ predictions": list,

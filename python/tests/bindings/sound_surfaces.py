@@ -30,7 +30,7 @@ def _surface_memory() -> _core.SurfaceMemory:
 
 
 def _known_before() -> _core.KnownBefore:
-    known = _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "2026-01-01", _surface_memory())
+    known = _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "2026-01-01", _surface_memory(), [])
     return _core.KnownBefore(_posterior(), 0, [known], (1.0, 1.0))
 
 
@@ -72,7 +72,7 @@ SURFACE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "KnownSurface.__init__ seconds_and_speeds": lambda: (60.0, 1.0, 0.5),
     "KnownSurface.__init__ segments_and_visits": lambda: (24, 1),
     "KnownBefore.__init__ surfaces": lambda: [
-        _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "", _surface_memory())
+        _core.KnownSurface("sand", (60.0, 1.0, 0.5), (24, 1), "", _surface_memory(), [])
     ],
     "KnownBefore.__init__ labels": lambda: (1.0, 1.0),
 }

@@ -51,6 +51,34 @@ def test_surfaces_are_learned_gone_on_from_renamed_and_merged(
     assert [each["name"] for each in merged["surfaces"]] == ["hall", "sand"]
 
 
+@pytest.mark.slow
+def test_a_table_of_labels_teaches_what_is_said_on_which_surface(
+    slipwise: Slipwise, folder: Path, logs: list[Path]
+) -> None:
+    labels, model = folder / "labels.csv", folder / "model.yaml"
+    rows = [
+        f"drive {run},{t},{t + 5},{name},{white},{1 - white},0.0"
+        for run, (name, white) in enumerate((("white", 0.9), ("brown", 0.1), ("white", 0.9)))
+        for t in range(0, 55, 5)
+    ]
+    labels.write_text("\n".join(("run,t_start,t_end,label,p_white,p_brown,p_unknown", *rows)) + "\n")
+    assert slipwise(*LEARN, *logs, "-o", model, "--terrain", labels).code == 0
+    firm, loose = load_model(model).content.surfaces
+    assert firm.classes["white"] > firm.classes["brown"]
+    assert loose.classes["brown"] > loose.classes["white"]
+    again = slipwise(*LEARN, model, logs[0], "--terrain", labels, "--json", "-").json
+    assert again["visits"][0]["surface"] == firm.name
+    assert "names or tables" in slipwise(*LEARN, logs[0], "--terrain", labels, "--terrain", "hall").line
+    assert "replace what is read" in slipwise(*LEARN, logs[0], "--terrain", labels, "-o", labels).line
+    assert "the labels are of runs x" in slipwise(*LEARN, logs[0], "--terrain", _of_another_run(folder)).line
+
+
+def _of_another_run(folder: Path) -> Path:
+    path = folder / "other.csv"
+    path.write_text("run,t_start,t_end,label\nx,0,5,ice\n")
+    return path
+
+
 def test_what_contradicts_itself_is_refused(slipwise: Slipwise, folder: Path, logs: list[Path]) -> None:
     assert "add --memory" in slipwise("calibrate", logs[0], "--terrain", "sand").line
     assert "add --memory" in slipwise("evaluate", logs[0], "--terrain", "sand").line

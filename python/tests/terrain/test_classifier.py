@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from slipwise.errors import ModelError, SettingsError
 from slipwise.terrain import TerrainClassifier, Windows
-from slipwise.terrain.classifier import kinds_of
-from slipwise.terrain.pool import Pool, Rejection
+from slipwise.terrain.kernel_expert import fit_kernel_expert
+from slipwise.terrain.pool import Pool, Rejection, pooled
 from slipwise.terrain.tree_expert import LEAF, Tree, TreeExpert
 from slipwise.terrain.windows import Cutting
 
@@ -58,7 +60,22 @@ def test_a_share_is_from_zero_to_below_one(share: float) -> None:
         CLASSIFIER.labels(CLASSIFIER.answer(windows_of(0.0)), share)
 
 
-def test_what_a_window_has_is_what_the_experts_answered() -> None:
-    yes, no = np.zeros((1, 2)), np.full((1, 2), np.nan)
-    found = [kinds_of(*pair)[0] for pair in ((yes, yes), (yes, no), (no, yes), (no, no))]
-    assert found == ["both", "vibration", "current", ""]
+def test_the_pool_is_that_of_what_a_window_has() -> None:
+    rng = np.random.default_rng(0)
+    kernel = fit_kernel_expert(
+        rng.standard_normal((20, 6)), np.eye(2)[np.arange(20) % 2], width=0.5, ridge=0.1
+    )
+    shake = Pool(2.0, 0.0, -1.0, 0.5, 0.3, ())
+    both = Pool(1.5, 0.5, -0.5, 0.4, 0.2, ())
+    pools = {"current": POOL, "vibration": shake, "both": both}
+    made = TerrainClassifier(("ice", "sand"), Cutting(1.0, 4.0, 10.0), kernel, TreeExpert((STUMP,)), pools)
+    windows = replace(windows_of(0.0, np.nan, 2.0, np.nan), vibration=rng.standard_normal((4, 6)))
+    windows.vibration[[2, 3]] = np.nan
+    answer = made.answer(windows)
+    assert answer.kind.tolist() == ["both", "vibration", "current", ""]
+    vibration, newness = kernel.probabilities(windows.vibration[:2]), kernel.newness(windows.vibration[:2])
+    current = TreeExpert((STUMP,)).probabilities(windows.current[:1])
+    together = pooled(both, vibration[:1], current)
+    np.testing.assert_allclose(answer.probability[:1], together)
+    np.testing.assert_allclose(answer.unknown[:1], both.unknown(together, newness[:1]))
+    np.testing.assert_allclose(answer.probability[1], pooled(shake, vibration, vibration)[1])

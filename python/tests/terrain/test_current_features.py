@@ -44,3 +44,13 @@ def test_currents_that_rise_together_are_correlated() -> None:
 
 def test_standing_is_finite() -> None:
     assert np.isfinite(current_features(np.zeros((5, 4)))).all()
+
+
+def test_spreads_are_those_of_numpy() -> None:
+    values = np.random.default_rng(3).standard_normal((33, 4)) * 5.0
+    left, right = np.abs(values[:, :2].T)
+    found = dict(zip(CURRENT_FEATURES, current_features(values), strict=True))
+    assert found["left_std"] == pytest.approx(np.log(left.std() + 0.1), rel=1e-12)
+    assert found["sum_change"] == pytest.approx(np.log(np.diff(left + right).std() + 0.1), rel=1e-12)
+    assert found["left_right_correlation"] == pytest.approx(np.corrcoef(left, right)[0, 1], rel=1e-12)
+    assert found["left_most"] == pytest.approx(np.log(left.max() + 0.3), rel=1e-12)

@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from slipwise.terrain.kernel_expert import fit_kernel_expert, squared_distances
+from slipwise import _core
+from slipwise.terrain.kernel_expert import fit_kernel_expert
 
 
 def rings() -> tuple[np.ndarray, np.ndarray]:
@@ -59,4 +60,14 @@ def test_distances_are_those_of_the_rows() -> None:
     rng = np.random.default_rng(0)
     first, second = rng.standard_normal((3, 4)), rng.standard_normal((5, 4))
     expected = ((first[:, None] - second) ** 2).sum(axis=2)
-    np.testing.assert_allclose(squared_distances(first, second), expected)
+    np.testing.assert_allclose(_core.squared_distances(first, second), expected)
+
+
+def test_a_window_is_as_new_as_the_nearest_five_are_far() -> None:
+    rng = np.random.default_rng(1)
+    features, indicators = rng.standard_normal((30, 3)), np.eye(2)[rng.integers(0, 2, 30)]
+    expert = fit_kernel_expert(features, indicators, width=0.5, ridge=0.1)
+    probe = rng.standard_normal((4, 3))
+    squared = (((probe[:, None] - features) / features.std(axis=0)) ** 2).sum(axis=2)
+    nearest = np.sort(squared, axis=1)[:, :5].mean(axis=1)
+    np.testing.assert_allclose(expert.newness(probe), np.log(0.5 / 3 * nearest + 1e-6), atol=1e-9)

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from slipwise.terrain.pool import LEAST, Pool, Rejection, doubt_of, pooled, rejection_at
+from slipwise.terrain.pool import Pool, Rejection, doubt_of, pooled, rejection_at
 
 HALF, THIRD = np.array([[0.5, 0.5]]), np.array([[0.8, 0.2]])
 
@@ -27,7 +27,7 @@ def test_two_who_agree_are_surer_than_one() -> None:
 def test_nobody_rules_a_surface_out_alone() -> None:
     sure, other = np.array([[1.0, 0.0]]), np.array([[0.02, 0.98]])
     assert pooled(pool(1.0, 1.0), sure, other)[0, 1] == pytest.approx(
-        LEAST * 0.99 / (LEAST * 0.99 + 1.01 * 0.03)
+        0.01 * 0.99 / (0.01 * 0.99 + 1.01 * 0.03)
     )
 
 

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -43,3 +45,23 @@ def test_silence_is_finite() -> None:
 def test_there_is_a_number_for_each_name_and_none_above_half_the_rate() -> None:
     assert len(vibration_features(np.zeros((50, 6)), 50.0)) == len(vibration_names(50.0)) == 6 * 8
     assert vibration_names(0.0) == []
+
+
+@pytest.mark.parametrize("rate", [100.0, 99.6, 40.0])
+def test_they_are_those_of_a_fast_fourier_transform(rate: float) -> None:
+    values = np.random.default_rng(2).standard_normal((int(5 * rate), 6)) + 3.0
+    length = round(rate)
+    window, centred = np.hanning(length)[:, None], values - values.mean(axis=0)
+    starts = range(0, len(values) - length + 1, length // 2)
+    spectra = [np.abs(np.fft.rfft(centred[at : at + length] * window, axis=0)) ** 2 for at in starts]
+    power = np.mean(spectra, axis=0) / (window**2).sum()
+    frequency = np.fft.rfftfreq(length, 1.0 / rate)
+    edges = [edge for edge in (0.5, 2, 4, 6, 8, 11, 14, 18, 23, 29, 36, 43, 50) if edge <= rate / 2 * 1.01]
+    bands = [power[(frequency >= low) & (frequency < high)].mean(axis=0) for low, high in pairwise(edges)]
+    expected = np.log(np.stack(bands, axis=1) + 1e-9).ravel()
+    np.testing.assert_allclose(vibration_features(values, rate), expected, rtol=1e-10)
+
+
+def test_less_than_a_second_is_refused() -> None:
+    with pytest.raises(ValueError, match="a second or more"):
+        vibration_features(np.zeros((99, 6)), RATE)

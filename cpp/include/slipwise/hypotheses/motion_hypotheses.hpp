@@ -93,6 +93,8 @@ class MotionHypotheses {
   void start_drive(const DisturbanceModel& law, const DriveStart& start);
   /// Somebody says that the surface changes now, to the one of this name if any.
   void cue_surface(const DisturbanceModel& law, const std::string& label);
+  /// A sensor says what the terrain under the robot is.
+  void hear_terrain(const DisturbanceModel& law, const TerrainAnswer& answer);
   /// Segments of one run are not joined with those of another.
   void start_run();
   /// After a segment: surfaces are suspected, and taken. Whether what is known changed.

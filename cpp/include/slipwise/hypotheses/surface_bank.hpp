@@ -11,6 +11,7 @@
 
 #include "slipwise/filter/driven_speeds.hpp"
 #include "slipwise/hypotheses/model_average.hpp"
+#include "slipwise/hypotheses/surface_classes.hpp"
 
 namespace slipwise {
 
@@ -28,6 +29,7 @@ struct Surface {
   ReferenceSpeeds speeds{};    ///< covered
   std::size_t used = 0;        ///< drive or change, counted, at which it was taken last
   std::array<std::optional<SurfaceMemory>, kAverages> memories = {};  ///< per average
+  ClassCounts classes = {};  ///< of terrain that sensors named on it, in visits
 };
 
 /// What is said of a drive's start.
@@ -64,6 +66,9 @@ class SurfaceBank {
   void start_drive(const Averages& averages, const DisturbanceModel& law, const DriveStart& start);
   /// Somebody says that the surface is `label`, or another from now on where that is empty.
   void cue(const Averages& averages, const DisturbanceModel& law, const std::string& label);
+  /// A sensor says what the terrain under the robot is. In a trial all that it said counts as one cue, since answers
+  /// miss alike; where another surface explains it far better than the present one, a trial begins.
+  void hear(const Averages& averages, const DisturbanceModel& law, const TerrainAnswer& answer);
   /// After each segment that the average `leader` learned: its suspicions open trials, and its evidence ends them.
   /// Whether any average goes on from another posterior.
   bool consider(const Averages& averages, std::size_t leader, const DisturbanceModel& law);
@@ -94,6 +99,7 @@ class SurfaceBank {
     a(self.settings_, self.surfaces_, self.present_, self.seconds_, self.segments_, self.speeds_, self.clock_,
       self.date_);
     a(self.events_, self.label_, self.wanted_, self.labels_, self.named_, self.leader_);
+    a(self.heard_, self.heard_in_trial_, self.heard_factors_, self.doubted_for_);
   }
 
  private:
@@ -102,6 +108,10 @@ class SurfaceBank {
   std::vector<SurfaceCandidate> candidates_of_start() const;
   std::vector<SurfaceCandidate> candidates_of_change() const;
   Eigen::ArrayXd label_factors(const std::vector<SurfaceCandidate>& candidates) const;
+  ClassCounts heard_on_present() const;
+  Eigen::ArrayXd class_likelihoods(const std::vector<SurfaceCandidate>& candidates, const ClassCounts& said) const;
+  void weigh_by_classes(const Averages& averages);
+  void hear_on(SurfaceCandidate::Kind taken);
   void weigh_by_label(std::vector<SurfaceCandidate>& candidates) const;
   std::string judge_label(const SurfaceCandidate& candidate, const std::string& recalled, bool sure);
   bool settle(const Averages& averages, std::size_t leader, const DisturbanceModel& law, bool at_once);
@@ -129,8 +139,12 @@ class SurfaceBank {
   std::string label_;   ///< that speaks in the trial
   std::string wanted_;  ///< name of the surface that has no entry yet
   LabelCounts labels_;
-  std::size_t named_ = 0;   ///< surfaces that got a number for a name
-  std::size_t leader_ = 0;  ///< average that decides
+  std::size_t named_ = 0;              ///< surfaces that got a number for a name
+  std::size_t leader_ = 0;             ///< average that decides
+  ClassCounts heard_;                  ///< said by sensors on the present surface since it was taken
+  ClassCounts heard_in_trial_;         ///< since the trial began
+  std::vector<double> heard_factors_;  ///< log factors of the candidates that this has been worth so far
+  std::string doubted_for_;            ///< class that began the last trial on the present surface
 };
 
 }  // namespace slipwise

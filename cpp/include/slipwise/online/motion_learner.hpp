@@ -141,6 +141,10 @@ class MotionLearner {
   void start_drive(const DriveStart& start = {});
   /// The surface changes now, somebody says: to the one of this name, or to another where it is empty.
   void cue_surface(const std::string& label);
+  /// A sensor says what the terrain under the robot is now: a prior for the surfaces that it said that on before, as
+  /// far as surfaces are remembered. Each answer, in the order of time, as soon as it is known.
+  /// \throws std::invalid_argument when the answer has numbers that are no probabilities.
+  void cue_terrain(const TerrainAnswer& answer);
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
   /// What happened to them since the last call; the oldest are dropped where nobody asks for long.
