@@ -14,6 +14,7 @@
 #include "slipwise/planning/distance_field.hpp"
 #include "slipwise/planning/mppi.hpp"
 #include "slipwise/planning/trajectory.hpp"
+#include "slipwise/slip/mixed_ahead.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -144,17 +145,19 @@ MppiReference reference_of(const Rows<3>& rows) {
   return reference;
 }
 
-/// Model, parameters, limits, and the rise of the ground per metre along the axes of the poses' frame.
-using Motions =
-    std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>, std::array<double, 2>>>;
+/// Model, parameters, limits, the rise of the ground per metre along the axes of the poses' frame, and the slip ahead.
+using Motions = std::vector<std::tuple<MotionModel, Eigen::VectorXd, std::optional<CommandLimits>,
+                                       std::array<double, 2>, std::optional<MixedAhead>>>;
 
 std::vector<RolloutProgram> programs_of(const Motions& motions, double period) {
   std::vector<RolloutProgram> programs;
-  for (const auto& [model, parameters, limits, rise] : motions) {
-    programs.emplace_back(
-        model, parameters,
-        RolloutSetting{
-            .period = period, .limits = limits.value_or(CommandLimits{}), .rise_x = rise[0], .rise_y = rise[1]});
+  for (const auto& [model, parameters, limits, rise, ahead] : motions) {
+    programs.emplace_back(model, parameters,
+                          RolloutSetting{.period = period,
+                                         .limits = limits.value_or(CommandLimits{}),
+                                         .rise_x = rise[0],
+                                         .rise_y = rise[1],
+                                         .ahead = ahead ? ahead->ahead : SlipAhead{}});
   }
   return programs;
 }

@@ -16,6 +16,7 @@
 #include "slipwise/rollout/rollout_batch.hpp"
 #include "slipwise/rollout/rollout_covariance.hpp"
 #include "slipwise/rollout/sampled_futures.hpp"
+#include "slipwise/slip/mixed_ahead.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -81,13 +82,15 @@ InstructionLevel level_named(const std::string& name) {
 }
 
 /// Without limits the commands pass as they are. `ground` is (gx, gy, rise_x, rise_y).
-RolloutSetting setting(double period, const std::array<double, 4>& ground, const CommandLimits* limits) {
+RolloutSetting setting(double period, const std::array<double, 4>& ground, const CommandLimits* limits,
+                       const SlipAhead& ahead) {
   return {.period = period,
           .gx = ground[0],
           .gy = ground[1],
           .limits = limits == nullptr ? CommandLimits{} : *limits,
           .rise_x = ground[2],
-          .rise_y = ground[3]};
+          .rise_y = ground[3],
+          .ahead = ahead};
 }
 
 template <typename Scalar>
@@ -128,17 +131,18 @@ void bind_uncertain(nb::module_& m) {
           [](UncertainModel* self, const MotionModel& model, const Eigen::VectorXd& parameters,
              const Eigen::MatrixXd& covariance, const MotionNoise& noise, const Eigen::Vector3d& scale,
              double inflation, const DisturbanceModel& disturbance, const Eigen::VectorXd& prior_std, double period,
-             const std::array<double, 4>& ground, const CommandLimits* limits) {
+             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead) {
             model.check(parameters);
             check_square(covariance, model.size(), "the covariance of a model");
             check_size(prior_std, model.size(), "the prior of a model");
             new (self) UncertainModel{model,
                                       parameters,
-                                      {covariance, noise, scale, inflation, disturbance, prior_std},
-                                      setting(period, ground, limits)};
+                                      {covariance, noise, scale, inflation, disturbance, prior_std,
+                                       ahead == nullptr ? std::vector<Eigen::MatrixXd>{} : ahead->directions},
+                                      setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead)};
           },
           "model"_a, "parameters"_a, "covariance"_a, "noise"_a, "scale"_a, "inflation"_a, "disturbance"_a,
-          "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), nb::keep_alive<1, 2>());
+          "prior_std"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(), nb::keep_alive<1, 2>());
   m.def(
       "rollout_covariance",
       [](const UncertainModel& model, const Commands<double>& commands, const StartList& starts,
@@ -169,10 +173,11 @@ void bind_rollout(nb::module_& m) {
       .def(
           "__init__",
           [](RolloutProgram* self, const MotionModel& model, const Eigen::VectorXd& parameters, double period,
-             const std::array<double, 4>& ground, const CommandLimits* limits) {
-            new (self) RolloutProgram(model, parameters, setting(period, ground, limits));
+             const std::array<double, 4>& ground, const CommandLimits* limits, const MixedAhead* ahead) {
+            new (self) RolloutProgram(model, parameters,
+                                      setting(period, ground, limits, ahead == nullptr ? SlipAhead{} : ahead->ahead));
           },
-          "model"_a, "parameters"_a, "period"_a, "ground"_a, "limits"_a.none(),
+          "model"_a, "parameters"_a, "period"_a, "ground"_a, "limits"_a.none(), "ahead"_a.none(),
           "`ground` is gravity along the robot's x and y axes [m/s^2], and the rise of a plane per metre along the "
           "axes "
           "of the starts' frame: one of the two pairs is zero.")

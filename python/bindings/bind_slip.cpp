@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
 #include "slipwise/slip/basis.hpp"
+#include "slipwise/slip/mixed_ahead.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
 namespace nb = nanobind;
@@ -45,6 +46,27 @@ void bind_slip(nb::module_& m) {
       .def(
           "features", [](const Basis& b, const SlipState& state) { return b.linearize_features(state).value; },
           "state"_a, "Feature of every parameter at one state, [parameters].");
+  nb::class_<MixedAhead>(m, "MixedAhead", "Slip along a path whose surfaces are known with probabilities.")
+      .def(
+          "__init__",
+          [](MixedAhead* self, const std::vector<double>& edges, const Eigen::MatrixXd& probabilities,
+             const std::vector<Eigen::VectorXd>& slips, const std::vector<Eigen::MatrixXd>& covariances) {
+            if (slips.size() != covariances.size()) {
+              throw std::invalid_argument("each surface ahead needs slip and its covariance");
+            }
+            std::vector<SurfaceMoments> surfaces;
+            for (std::size_t i = 0; i < slips.size(); ++i) {
+              surfaces.push_back({slips[i], covariances[i]});
+            }
+            new (self) MixedAhead(mix_ahead(edges, probabilities, surfaces));
+          },
+          "edges"_a, "probabilities"_a, "slips"_a, "covariances"_a,
+          "Edges [m] between stretches, a row of probabilities for each stretch, and the moments of each surface.")
+      .def_ro("slip", &MixedAhead::slip, "Where the path begins, [slip].")
+      .def_prop_ro("edges", [](const MixedAhead& mixed) { return mixed.ahead.edges; })
+      .def_prop_ro(
+          "changes", [](const MixedAhead& mixed) { return mixed.ahead.changes; }, "Of slip at each edge.")
+      .def_ro("directions", &MixedAhead::directions, "Independent errors of all stretches, [slip, stretches] each.");
   m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
   m.def("basis_names", &basis_names, "Names of all bases that ship.");
   m.def(

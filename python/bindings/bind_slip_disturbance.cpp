@@ -5,7 +5,7 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
-#include "slipwise/disturbance/slip_disturbance.hpp"
+#include "slipwise/disturbance/ahead_prediction.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -69,6 +69,14 @@ void bind_slip_disturbance(nb::module_& m) {
              const Segment& segment) { return slip.predict(posterior, now, {.inputs = inputs, .segment = segment}); },
           "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "Predicts a segment from where slip is.")
       .def_prop_ro("law", &DisturbanceFilter::law);
+  m.def(
+      "predict_ahead",
+      [](const DisturbanceFilter& slip, const MotionPosterior& posterior, const InputHistory& inputs,
+         const SlipNow& now, const Segment& segment, const MixedAhead& ahead) {
+        return predict_ahead(slip, posterior, now, {.inputs = inputs, .segment = segment}, ahead);
+      },
+      "slip"_a, "posterior"_a, "inputs"_a, "now"_a, "segment"_a, "ahead"_a,
+      "Where a segment over several surfaces is expected to end.");
 }
 
 }  // namespace slipwise::bindings

@@ -57,6 +57,18 @@ void bind_surfaces(nb::module_& m) {
       .def_ro("by_robot", &SurfaceSlip::by_robot)
       .def_ro("robot", &SurfaceSlip::robot)
       .def_prop_ro("noise_scale", [](const SurfaceSlip& slip) { return slip.noise_scale.value(); });
+  m.def(
+      "shrunk_prior",
+      [](const std::vector<SurfaceSlip>& known, const Eigen::VectorXd& first_std, const std::array<double, 2>& speeds) {
+        for (const SurfaceSlip& each : known) {
+          if (each.mean.size() != first_std.size() || each.robot.size() != 0) {
+            throw std::invalid_argument("surfaces have slip in the terms of the prior, and here no robot beside it");
+          }
+        }
+        return shrunk_prior(known, Eigen::VectorXd(0), first_std, {.v = speeds[0], .omega = speeds[1]});
+      },
+      "known"_a, "first_std"_a, "speeds"_a,
+      "The prior of a surface that was never driven, from those that were and the prior of a first drive.");
   nb::class_<Surface>(m, "Surface", "A surface that is remembered.")
       .def(nb::init<>())
       .def_ro("name", &Surface::name)

@@ -15,6 +15,7 @@ from slipwise.evaluation import Evaluation, EvaluationOptions
 from slipwise.ground import Ground, Pose
 from slipwise.logs import Inputs, Log, open_log
 from slipwise.models import Model, load_model
+from slipwise.terrain_ahead import TerrainAhead
 
 LogOrPath = Log | str | Path | Sequence[str | Path]
 ModelOrPath = Model | str | Path
@@ -111,6 +112,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
     slip_now: _core.SlipNow | None = None,
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
+    terrain_ahead: TerrainAhead | None = None,
 ) -> prediction.Path:
     """Predict the path of base_link under `commands`; see `slipwise.prediction.predict`.
 
@@ -123,9 +125,10 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         slip_now: where slip is at the start, as `slipwise.prediction.slip_seen` says.
         ground: a `Grade` or an `ElevationMap` of `slipwise.ground`; level by default.
         at: the robot's pose (x, y [m], yaw [rad]) at the start in the frame of the ground.
+        terrain_ahead: surfaces along the path, a `TerrainAhead` of `slipwise.terrain_ahead`.
 
     Raises:
-        ModelError: the file is no model.
+        ModelError: the file is no model, or the model does not remember a surface ahead.
         SettingsError: the horizon is not positive, the start lies before the first command, the commands are
             not such rows, or the path leaves the map of elevations.
     """
@@ -138,6 +141,7 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         slip_now=slip_now,
         ground=ground,
         at=at,
+        terrain_ahead=terrain_ahead,
     )
 
 

@@ -20,6 +20,7 @@ from slipwise.models.schema import StudentT
 from slipwise.number_text import number_text
 from slipwise.path_figure import path_figure
 from slipwise.student import LEAST_DOF, MOST_DOF
+from slipwise.terrain_ahead import SlipAhead, TerrainAhead, slip_ahead
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,6 +85,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     slip_now: _core.SlipNow | None = None,
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
+    terrain_ahead: TerrainAhead | None = None,
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -100,8 +102,11 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         ground: what the robot drives on, a `Grade` or an `ElevationMap`; level by default. The path is then
             also one in space, and gravity acts where the model has terms of it.
         at: the robot's pose at the start in the frame of the ground (x, y [m], yaw [rad]).
+        terrain_ahead: surfaces along the path, of those that the model remembers. Each step slips as on the
+            surface that it is driven on; where that is uncertain, as the mixture, whose covariance says so.
 
     Raises:
+        ModelError: the model does not remember a surface ahead.
         SettingsError: the horizon is not positive or longer than an hour, the start lies before the first
             command, commands or initial speeds are not such rows, not finite or beyond all speeds, or the
             path leaves the map of elevations.
@@ -127,6 +132,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
+    slip = slip_ahead(terrain_ahead, model)
+    posterior = model.posterior if slip is None else _on_stretches(model, slip)
     under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
@@ -135,7 +142,10 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         segment = segment.with_ground(under)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
-        expected = disturbance.predict(model.posterior, history, now, segment)
+        if slip is None:
+            expected = disturbance.predict(posterior, history, now, segment)
+        else:
+            expected = _core.predict_ahead(disturbance, posterior, history, now, segment, slip.in_core)
         poses.append(expected.pose)
         covariance.append(expected.covariance * student_at(model, seconds).inflation)
     dof = np.array([student_at(model, seconds).dof for seconds in (0.0, *ahead.tolist())])
@@ -143,6 +153,14 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         ground.check(_in_frame(np.array(poses), at))
     standing = None if under is None else under.standings(np.array(poses))
     return Path(begin + np.concatenate(([0.0], ahead)), np.array(poses), np.array(covariance), dof, standing)
+
+
+def _on_stretches(model: Model, slip: SlipAhead) -> _core.MotionPosterior:
+    """Return what is known of the robot, and how large the noise may be on any stretch ahead."""
+    known = model.posterior
+    return _core.MotionPosterior(
+        known.model, known.estimate, known.prior_std, known.noise, slip.variance_scale
+    )
 
 
 def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) -> _core.SlipNow:

@@ -11,4 +11,9 @@ SymmetricEigen symmetric_eigen(const Eigen::Ref<const Eigen::MatrixXd>& matrix) 
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
+Eigen::MatrixXd covariance_root(const Eigen::Ref<const Eigen::MatrixXd>& covariance) {
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+}
+
 }  // namespace slipwise

@@ -6,8 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "slipwise/linear/symmetric_eigen.hpp"
-
 namespace slipwise {
 
 void check_uncertainty(const UncertainModel& model) {
@@ -24,6 +22,12 @@ void check_uncertainty(const UncertainModel& model) {
     throw std::invalid_argument("the covariance, its scale and its inflation must be finite, and no scale negative");
   }
   check_disturbance(uncertainty.disturbance);
+  const auto stretches = std::ssize(model.setting.ahead.edges) + 1;
+  for (const Eigen::MatrixXd& direction : uncertainty.ahead) {
+    if (direction.rows() != model.model.slip_size() || direction.cols() != stretches || !direction.allFinite()) {
+      throw std::invalid_argument("what is not known of the slip ahead has other terms or stretches than the slip");
+    }
+  }
 }
 
 DisturbedTerms disturbed_terms_of(const UncertainModel& model) {
@@ -35,12 +39,21 @@ DisturbedTerms disturbed_terms_of(const UncertainModel& model) {
 RolloutProgram drive_alone(const UncertainModel& model) {
   Eigen::VectorXd parameters = model.parameters;
   parameters.head(model.model.slip_size()).setZero();
-  return {model.model, parameters, model.setting};
+  RolloutSetting setting = model.setting;
+  setting.ahead = {};
+  return {model.model, parameters, setting};
 }
 
-Eigen::MatrixXd covariance_root(const Eigen::Ref<const Eigen::MatrixXd>& covariance) {
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
-  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
+RolloutProgram moved(const UncertainModel& model, const Eigen::VectorXd& step, const Eigen::MatrixXd& ahead) {
+  Eigen::VectorXd parameters = model.parameters + step;
+  RolloutSetting setting = model.setting;
+  if (ahead.cols() > 0) {
+    parameters.head(ahead.rows()) += ahead.col(0);
+  }
+  for (Eigen::Index k = 1; k < ahead.cols(); ++k) {
+    setting.ahead.changes[static_cast<std::size_t>(k - 1)] += ahead.col(k) - ahead.col(k - 1);
+  }
+  return {model.model, parameters, setting};
 }
 
 RolloutPaths roll_paths(const RolloutProgram& program, const RolloutBatch<double>& batch,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
 
 namespace slipwise {
@@ -33,8 +34,11 @@ class ParameterPart {
     const std::vector<double> once(batch_.periods, 1.0);
     for (Eigen::Index j = 0; j < root.cols(); ++j) {
       if (!root.col(j).isZero(0.0)) {
-        add_direction(root.col(j), once);
+        add_direction(root.col(j), {}, once);
       }
+    }
+    for (const Eigen::MatrixXd& direction : model_.uncertainty.ahead) {
+      add_direction(Eigen::VectorXd::Zero(model_.parameters.size()), direction, once);
     }
   }
 
@@ -51,16 +55,18 @@ class ParameterPart {
       }
       if (!variances.empty() && variances.front() > 0.0) {
         const Eigen::Index place = terms.places[static_cast<std::size_t>(i)];
-        add_direction(prior_std * Eigen::VectorXd::Unit(model_.parameters.size(), place), variances);
+        add_direction(prior_std * Eigen::VectorXd::Unit(model_.parameters.size(), place), {}, variances);
       }
     }
   }
 
  private:
-  /// Adds d d^T, times a variance per period, for the derivative d of every pose along one direction of the parameters:
-  /// central differences of two rollouts.
-  void add_direction(const Eigen::VectorXd& direction, std::span<const double> variances) {
-    const RolloutPaths ahead = along(kStep * direction), behind = along(-kStep * direction);
+  /// Adds d d^T, times a variance per period, for the derivative d of every pose along one direction of the parameters
+  /// and of the slip ahead: central differences of two rollouts.
+  void add_direction(const Eigen::VectorXd& direction, const Eigen::MatrixXd& of_slip,
+                     std::span<const double> variances) {
+    const RolloutPaths ahead = along(kStep * direction, kStep * of_slip);
+    const RolloutPaths behind = along(-kStep * direction, -kStep * of_slip);
     const std::size_t poses = ahead.x.size();
     for (std::size_t i = 0; i < poses; ++i) {
       const std::array<double, 3> d{(ahead.x[i] - behind.x[i]) / (2.0 * kStep),
@@ -72,8 +78,8 @@ class ParameterPart {
     }
   }
 
-  RolloutPaths along(const Eigen::VectorXd& step) const {
-    return roll_paths({model_.model, model_.parameters + step, model_.setting}, batch_, options_);
+  RolloutPaths along(const Eigen::VectorXd& step, const Eigen::MatrixXd& of_slip) const {
+    return roll_paths(moved(model_, step, of_slip), batch_, options_);
   }
 
   const UncertainModel& model_;

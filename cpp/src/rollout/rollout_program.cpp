@@ -14,6 +14,12 @@ namespace {
 
 constexpr double kSteepest = std::numbers::sqrt3 + 1e-9;  // rise per metre at 60 degrees
 
+/// Gravity that is constant along the robot's axes; without one it turns with the heading.
+std::optional<std::array<double, 2>> constant_gravity(const RolloutSetting& setting) {
+  return setting.rise_x != 0.0 || setting.rise_y != 0.0 ? std::nullopt
+                                                        : std::optional(std::array{setting.gx, setting.gy});
+}
+
 SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                     const RolloutSetting& setting) {
   model.check(parameters);
@@ -28,17 +34,30 @@ SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::Vect
     throw std::invalid_argument("give the gravity along the robot's axes or the ground's grade, not both");
   }
   const Eigen::VectorXd alpha = parameters.head(model.slip_size());
-  const std::optional<std::array<double, 2>> gravity =
-      steepness > 0.0 ? std::nullopt : std::optional(std::array{setting.gx, setting.gy});
-  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, gravity);
+  return compile_slip(model.basis(), {alpha.data(), model.basis().size()}, constant_gravity(setting));
 }
 
-std::vector<LaneProduct> lane_products(const SlipProgram& program) {
+/// The drive itself does not change.
+std::vector<SlipProgram> changes_of(const MotionModel& model, const RolloutSetting& setting) {
+  check_ahead(setting.ahead, model.slip_size());
+  std::vector<SlipProgram> changes;
+  for (const Eigen::VectorXd& change : setting.ahead.changes) {
+    changes.push_back(compile_slip(model.basis(), {change.data(), model.basis().size()}, constant_gravity(setting)));
+    changes.back().products[kProductV].fraction[0] -= 1.0;
+    changes.back().products[kProductOmega].fraction[2] -= 1.0;
+  }
+  return changes;
+}
+
+std::vector<LaneProduct> lane_products(const SlipProgram& program, const std::vector<SlipProgram>& changes) {
   std::vector<LaneProduct> products;
   for (const SlipProduct& product : program.products) {
     unsigned channels = 0;
     for (unsigned c = 0; c < product.fraction.size(); ++c) {
       channels |= product.fraction[c] != 0.0 ? 1U << c : 0U;
+      for (const SlipProgram& change : changes) {
+        channels |= change.products[products.size()].fraction[c] != 0.0 ? 1U << c : 0U;
+      }
     }
     products.push_back({static_cast<std::uint8_t>(product.parent), static_cast<std::uint8_t>(product.factor),
                         static_cast<std::uint8_t>(channels)});
@@ -99,8 +118,8 @@ DriveRamps<Scalar> drive_ramps(const CommandLimits& limits, double piece) {
 }
 
 template <typename Scalar>
-LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ActuatorSchedule& actuator,
-                                     const CommandLimits& limits) {
+LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const std::vector<SlipProgram>& changes,
+                                     const ActuatorSchedule& actuator, const CommandLimits& limits) {
   LaneConstants<Scalar> constants{
       .parts = {}, .coefficients = {}, .limits = drive_ramps<Scalar>(limits, actuator.period)};
   std::vector<PeriodPart> parts = actuator.lead_in;
@@ -113,11 +132,15 @@ LaneConstants<Scalar> lane_constants(const SlipProgram& slip, const ActuatorSche
                                .omega = lane_lag<Scalar>(part.omega, actuator.omega.response),
                                .next_v = part.next_v,
                                .next_omega = part.next_omega});
-    for (const SlipProduct& product : slip.products) {
-      for (const double fraction : product.fraction) {
-        constants.coefficients.push_back(static_cast<Scalar>(fraction * part.duration));
+    const auto add = [&](const SlipProgram& program) {
+      for (const SlipProduct& product : program.products) {
+        for (const double fraction : product.fraction) {
+          constants.coefficients.push_back(static_cast<Scalar>(fraction * part.duration));
+        }
       }
-    }
+    };
+    add(slip);
+    std::ranges::for_each(changes, add);
   }
   return constants;
 }
@@ -128,11 +151,12 @@ RolloutProgram::RolloutProgram(const MotionModel& model, const Eigen::Ref<const 
                                const RolloutSetting& setting)
     : setting_(setting),
       slip_(slip_of(model, parameters, setting)),
+      changes_(changes_of(model, setting)),
       pieces_(pieces_of(setting)),
       actuator_(schedule_actuator(model.actuator(parameters), setting.period / static_cast<double>(pieces_))),
       quadratic_(find_quadratic(slip_)),
-      products_(lane_products(slip_)),
-      float_(lane_constants<float>(slip_, actuator_, setting.limits)),
-      double_(lane_constants<double>(slip_, actuator_, setting.limits)) {}
+      products_(lane_products(slip_, changes_)),
+      float_(lane_constants<float>(slip_, changes_, actuator_, setting.limits)),
+      double_(lane_constants<double>(slip_, changes_, actuator_, setting.limits)) {}
 
 }  // namespace slipwise

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/rollout/rollout_threads.hpp"
 
 namespace slipwise {
@@ -26,6 +27,7 @@ std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_
 }
 
 constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the rollout where parameters are drawn
+constexpr std::uint64_t kSurfaces = kParameters - 1;      // and where the slip of surfaces ahead is
 
 /// Drives along a path again, with noise added to the tangent of every period.
 class NoisyPath {
@@ -97,6 +99,18 @@ Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples
   return drawn;
 }
 
+/// An error of the slip ahead, [slip, stretches]; no columns where there is none.
+Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std::uint64_t seed) {
+  Eigen::MatrixXd drawn;
+  std::mt19937_64 random = generator(seed, sample, kSurfaces);
+  std::normal_distribution<double> normal;
+  for (const Eigen::MatrixXd& direction : model.uncertainty.ahead) {
+    const Eigen::MatrixXd part = std::sqrt(model.uncertainty.inflation) * normal(random) * direction;
+    drawn = drawn.size() == 0 ? part : Eigen::MatrixXd(drawn + part);
+  }
+  return drawn;
+}
+
 void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
                     const FutureOutputs& outputs, const RolloutOptions& options) {
   const std::size_t poses = batch.rollouts * batch.periods;
@@ -111,7 +125,8 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
   const Eigen::MatrixXd parameters = draw_parameters(model, samples, seed);
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
-      const RolloutProgram program(model.model, parameters.col(static_cast<Eigen::Index>(s)), model.setting);
+      const RolloutProgram program =
+          moved(model, parameters.col(static_cast<Eigen::Index>(s)) - model.parameters, draw_ahead(model, s, seed));
       const RolloutPaths paths = roll_paths(program, batch, {1, options.level});
       for (std::size_t n = 0; n < batch.rollouts; ++n) {
         NoisyPath noisy(model, terms, generator(seed, s, n));

@@ -168,9 +168,10 @@ struct GroundUnder {
   }
 };
 
-/// Cuts steps for what the segment needs; returns where the points of its course are, if it has one.
-std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segment) {
-  if (segment.ground) {
+/// Cuts steps where the ground `changes` on the way, and at the points of the segment's course; returns where these are,
+/// if it has one.
+std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segment, bool changes) {
+  if (changes) {
     cut_for_ground(drive);
   }
   return segment.chords ? std::optional(cut_for_course(drive, segment)) : std::nullopt;
@@ -201,7 +202,7 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
                                     : actuator_steps(inputs, actuator, window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment);
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground != nullptr);
   const Pose2 sensor = sensor_of(model, parameters, segment);
   std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints> at_points;
   GrowingPath path(segment, drive.steps.size());
@@ -275,18 +276,25 @@ Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
 }
 
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
-                              const InputHistory& inputs, const Segment& segment, Integrator integrator) {
+                              const InputHistory& inputs, const Segment& segment, Integrator integrator,
+                              const SlipAhead& ahead) {
   model.check(parameters);
-  const auto alpha = parameters.head(model.slip_size());
+  check_ahead(ahead, model.slip_size());
+  Eigen::VectorXd alpha = parameters.head(model.slip_size());
+  double travelled = 0.0;
   ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment);
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || !ahead.empty());
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const ActuatorStep& step : drive.steps) {
     const auto ground =
         segment.ground ? std::optional(ground_step(*segment.ground, step, path.pose(), path.time())) : std::nullopt;
     model.basis().features(slip_state(step, ground ? ground->gravity : gravity_of(segment)), features);
+    if (!ahead.empty()) {
+      alpha = slip_over(ahead, parameters.head(model.slip_size()), travelled, std::abs(step.forward));
+    }
     const Eigen::Vector3d body = tangent_of(step, slip_rate(model.basis(), alpha, features));
+    travelled += std::abs(body.x());
     const Eigen::Vector3d tangent = ground ? ground->seen_from_above(body) : body;
     const auto arc = arc_functions(tangent.z());
     const Eigen::Vector2d displacement = integrator == Integrator::Exact

@@ -96,7 +96,7 @@ def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     parameters = knowledge.mean + drawn @ root.T
     motion, limits, level = knowledge.motion, knowledge.limits, Start().ground
-    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, level, limits) for row in parameters))
+    return Robots(tuple(_core.RolloutProgram(motion, row, PERIOD, level, limits, None) for row in parameters))
 
 
 def _rolled(program: _core.RolloutProgram, commands: Floats) -> Floats:

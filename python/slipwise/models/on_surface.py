@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from slipwise.errors import ModelError
 from slipwise.models.model import Model
@@ -65,10 +66,18 @@ def _noise(content: ModelFile, surface: SurfaceSection) -> dict[str, object]:
     memory = surface.memory
     if memory is None:
         return {}
-    scales = np.array([basis.variance_scale for basis in memory.bases.values()])
-    weights = np.array([memory.weights[name] for name in memory.bases])
-    scale = (weights @ scales / weights.sum()).tolist()
+    scale = noise_on(content, surface).tolist()
     return {
         "noise": content.noise.model_copy(update={"variance_scale": scale}),
         "weights": dict(memory.weights),
     }
+
+
+def noise_on(content: ModelFile, surface: SurfaceSection) -> NDArray[np.float64]:
+    """Return the factors [3] of the noise's variances on a surface: the model's, where none is remembered."""
+    memory = surface.memory
+    if memory is None:
+        return np.array(content.noise.variance_scale, dtype=np.float64)
+    scales = np.array([basis.variance_scale for basis in memory.bases.values()])
+    weights = np.array([memory.weights[name] for name in memory.bases])
+    return np.asarray(weights @ scales / weights.sum(), dtype=np.float64)

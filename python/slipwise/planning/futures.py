@@ -38,6 +38,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
         threads: the results are the same bytes for any number.
 
     Raises:
+        ModelError: the model does not remember a surface ahead.
         SettingsError: as for `rollout`, and when there is no sample or the seed is negative.
     """
     numbers = np.asarray(checked_commands(commands, np.float64))
@@ -51,7 +52,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
     rollouts, periods = numbers.shape[:2]
     result = np.empty((3, samples, periods, rollouts))
     try:
-        widened = uncertain(model, dt, begin.ground, dt * periods)
+        widened = uncertain(model, dt, begin, dt * periods)
         _core.sample_futures(widened, numbers, begin.in_core(rollouts), seed, result, threads)
     except (ValueError, TypeError) as problem:
         raise SettingsError(str(problem)) from problem

@@ -16,6 +16,7 @@ from slipwise.planning.costmap import Costmap
 from slipwise.planning.grid_map import GridMap
 from slipwise.planning.reference_path import ReferencePath
 from slipwise.planning.trajectory import to_core_pose
+from slipwise.terrain_ahead import TerrainAhead, slip_ahead
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ class Motion:
     parameters: Floats
     limits: _core.CommandLimits | None = None  # of the drive, in front of its delay and lag
     grade: Grade | None = None  # of the ground in the frame of the reference; level where there is none
+    slip_ahead: _core.MixedAhead | None = None  # on surfaces from the robot's place on, where it changes
 
 
 def baseline_motion() -> Motion:
@@ -44,15 +46,35 @@ def vendor_motion(multiplier: float) -> Motion:
     return Motion(model, np.array([0.0, 1.0 / multiplier - 1.0]))
 
 
-def learned_motions(
-    model: Model, *, samples: int = 0, seed: int = 1, seconds: float = 2.8, grade: Grade | None = None
+def learned_motions(  # noqa: PLR0913  (all but the first are options)
+    model: Model,
+    *,
+    samples: int = 0,
+    seed: int = 1,
+    seconds: float = 2.8,
+    grade: Grade | None = None,
+    terrain_ahead: TerrainAhead | None = None,
 ) -> list[Motion]:
     """Return the mean motion of a model, and `samples` more with parameters drawn from its covariance.
 
     The slip disturbance is drawn as its mean over `seconds`, by default the controller's horizon. All have
-    the limits of the drive that were learned, and drive on the `grade`.
+    the limits of the drive that were learned, and drive on the `grade`. With `terrain_ahead`, slip is that
+    of the surfaces from the robot's place on; `Controller.adopt` takes what is ahead as the robot goes.
+
+    Raises:
+        ModelError: the model does not remember a surface ahead.
+        SettingsError: samples of slip on surfaces ahead are asked for.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
+    slip = slip_ahead(terrain_ahead, model)
+    if slip is not None:
+        if samples:
+            raise SettingsError(
+                "no samples are drawn of slip on surfaces ahead",
+                where="samples",
+                advice="leave them out, or draw futures by `sample_futures`",
+            )
+        return [Motion(model.motion, slip.parameters(model), model.limits, grade, slip.in_core)]
     drawn = rng.multivariate_normal(model.mean, model.covariance_over(seconds), size=samples, method="eigh")
     return [Motion(model.motion, parameters, model.limits, grade) for parameters in (model.mean, *drawn)]
 
@@ -117,11 +139,16 @@ def inflated(grid: GridMap, radius: float, *, inflation: float = 0.5) -> Costmap
     return Costmap(cells, grid.resolution, grid.origin, LETHAL)
 
 
-_InCore = tuple[_core.MotionModel, Floats, _core.CommandLimits | None, tuple[float, float]]
+_InCore = tuple[
+    _core.MotionModel, Floats, _core.CommandLimits | None, tuple[float, float], _core.MixedAhead | None
+]
 
 
 def _as_core(motions: list[Motion]) -> list[_InCore]:
-    return [(motion.model, motion.parameters, motion.limits, rise_of(motion.grade)) for motion in motions]
+    return [
+        (motion.model, motion.parameters, motion.limits, rise_of(motion.grade), motion.slip_ahead)
+        for motion in motions
+    ]
 
 
 def _sent(command: tuple[float, float]) -> Floats:

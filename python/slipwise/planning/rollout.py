@@ -15,8 +15,9 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
-from slipwise.planning.start import GroundOfRollouts, Start
+from slipwise.planning.start import Start
 from slipwise.prediction import student_at
+from slipwise.terrain_ahead import slip_ahead
 
 Numbers = NDArray[Any]  # float32 or float64
 Output = Literal["path", "end", "costs"]
@@ -77,6 +78,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
+        ModelError: the model does not remember a surface ahead.
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
@@ -92,8 +94,10 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     }
     starts = begin.in_core(rollouts)
     gpu = gpu_of(device)
+    slip = slip_ahead(begin.terrain_ahead, model)
+    parameters, ahead = (model.mean, None) if slip is None else (slip.parameters(model), slip.in_core)
     try:
-        program = _core.RolloutProgram(model.motion, model.mean, dt, begin.ground, model.limits)
+        program = _core.RolloutProgram(model.motion, parameters, dt, begin.ground, model.limits, ahead)
         _core.rollout_batch(
             program,
             numbers,
@@ -144,12 +148,17 @@ def check_threads(threads: int) -> None:
         raise SettingsError(f"{threads} threads cannot work", advice="use threads=1 or more")
 
 
-def uncertain(model: Model, dt: float, ground: GroundOfRollouts, horizon: float) -> _core.UncertainModel:
+def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
-    scale = np.array(model.content.noise.variance_scale)
+    slip = slip_ahead(start.terrain_ahead, model)
+    scale = np.array(model.content.noise.variance_scale) if slip is None else slip.variance_scale
+    parameters, covariance = model.mean, model.covariance
+    if slip is not None:
+        parameters, covariance = slip.parameters(model), slip.covariance(model)
     inflation = student_at(model, horizon).inflation
-    spread = (model.covariance, model.noise, scale, inflation, model.disturbance, model.prior_std)
-    return _core.UncertainModel(model.motion, model.mean, *spread, dt, ground, model.limits)
+    spread = (covariance, model.noise, scale, inflation, model.disturbance, model.prior_std)
+    ahead = None if slip is None else slip.in_core
+    return _core.UncertainModel(model.motion, parameters, *spread, dt, start.ground, model.limits, ahead)
 
 
 def _covariance(
@@ -157,7 +166,7 @@ def _covariance(
 ) -> NDArray[np.float64]:
     rollouts, periods = commands.shape[:2]
     result = np.empty((6, periods, rollouts))
-    unit = uncertain(model, dt, start.ground, dt)
+    unit = uncertain(model, dt, start, dt)
     _core.rollout_covariance(unit, commands.astype(np.float64), start.in_core(rollouts), result, threads)
     at_one_period = student_at(model, dt).inflation
     inflation = np.array([student_at(model, dt * (k + 1)).inflation / at_one_period for k in range(periods)])

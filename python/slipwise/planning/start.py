@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from slipwise import _core
 from slipwise.errors import SettingsError
 from slipwise.ground import Grade, rise_of
+from slipwise.terrain_ahead import TerrainAhead
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +27,7 @@ class Start:
     past: ArrayLike | None = None  # [P, 2] or [N, P, 2]: commands sent before, one period apart, oldest first
     gravity: tuple[float, float] = (0.0, 0.0)  # m/s^2 along the robot's x and y axes, positive downhill
     grade: Grade | None = None  # of the ground in the frame of `pose`, in place of `gravity`
+    terrain_ahead: TerrainAhead | None = None  # surfaces at distances along each rollout's path
 
     @property
     def ground(self) -> GroundOfRollouts:

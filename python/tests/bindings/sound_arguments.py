@@ -104,7 +104,7 @@ def _record() -> _core.WheelRecord:
 def _mppi() -> _core.Mppi:
     settings = _core.MppiSettings()
     settings.rollouts, settings.periods = 16, 8
-    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0))], settings)
+    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)], settings)
 
 
 def _drive_start() -> _core.ActuatorState:
@@ -120,7 +120,7 @@ def _planner() -> _core.TrajectoryPlanner:
 
 def _uncertain() -> _core.UncertainModel:
     model, spread = _model(), (0.01 * np.eye(SIZE), _noise(), np.ones(3), 1.0, _law(), np.ones(SIZE))
-    return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, [0.0] * 4, None)
+    return _core.UncertainModel(model, np.full(SIZE, 0.01), *spread, 0.1, [0.0] * 4, None, None)
 
 
 def _following() -> _core.FollowingEstimator:
@@ -215,7 +215,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "NoiseGroup": _noise_group,
     "Recording": _recording,
     "RegressionExample": _example,
-    "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, [0.0] * 4, None),
+    "RolloutProgram": lambda: _core.RolloutProgram(_model(), np.full(SIZE, 0.01), 0.1, [0.0] * 4, None, None),
     "ScatterCentre": lambda: _core.ScatterCentre.Mean,
     "Segment": _segment,
     "SegmentJacobian": lambda: _core.SegmentJacobian.Thesis,
@@ -245,8 +245,8 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     "MotionLearner.forget fraction": lambda: 0.5,
     "MotionLearner.load saved": lambda: _learner().save(),
     "MotionLearner.predict future": lambda: np.array([[6.0, 0.5, 0.0, 0.1]]),
-    "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0))],
-    "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0))],
+    "Mppi.__init__ models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)],
+    "Mppi.adopt models": lambda: [(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)],
     "Mppi.step past": lambda: np.zeros((2, 2)),
     "Mppi.step reference": lambda: np.zeros((8, 3)),
     "NoiseGroup.__init__ residuals": lambda: list(np.ones((9, 3, 2))),

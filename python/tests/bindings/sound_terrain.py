@@ -37,6 +37,17 @@ def _answer() -> _core.TerrainAnswer:
     return _core.TerrainAnswer(["ice", "sand"], np.array([0.5, 0.5]), 0.1)
 
 
+def _mixed() -> _core.MixedAhead:
+    return _core.MixedAhead(
+        [1.0], np.array([[1.0, 0.0], [0.3, 0.7]]), [np.zeros(2), np.ones(2)], [np.eye(2)] * 2
+    )
+
+
+def _slip(value: float) -> _core.SurfaceSlip:
+    given = np.full(2, value), 0.01 * np.eye(2), np.zeros((2, 0)), np.zeros(0)
+    return _core.SurfaceSlip(*given, (1.0, 0.5), np.ones(3))
+
+
 TERRAIN_OBJECTS: dict[str, Callable[[], Any]] = {
     "TerrainAnswer": _answer,
     "TerrainTree": _tree,
@@ -44,6 +55,7 @@ TERRAIN_OBJECTS: dict[str, Callable[[], Any]] = {
     "KernelExpert": _kernel,
     "ExpertPool": _pool,
     "TerrainClassifier": _classifier,
+    "MixedAhead": _mixed,
     "TerrainWatch": lambda: _core.TerrainWatch(_classifier(), (5.0, 100.0, 6.5), 1.0),
 }
 TERRAIN_ARGUMENTS: dict[str, Callable[[], Any]] = {
@@ -85,6 +97,13 @@ TERRAIN_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "TerrainWatch.__init__ seconds_and_rates": lambda: (5.0, 100.0, 6.5),
     "TerrainWatch.push_imu sample": lambda: np.zeros(6).tolist(),
     "TerrainWatch.push_drive sample": lambda: np.zeros(4).tolist(),
+    "MixedAhead.__init__ edges": lambda: [1.0],
+    "MixedAhead.__init__ probabilities": lambda: np.array([[1.0, 0.0], [0.3, 0.7]]),
+    "MixedAhead.__init__ slips": lambda: [np.zeros(2), np.ones(2)],
+    "MixedAhead.__init__ covariances": lambda: [np.eye(2), np.eye(2)],
+    "shrunk_prior known": lambda: [_slip(0.1), _slip(0.2)],
+    "shrunk_prior first_std": lambda: np.full(2, 0.3),
+    "shrunk_prior speeds": lambda: (1.0, 0.5),
     "surfaces_of_class surfaces": lambda: [("ice", [("white", 1.0)])],
     "KnownSurface.__init__ classes": lambda: [("white", 1.0)],
 }

@@ -12,6 +12,9 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;  ///< one a column, orthonormal
 };
 
+/// A matrix whose product with its transpose is the covariance.
+Eigen::MatrixXd covariance_root(const Eigen::Ref<const Eigen::MatrixXd>& covariance);
+
 SymmetricEigen symmetric_eigen(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
 }  // namespace slipwise

@@ -7,6 +7,7 @@
 
 #include "slipwise/lie/lane_function.hpp"
 #include "slipwise/rollout/drive_command.hpp"
+#include "slipwise/slip/path_edges.hpp"
 
 // Plain arrays: the functions of std::array would be compiled for the processor of one file and called from others.
 // NOLINTBEGIN(modernize-avoid-c-arrays)
@@ -84,9 +85,11 @@ struct LaneJob {
   LaneQuadratic quadratic;
   unsigned factors;  ///< bits of the slip factors in use
   Scalar squared_curvature_speed;
-  bool on_grade;          ///< the ground is a plane that is not level
-  Scalar rise_x, rise_y;  ///< of it per metre along the axes of the starts' frame
-  Scalar minus_gravity;   ///< [m/s^2]
+  bool on_grade;             ///< the ground is a plane that is not level
+  Scalar rise_x, rise_y;     ///< of it per metre along the axes of the starts' frame
+  Scalar minus_gravity;      ///< [m/s^2]
+  std::size_t edge_count;    ///< where slip becomes another along the path; after a part's coefficients stand
+  Scalar edges[kMostEdges];  ///< what they change by at each of these distances [m]
   std::ptrdiff_t shift_v, shift_omega;
   bool lags;
   bool responds;  ///< some channel has a gain or a slow mode

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "slipwise/rollout/lane_actuator.hpp"
+#include "slipwise/rollout/lane_ahead.hpp"
 #include "slipwise/rollout/lane_grade.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/lane_output.hpp"
@@ -16,16 +17,23 @@
 // NOLINTBEGIN(modernize-avoid-c-arrays)
 namespace slipwise {
 
-/// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products
-/// among which gravity is, on a plane that is not level.
-enum class Slip : std::uint8_t { Products, Quadratic, OnGrade };
+/// How slip is found: a program of products, one of second degree in speed and curvature (thesis 5.1), or products that
+/// follow the ground along the path: gravity on a plane that is not level, and surfaces that the robot comes to.
+enum class Slip : std::uint8_t { Products, Quadratic, AlongGround };
 
 /// A robot in every lane: its drive and where it is.
-template <class L, Actuator kActuator>
+template <class L, Actuator kActuator, Slip kSlip>
 struct RobotLanes {
   ChannelLanes<L, kActuator> v;
   ChannelLanes<L, kActuator> omega;
   PathLanes<L> path;
+};
+template <class L, Actuator kActuator>
+struct RobotLanes<L, kActuator, Slip::AlongGround> {
+  ChannelLanes<L, kActuator> v;
+  ChannelLanes<L, kActuator> omega;
+  PathLanes<L> path;
+  L::Vector travelled;  ///< [m]
 };
 
 /// Whether some rollout turned by more than the kernel's steps can.
@@ -44,7 +52,7 @@ SLIPWISE_LANES unsigned find_faults(const PathLanes<L>& path, const LaneBlock<Sc
 /// The tangent of one part: the drive moves on, and slips.
 template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
 SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar>& part,
-                               RobotLanes<L, kActuator>& robot, TangentLanes<L>& tangent) {
+                               RobotLanes<L, kActuator, kSlip>& robot, TangentLanes<L>& tangent) {
   typename L::Vector mean_v;
   typename L::Vector mean_omega;
   advance<L, kActuator, true>(part.v, robot.v, mean_v);
@@ -58,6 +66,13 @@ SLIPWISE_LANES void drive_part(const LaneJob<Scalar>& job, const LanePart<Scalar
     GradeLanes<L> grade;
     find_grade<L>(job, robot.path, mean_omega * (part.duration * static_cast<Scalar>(0.5)), grade);
     slip_tangent<L>(job, {coefficients, &grade}, mean_v, mean_omega, tangent);
+    const typename L::Vector length = magnitude(mean_v) * part.duration;
+    for (std::size_t i = 0; i < job.edge_count; ++i) {
+      TangentLanes<L> change;
+      slip_tangent<L>(job, {coefficients + 3 * (i + 1) * job.product_count, &grade}, mean_v, mean_omega, change);
+      add_beyond<L>(job.edges[i], robot.travelled, length, change, tangent);
+    }
+    robot.travelled = robot.travelled + magnitude(tangent.forward);
     see_from_above<L>(grade, tangent);
   }
 }
@@ -70,12 +85,15 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
   const auto first = static_cast<std::ptrdiff_t>(block.first) * job.rollout_stride;
   const CommandSource<Scalar> source_v{job.v + first, &block.v, &DriveCommand::v};
   const CommandSource<Scalar> source_omega{job.omega + first, &block.omega, &DriveCommand::omega};
-  RobotLanes<L, kActuator> robot;
+  RobotLanes<L, kActuator, kSlip> robot;
   start_channel(job, block, source_v, job.shift_v, robot.v);
   start_channel(job, block, source_omega, job.shift_omega, robot.omega);
   start_path<L>(block, robot.path);
+  if constexpr (kSlip == Slip::AlongGround) {
+    fill(static_cast<Scalar>(0), robot.travelled);
+  }
   OutputLanes<L> output(job, block);
-  RobotLanes<L, kActuator> aside = robot;
+  RobotLanes<L, kActuator, kSlip> aside = robot;
   const bool has_tail = job.tail != job.part_end;
   std::size_t period = 0;
   for (std::size_t i = 0; period < job.periods;) {
@@ -122,7 +140,7 @@ SLIPWISE_LANES_APART unsigned roll_block_as(const LaneJob<Scalar>& job, const La
 
 template <class L, Actuator kActuator, Slip kSlip, typename Scalar = L::Scalar>
 unsigned roll_block_with(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  if constexpr (kSlip == Slip::OnGrade) {  // rarer, and not worth kernels for both kinds of turns
+  if constexpr (kSlip == Slip::AlongGround) {  // rarer, and not worth kernels for both kinds of turns
     return roll_block_as<L, kActuator, kSlip, true>(job, block);
   }
   const unsigned fault = roll_block_as<L, kActuator, kSlip, false>(job, block);
@@ -162,8 +180,8 @@ unsigned roll_block_of(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& bloc
 
 template <class Level, typename Scalar>
 unsigned roll_block(const LaneJob<Scalar>& job, const LaneBlock<Scalar>& block) {
-  if (job.on_grade) {
-    return roll_block_of<Level, Slip::OnGrade>(job, block);
+  if (job.on_grade || job.edge_count > 0) {
+    return roll_block_of<Level, Slip::AlongGround>(job, block);
   }
   return job.is_quadratic ? roll_block_of<Level, Slip::Quadratic>(job, block)
                           : roll_block_of<Level, Slip::Products>(job, block);

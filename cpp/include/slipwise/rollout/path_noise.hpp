@@ -22,6 +22,9 @@ struct ModelUncertainty {
   double inflation = 1.0;                           ///< factor of all variances at the horizon in question
   DisturbanceModel disturbance{};                   ///< of slip about the parameters
   Eigen::VectorXd prior_std{};                      ///< of the parameters, where slip has a disturbance
+  /// [slip, stretches] each: independent errors of the slip ahead (mixed_ahead.hpp), in place of the covariance of
+  /// slip.
+  std::vector<Eigen::MatrixXd> ahead{};
 };
 
 /// A model with its parameters, how uncertain it is, and what stays the same over all rollouts.
@@ -42,8 +45,9 @@ DisturbedTerms disturbed_terms_of(const UncertainModel& model);
 /// The model that only drives: no slip, the same actuator. Its paths say how far the drive moves.
 RolloutProgram drive_alone(const UncertainModel& model);
 
-/// A matrix whose product with its transpose is the covariance.
-Eigen::MatrixXd covariance_root(const Eigen::Ref<const Eigen::MatrixXd>& covariance);
+/// The model with its parameters moved by a step, and the slip of all stretches by `ahead` [slip, stretches], which has
+/// no columns where it stays.
+RolloutProgram moved(const UncertainModel& model, const Eigen::VectorXd& step, const Eigen::MatrixXd& ahead);
 
 /// The paths of all rollouts, [periods * rollouts] each.
 struct RolloutPaths {

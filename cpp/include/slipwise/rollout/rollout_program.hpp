@@ -11,6 +11,7 @@
 #include "slipwise/rollout/actuator_schedule.hpp"
 #include "slipwise/rollout/lane_job.hpp"
 #include "slipwise/rollout/slip_program.hpp"
+#include "slipwise/slip/slip_ahead.hpp"
 
 namespace slipwise {
 
@@ -22,6 +23,7 @@ struct RolloutSetting {
   CommandLimits limits = {};  ///< of the drive, in front of its delay and lag
   double rise_x = 0.0;        ///< of a plane per metre along the axes of the starts' frame; excludes gx and gy
   double rise_y = 0.0;        ///< [m/m]
+  SlipAhead ahead = {};       ///< where slip becomes another along the path
 };
 
 /// The program in the numbers of a kernel.
@@ -34,7 +36,8 @@ struct LaneConstants {
 
 class RolloutProgram {
  public:
-  /// \throws std::invalid_argument when the parameters do not fit the model, the period is not positive, the gravity
+  /// \throws std::invalid_argument when the parameters or the slip ahead do not fit the model, the period is not
+  /// positive, the gravity
   /// not finite, a limit is none, the plane steeper than 60
   /// degrees, or the basis too large.
   RolloutProgram(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -56,6 +59,7 @@ class RolloutProgram {
  private:
   RolloutSetting setting_;
   SlipProgram slip_;
+  std::vector<SlipProgram> changes_;  ///< of the slip at each edge ahead: the same products
   std::size_t pieces_;
   ActuatorSchedule actuator_;
   std::optional<LaneQuadratic> quadratic_;

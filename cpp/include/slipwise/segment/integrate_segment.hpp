@@ -14,6 +14,7 @@
 #include "slipwise/motion/motion_model.hpp"
 #include "slipwise/segment/course.hpp"
 #include "slipwise/segment/segment.hpp"
+#include "slipwise/slip/slip_ahead.hpp"
 
 namespace slipwise {
 
@@ -39,10 +40,11 @@ struct SegmentPath {
 };
 
 /// A model that learns where the sensor sits says so itself; otherwise the segment does.
+/// Where slip becomes another along the path, `ahead` says so.
 /// \throws std::invalid_argument when the parameters do not fit the model.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                               const InputHistory& inputs, const Segment& segment,
-                              Integrator integrator = Integrator::Exact);
+                              Integrator integrator = Integrator::Exact, const SlipAhead& ahead = {});
 
 struct SegmentLinearization {
   SegmentPath path;

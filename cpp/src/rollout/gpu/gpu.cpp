@@ -25,7 +25,7 @@ ThreadJob<Scalar> thread_job(const GpuBatch<Scalar>& batch) {
   given.past_count = batch.past_count;
   given.past_stride = batch.past_stride;
   given.used = batch.used;
-  const std::size_t coefficients = job.part_end * job.product_count * 3;
+  const std::size_t coefficients = job.part_end * job.product_count * 3 * (1 + job.edge_count);
   if (job.part_end > std::size(given.parts) || coefficients > std::size(given.coefficients)) {
     throw std::invalid_argument(
         "a period of this model is " + std::to_string(job.part_end) + " steps with " + std::to_string(coefficients) +

@@ -88,8 +88,8 @@ void with_thread_actuator(const LaneJob<Scalar>& job, const Work& work) {
 }
 template <typename Scalar, class Work>
 void with_thread_kernel(const LaneJob<Scalar>& job, bool wide, const Work& work) {
-  if (job.on_grade) {
-    with_thread_actuator<Slip::OnGrade, true>(job, work);
+  if (job.on_grade || job.edge_count > 0) {
+    with_thread_actuator<Slip::AlongGround, true>(job, work);
   } else if (job.is_quadratic) {
     wide ? with_thread_actuator<Slip::Quadratic, true>(job, work)
          : with_thread_actuator<Slip::Quadratic, false>(job, work);
