@@ -6,6 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import typer
+
 from slipwise.cli.options import Json, Logs, SettingsFile, optional, takes_log_options
 from slipwise.errors import ModelError, OutputError
 
@@ -24,10 +26,23 @@ def convert(
         Path | None,
         optional("FILE", "The new log (.csv, .csv.gz, .parquet, .mcap), or model (.yaml).", "-o", "--output"),
     ] = None,
+    anonymise: Annotated[
+        bool, typer.Option("--anonymise", help="Take out place, time and names; writes a data card, too.")
+    ] = False,
+    card: Annotated[
+        bool, typer.Option("--card", help="Write schema, data card and windows to predict beside a .parquet.")
+    ] = False,
+    keep: Annotated[str | None, optional("NAMES", "Further columns that --anonymise carries along.")] = None,
+    licence: Annotated[str | None, optional("NAME", "Licence on the card, such as CC-BY-4.0.")] = None,
+    robot: Annotated[str | None, optional("TEXT", "Vehicle on the card: make, drive, sizes, mass.")] = None,
+    sensors: Annotated[str | None, optional("TEXT", "On the card: what measured poses and inputs.")] = None,
     settings: SettingsFile = None,
     json: Json = None,
 ) -> int:
     """Write one or several logs as one tidy table, or as MCAP; says what was guessed and what was left out.
+
+    With --anonymise or --card it is a data set to share: a schema file, a data card and the windows to
+    predict go beside a Parquet table.
 
     A model file of slipwise 0.1 is written under the names of this version, beside it where no -o is given.
 
@@ -37,11 +52,13 @@ def convert(
       slipwise convert monday.bag tuesday.db3 -o both.parquet --pose-topic /rtk/odom
       slipwise convert wheels.csv -o drive.mcap --wheel-radius 0.165 --wheel-separation 0.555
       slipwise convert run.mcap -o run.csv --poses lidar_tum.txt --pose-clock-offset auto
+      slipwise convert run.mcap -o shared.parquet --anonymise --licence CC-BY-4.0 --robot "Husky A200"
       slipwise convert model.yaml -o model-0.2.yaml
     """  # noqa: D301
     from slipwise.cli.document import head, log_part
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
+    from slipwise.cli.share_request import ShareRequest
     from slipwise.cli.tables import show_files, show_left_out, show_notes
     from slipwise.cli.writable import refuse_unknown_log_format, refuse_unwritable
     from slipwise.logs import open_log, save_log
@@ -52,15 +69,18 @@ def convert(
     if output is None:
         raise OutputError("say where the new log goes", advice="give -o FILE, such as -o drive.csv")
     refuse_unknown_log_format(output)
-    refuse_unwritable(output, out.written_file, inputs=(*logs, *log_options.files, settings))
+    request = ShareRequest(anonymise, card or anonymise, keep, licence, robot, sensors)
+    files = {"log": output} | request.files(output)
+    refuse_unwritable(*files.values(), out.written_file, inputs=(*logs, *log_options.files, settings))
     with progress_bar("reading") as update:
-        log = open_log(*logs, options=log_options)
-        update("writing", 0.5)
+        log = request.without_names(open_log(*logs, options=log_options))
+        update("writing", 0.2)
         save_log(log, output)
-    out.document(head("convert") | {"exit_code": 0, "files": {"log": output}} | log_part(log, log.left_out))
+        request.write_beside(output, update)
+    out.document(head("convert") | {"exit_code": 0, "files": files} | log_part(log, log.left_out))
     show_notes(out, log.notes)
     show_left_out(out, log.left_out)
-    show_files(out, {"log": output})
+    show_files(out, files)
     return 0
 
 

@@ -4,7 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from slipwise.cli.options import (
     Basis,
@@ -28,6 +31,9 @@ def inspect(
     log_options: LogOptions,
     basis: Basis = None,
     settings: SettingsFile = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="Check that a shared log keeps to the standard format.")
+    ] = False,
     json: Json = None,
 ) -> int:
     """Say what is in one or several logs and what could be learned from them.
@@ -35,12 +41,15 @@ def inspect(
     Shows every topic or column and what it is used as, streams with rates and gaps, what had to be left out,
     how late the poses are, which speeds and yaw rates were driven, and which parameters the log determines. A
     log that can be read is never an error here: what is missing or unclear is said, with the option to add.
+    With --strict, one Parquet file is checked against the format of shared logs, with its schema file and
+    data card; the exit code is 1 where something departs from it.
 
     \b
     Examples:
       slipwise inspect drive.mcap
       slipwise inspect drive.bag --pose-topic /rtk/odom --wheel-topic /husky/odom
       slipwise inspect drive.csv --json - | jq .streams
+      slipwise inspect shared.parquet --strict
     """  # noqa: D301
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
@@ -50,11 +59,36 @@ def inspect(
     out = Output(json)
     chosen = chosen_settings(settings, basis)
     refuse_unwritable(out.written_file, inputs=(*logs, *log_options.files, settings))
+    if strict:
+        return _check_strictly(out, logs)
     with progress_bar("reading") as update:
         inspection = inspect_files(logs, log_options, chosen, progress=update)
     out.document(_document(inspection))
     _show(out, inspection)
     return 0
+
+
+def _check_strictly(out: Output, logs: Sequence[Path]) -> int:
+    """Show all that departs from the format of shared logs."""
+    from dataclasses import asdict
+
+    from slipwise.cli.document import head
+    from slipwise.cli.output import Column
+    from slipwise.errors import SettingsError
+    from slipwise.inspection import check_strictly
+
+    if len(logs) != 1:
+        raise SettingsError(
+            "one file at a time", where="--strict", advice="run it once for each Parquet file"
+        )
+    found = check_strictly(logs[0])
+    code = 1 if found else 0
+    out.document(head("inspect") | {"exit_code": code, "departures": [asdict(each) for each in found]})
+    if found:
+        columns = [Column("kind", whole=True), Column("what"), Column("where")]
+        out.table("Departures from the format", columns, [(e.kind, e.what, e.where) for e in found])
+    out.line(f"{logs[0]}: {f'{len(found)} departures' if found else 'keeps to the format of shared logs'}")
+    return code
 
 
 def _document(inspection: Inspection) -> dict[str, object]:

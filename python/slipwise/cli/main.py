@@ -24,6 +24,7 @@ from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
 from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
+from slipwise.cli.score import score
 from slipwise.cli.show import show
 from slipwise.cli.simulate import simulate
 from slipwise.cli.surfaces import surfaces
@@ -52,6 +53,7 @@ _COMMANDS = (
     (calibrate, "Learn a motion model from logs."),
     (live, "Learn while the robot drives."),
     (evaluate, "Compare methods on logs, honestly."),
+    (score, "Score any method's prediction file on a log."),
     (fleet, "Learn many logs of many robots, and say what stands out."),
     (show, "Say what a model has learned."),
     (compare, "Say what differs between two models."),

@@ -4,6 +4,7 @@
 from slipwise.evaluation.evaluate import EvaluationOptions, evaluate
 from slipwise.evaluation.prediction_file import write_predictions, write_sequence
 from slipwise.evaluation.result import Evaluation, Score
+from slipwise.evaluation.score_predictions import score_predictions
 from slipwise.evaluation.sequence import SequenceEvaluation, evaluate_sequence
 from slipwise.evaluation.simpler import proposing, simpler_method
 
@@ -15,6 +16,7 @@ __all__ = [
     "evaluate",
     "evaluate_sequence",
     "proposing",
+    "score_predictions",
     "simpler_method",
     "write_predictions",
     "write_sequence",

@@ -14,17 +14,10 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, choose_input, collect_windows, prepare_run
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.sloping_ground import for_the_ground_of
-from slipwise.calibration.statistics import (
-    coverage,
-    held_out_half,
-    nis_band,
-    normal_coverage,
-    ratio_of_means,
-    summarise,
-)
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.methods import Contest, method_info, method_names, refuse_names_of_methods
-from slipwise.evaluation.result import Evaluation, Score
+from slipwise.evaluation.result import Evaluation
+from slipwise.evaluation.scoring import scores_of
 from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log
 from slipwise.models.model import Model
@@ -71,7 +64,7 @@ def evaluate(
     settings, options = for_the_ground_of(log, settings or Settings()), options or EvaluationOptions()
     input_name, models = _input_name(log, input, options.models), options.models
     refuse_names_of_methods(models)
-    contest, notes = _contest(log, input_name, settings, options)
+    contest, notes = contest_of(log, input_name, settings, options)
     methods = options.methods or method_names(contest)
     for name in methods:
         method_info(name, models)
@@ -85,7 +78,7 @@ def evaluate(
         input=input_name,
         horizons=tuple(targets.length for targets in contest.targets),
         methods=tuple(methods),
-        scores=_scores(predictions, _baseline(predictions, contest), contest.targets),
+        scores=scores_of(predictions, _baseline(predictions, contest), contest.targets),
         predictions=tuple(predictions),
         runs=tuple(run.name for run in log.runs),
         left_out=log.left_out + contest.targets[-1].left_out,
@@ -123,9 +116,15 @@ def _input_name(log: Log, input_name: str | None, models: Mapping[str, Model]) -
     return input_name or choose_input(log)
 
 
-def _contest(
+def contest_of(
     log: Log, input_name: str, settings: Settings, options: EvaluationOptions
 ) -> tuple[Contest, tuple[str, ...]]:
+    """Return the windows that methods are asked for, and what to say of horizons that have none.
+
+    Raises:
+        LogError: the log has no such input, no poses, or no window of any horizon.
+        SettingsError: a horizon is wrong.
+    """
     if not options.horizons or any(not (np.isfinite(h) and h > 0.0) for h in options.horizons):
         raise SettingsError("horizons must be positive seconds", where="--horizons", advice="such as 1,2,5")
     drive = prepare_run(log, input_name)
@@ -171,54 +170,3 @@ def _learned_from(log: Log, model: Model) -> bool:
     """Whether the model file was learned from one of these very logs; then it does not count as causal."""
     hashes = {reference.sha256 for reference in model.content.provenance.logs}
     return any(source.sha256 in hashes for source in log.sources)
-
-
-def _scores(
-    predictions: Sequence[Predictions], baseline: Mapping[float, Predictions], sets: Sequence[WindowSet]
-) -> tuple[Score, ...]:
-    scores = []
-    for targets in sets:
-        group = [p for p in predictions if p.horizon == targets.length]
-        distance = float(targets.distances()[held_out_half(len(targets))].mean())
-        scores += [_score(p, baseline[targets.length], group, distance) for p in group]
-    return tuple(scores)
-
-
-def _score(
-    predictions: Predictions, baseline: Predictions, group: Sequence[Predictions], distance: float
-) -> Score:
-    half = held_out_half(len(predictions))
-    position, heading = predictions.position_error[half], predictions.heading_error[half]
-    nis = predictions.nis[half]
-    return Score(
-        method=predictions.method,
-        causal=predictions.causal,
-        horizon=predictions.horizon,
-        windows=len(position),
-        position=summarise(position),
-        heading=summarise(heading),
-        percent_of_distance=float(100.0 * position.mean() / distance) if distance > 0.0 else float("nan"),
-        position_ratio=ratio_of_means(position, baseline.position_error[half]),
-        heading_ratio=ratio_of_means(heading, baseline.heading_error[half]),
-        position_to_rival=_to_rival(predictions, group, "position_error"),
-        heading_to_rival=_to_rival(predictions, group, "heading_error"),
-        in_sample_position=float(predictions.in_sample[half, 0].mean()),
-        in_sample_heading=float(predictions.in_sample[half, 1].mean()),
-        nis=float(nis.mean()),
-        nis_band=nis_band(len(nis)),
-        coverage=coverage(predictions.inside[half]),
-        reported_nis=float(predictions.reported_nis[half].mean()),
-        reported_coverage=normal_coverage(predictions.reported_nis[half]),
-    )
-
-
-def _to_rival(predictions: Predictions, group: Sequence[Predictions], error: str) -> float:
-    """Mean error relative to the best other causal method but the plain one."""
-    half = held_out_half(len(predictions))
-    others = [
-        float(getattr(p, error)[half].mean())
-        for p in group
-        if p.method not in (predictions.method, "none") and p.causal
-    ]
-    best = min(others, default=0.0)
-    return float(getattr(predictions, error)[half].mean()) / best if best > 0.0 else float("nan")

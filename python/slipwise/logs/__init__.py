@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Logs: everything a robot recorded, read from tables and bags into one form."""
 
+from slipwise.logs.anonymise import anonymised
 from slipwise.logs.log import Inputs, LeftOut, Log, Poses, Run, Source, empty_poses
 from slipwise.logs.open_log import open_log
 from slipwise.logs.options import LogOptions
@@ -17,6 +18,7 @@ __all__ = [
     "Run",
     "Source",
     "Survey",
+    "anonymised",
     "empty_poses",
     "open_log",
     "save_log",
