@@ -20,6 +20,7 @@ FOLDERS = {
     "rollout": "Driving many command sequences through a model at once: start at `rollout_batch`.",
     "planning": "Manoeuvres, routes, control and lattices through a model.",
     "vehicle": "Wheel speeds and steering angles as a twist of the body.",
+    "dynamics": "A user's own dynamics: derive from `DynamicsModel`, learn with `DynamicsFilter`.",
     "lie": "Poses, tangents and their Jacobians.",
 }
 TYPE = re.compile(r"^(?:template\s*<[^{]*>\s*)?(?:class|struct|enum(?: class)?|union)\s+(\w+)[^;(]*$")

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: Apache-2.0
+"""One pass over a recorded drive: parameters are learned, and the future is predicted before it is seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from slipwise import _core
+from slipwise.dynamics.dynamics import Dynamics
+from slipwise.dynamics.held_out import HeldOut, judged
+from slipwise.dynamics.learned_dynamics import LearnedDynamics
+from slipwise.dynamics.recorded import Recorded, recorded
+from slipwise.errors import SettingsError
+
+Floats = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+NOTHING_LEARNED = 1e-12  # of the prior variances: parameters as they were given
+
+
+def learn_dynamics(
+    dynamics: Dynamics,
+    inputs: ArrayLike,
+    measurements: ArrayLike,
+    *,
+    horizons: Sequence[float] = (1.0, 2.0, 5.0),
+    progress: Progress | None = None,
+) -> LearnedDynamics:
+    """Learn the parameters of `dynamics` from one drive.
+
+    The filter is an iterated extended Kalman filter of state and parameters; between measurements the state
+    is integrated with its derivatives (derivations/other-dynamics.md). Predictions are made from what was
+    known before them, beside those of the parameters as they were given.
+
+    Args:
+        dynamics: what moves, and what is to be learned.
+        inputs: [N, 1 + inputs] rows of t [s] and inputs, each held until the next.
+        measurements: [M, 1 + measured states] rows of t [s] and measured states.
+        horizons: over which predictions are judged [s].
+        progress: called with the fraction done, 0 to 1.
+
+    Raises:
+        LogError: a table has another shape, or holds too little.
+        SettingsError: a horizon is not positive, or the dynamics run away.
+    """
+    if not horizons or any(not (np.isfinite(h) and h > 0.0) for h in horizons):
+        raise SettingsError("horizons must be positive seconds", where="horizons", advice="such as (1, 2, 5)")
+    drive = recorded(dynamics, inputs, measurements)
+    learner, given = _Pass(dynamics, drive, learning=True), _Pass(dynamics, drive, learning=False)
+    made: dict[float, list[HeldOut]] = {horizon: [] for horizon in horizons}
+    free = dict.fromkeys(horizons, -np.inf)  # s, until when the last prediction goes
+    try:
+        for k in range(1, len(drive.t)):
+            learner.learn(k)
+            given.learn(k)
+            for horizon in horizons:
+                target = int(np.searchsorted(drive.t, drive.t[k] + horizon - 1e-9))
+                if drive.t[k] < free[horizon] or target >= len(drive.t):
+                    continue
+                made[horizon].append(HeldOut(k, target, learner.predict(k, target), given.predict(k, target)))
+                free[horizon] = float(drive.t[target])
+            if progress is not None:
+                progress((k + 1) / len(drive.t))
+    except (ValueError, RuntimeError) as problem:
+        raise SettingsError(str(problem), where="dynamics") from problem
+    return LearnedDynamics(
+        dynamics=dynamics,
+        estimate=learner.filter.reported_parameters,
+        state=learner.filter.state,
+        seconds=float(drive.t[-1] - drive.t[0]),
+        measurements=len(drive.t),
+        rejected=learner.rejected,
+        left_out=drive.left_out,
+        course=np.array(learner.course),
+        scores=judged(dynamics, drive, made),
+    )
+
+
+class _Pass:
+    """A filter on its way through a drive."""
+
+    def __init__(self, dynamics: Dynamics, drive: Recorded, *, learning: bool) -> None:
+        self._drive, self._pushed = drive, 0
+        self.rejected = 0
+        self.course: list[Floats] = []  # rows of t, parameters, deviations
+        states = dynamics.states
+        first = dict(zip(dynamics.measured, drive.measured[0].tolist(), strict=True))
+        mean = [first.get(place, state.start) for place, state in enumerate(states)]
+        std = [state.start_std if state.measured is None else state.measured for state in states]
+        share = 1.0 if learning else NOTHING_LEARNED
+        variances = [s**2 for s in std] + [share * p.std**2 for p in dynamics.parameters]
+        start = _core.Estimate(
+            np.array(mean + [p.value for p in dynamics.parameters], dtype=np.float64), np.diag(variances)
+        )
+        self.filter = _core.DynamicsFilter(
+            dynamics.in_core(), dynamics.noise_in_core(), dynamics.longest_step, float(drive.t[0]), start
+        )
+
+    def learn(self, k: int) -> None:
+        """Push inputs up to measurement `k`, and that measurement."""
+        drive = self._drive
+        while self._pushed < len(drive.input_t) and drive.input_t[self._pushed] < drive.t[k]:
+            self.filter.push_input(float(drive.input_t[self._pushed]), drive.inputs[self._pushed])
+            self._pushed += 1
+        update = self.filter.push_measurement(float(drive.t[k]), drive.measured[k])
+        self.rejected += update.status == _core.Status.Rejected
+        known = self.filter.parameters
+        self.course.append(np.array([drive.t[k], *known.mean, *np.sqrt(np.diag(known.covariance))]))
+
+    def predict(self, k: int, target: int) -> _core.DynamicsPrediction:
+        """Predict the state at measurement `target` from what is known at `k`, under the inputs recorded."""
+        drive = self._drive
+        first = max(0, int(np.searchsorted(drive.input_t, drive.t[k] + 1e-9)) - 1)
+        last = int(np.searchsorted(drive.input_t, drive.t[target]))
+        part = slice(first, max(last, first + 1))
+        return self.filter.predict([float(drive.t[target])], drive.input_t[part], drive.inputs[part])[0]
