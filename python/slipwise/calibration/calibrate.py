@@ -215,6 +215,7 @@ def judged_on(
         learned.identifiable,
         wheels_logged=has_wheels(windows.drive),
         wheels_advice=log.advice.get("wheel", ""),
+        positions=has_course(log.runs),
     )
     verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
     if not any(each.spoils for each in found):

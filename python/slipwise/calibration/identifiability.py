@@ -43,8 +43,15 @@ def confounded(posterior: Posterior) -> tuple[Confounded, ...]:
     return tuple(Confounded(names[p.first], names[p.second], float(p.correlation)) for p in pairs)
 
 
-def drives_for(names: tuple[str, ...]) -> tuple[str, ...]:
-    """Say which driving would determine the parameters, in words."""
+def drives_for(names: tuple[str, ...], *, positions: bool = False) -> tuple[str, ...]:
+    """Say which driving would determine the parameters, in words.
+
+    Args:
+        names: of the parameters.
+        positions: only positions are measured, which do not see a side slip on straight ways.
+    """
+    if positions:
+        names = tuple(name for name in names if not (name.startswith("lat.") and not _turns(name)))
     advice = []
     for matches, sentence in _DRIVES:
         found = [name for name in names if matches(name)]

@@ -317,7 +317,7 @@ class MotionLearner:
         if log is not None:
             return model_of_log(learned, log, self._input, self._settings)
         judgement = judgement_of(learned)
-        known = identified(learned.identifiable, wheels_logged=self._wheels)
+        known = identified(learned.identifiable, wheels_logged=self._wheels, positions=self._positions)
         verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
         kept = learned.kept.limits is not None
         of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)

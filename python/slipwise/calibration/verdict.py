@@ -21,7 +21,7 @@ from slipwise.models.schema import HeldOut
 
 _REFUSED = "Do not use this model:"
 _FOLLOWED = {"command": "commands", "wheel": "wheels"}
-_COURSES = (
+POSITIONS_ONLY = (
     "Only positions were measured: headings are courses of the path, their errors are errors of the course, "
     "and a side slip that is always the same is not seen."
 )
@@ -50,10 +50,12 @@ class LogFacts:
     positions: bool = False  # only positions were measured
 
 
-def identified(posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "") -> Identified:
+def identified(
+    posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "", positions: bool = False
+) -> Identified:
     """Say what a posterior knows of its parameters, and which driving would tell the rest."""
     unknown, pairs = not_identifiable(posterior), confounded(posterior)
-    advice = (*drives_for(unknown), *advice_for_pairs(pairs))
+    advice = (*drives_for(unknown, positions=positions), *advice_for_pairs(pairs))
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     return Identified(len(posterior.mean), unknown, advice, pairs, timing)
 
@@ -111,7 +113,7 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
     ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
-    courses = _COURSES if facts.positions else ""
+    courses = POSITIONS_ONLY if facts.positions else ""
     return tuple(sentence for sentence in (honest, *partly, courses) if sentence)
 
 

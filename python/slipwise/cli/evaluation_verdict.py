@@ -36,7 +36,7 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
     if method is None or source is None:
         return None
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
-    facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input)
+    facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input, evaluation.positions)
     verdict = give_verdict(judge(longest[method], longest["none"]), _identified(source), facts)
     return replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *_more_advice(evaluation, method)))))
 

@@ -19,7 +19,7 @@ from slipwise.evaluation.methods import Contest, method_info, method_names, refu
 from slipwise.evaluation.result import Evaluation
 from slipwise.evaluation.scoring import scores_of
 from slipwise.logs.contradictions import contradictions
-from slipwise.logs.log import Log
+from slipwise.logs.log import Log, has_course
 from slipwise.models.model import Model
 
 DEFAULT_HORIZONS = (1.0, 2.0, 5.0)  # s
@@ -87,6 +87,7 @@ def evaluate(
             log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
         ),
         models=tuple(models),
+        positions=has_course(log.runs),
     )
 
 

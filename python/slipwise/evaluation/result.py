@@ -90,6 +90,7 @@ class Evaluation:
     notes: tuple[str, ...]
     models: tuple[str, ...] = ()  # those of the methods that are model files as they are
     contradictions: tuple[Contradiction, ...] = ()  # between the poses and the inputs of the log
+    positions: bool = False  # only positions were measured
 
     def __repr__(self) -> str:
         longest = max(self.horizons)

@@ -13,10 +13,12 @@ from slipwise.calibration.identifiability import drives_for
 from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.prepared_run import prepare_run
+from slipwise.calibration.verdict import POSITIONS_ONLY
 from slipwise.errors import LogError
 from slipwise.logs import LeftOut, Log
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
+from slipwise.logs.log import has_course
 from slipwise.models.schema import UNIDENTIFIABLE_RATIO
 
 
@@ -73,6 +75,7 @@ def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
     parameters = tuple(
         _parameter((info.name, info.unit), posterior, i) for i, info in enumerate(posterior.motion.parameters)
     )
+    positions = has_course(log.runs)
     unknown = tuple(parameter.name for parameter in parameters if not parameter.identifiable)
     return Learnability(
         input=input_name,
@@ -81,7 +84,7 @@ def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
         parameters=parameters,
         left_out=windows.left_out,
         missing="",
-        advice=drives_for(unknown),
+        advice=(*((POSITIONS_ONLY,) if positions else ()), *drives_for(unknown, positions=positions)),
     )
 
 

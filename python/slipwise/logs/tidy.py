@@ -106,6 +106,8 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
     pose = {name: table.numbers(name, tally) for name in wanted if name in names}
     if pose and "frame" in names:
         pose["frame"] = table.codes("frame")[0].astype(np.float64)
+    if pose and "yaw" not in pose:
+        notes.append(f"{table.path.name} has no yaw: only positions are measured")
     return _Rows(
         t=table.numbers("t", tally),
         commands=command_columns(table, options, tally, notes),

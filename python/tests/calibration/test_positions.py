@@ -136,3 +136,19 @@ def test_positions_and_what_moves_between_them_survive_a_table(tmp_path: Path) -
     moving = np.hypot(np.diff(again.x, prepend=again.x[0]), np.diff(again.y, prepend=again.y[0])) > 0.03
     apart = np.angle(np.exp(1j * (again.yaw - run.poses.yaw)))[moving]
     assert np.median(np.abs(apart)) < 0.2
+
+
+def test_evaluations_and_inspections_say_that_only_positions_were_measured() -> None:
+    from slipwise.cli.evaluation_verdict import verdict_on
+    from slipwise.evaluation import EvaluationOptions, evaluate
+    from slipwise.inspection.learnability import learnability_of
+
+    log = positions_log(2)
+    learnable = learnability_of(log, "wheel", SETTINGS)
+    assert learnable.advice[0].startswith("Only positions were measured")
+    assert not any("lat.V)" in text for text in learnable.advice)
+    calibration = calibrate(log, settings=SETTINGS, input="wheel")
+    options = EvaluationOptions(methods=("none", "full-linear-6"), horizons=(1.0,))
+    verdict = verdict_on(evaluate(log, settings=SETTINGS, input="wheel", options=options), calibration)
+    assert verdict is not None
+    assert "Only positions were measured" in verdict.sentence
