@@ -41,7 +41,9 @@ std::vector<InputSample> samples(const Rows& rows, const char* what) {
   return all;
 }
 
-Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses) {
+Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
+                    const Rows& gyro) {
+  check_columns(gyro, 2, "gyro");
   check_columns(attitudes, 3, "attitudes");
   const bool with_std = poses.cols() != 5;
   check_columns(poses, with_std ? 7 : 5, "poses");
@@ -58,6 +60,9 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .frame = static_cast<long>(row[4]),
                          .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
                          .position = std::isnan(row[3])});
+  }
+  for (const auto& row : gyro.rowwise()) {
+    run.gyro.push_back({row[0], row[1]});
   }
   return run;
 }
@@ -112,14 +117,14 @@ void bind_recordings(nb::module_& m) {
   nb::class_<Recording>(m, "Recording", "One recorded run, each stream in the order of its stamps.")
       .def(
           "__init__",
-          [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses) {
-            new (self) Recording(recording(commands, wheels, attitudes, poses));
-          },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a,
+          [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
+             const Rows& gyro) { new (self) Recording(recording(commands, wheels, attitudes, poses, gyro)); },
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = Rows(0, 2),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
           "unknown, or "
-          "both left away. A yaw of NaN says that only the position was measured.");
+          "both left away. A yaw of NaN says that only the position was measured. Of a gyro rows of (t, yaw rate) [s, "
+          "rad/s].");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)
       .def_ro("t", &Rejected::t)
@@ -279,7 +284,8 @@ void bind_online(nb::module_& m) {
       .value("Command", Stream::Command)
       .value("Wheels", Stream::Wheels)
       .value("Pose", Stream::Pose)
-      .value("Attitude", Stream::Attitude);
+      .value("Attitude", Stream::Attitude)
+      .value("Gyro", Stream::Gyro);
   bind_settings(m);
   bind_recordings(m);
   bind_results(m);
@@ -317,6 +323,8 @@ void bind_online(nb::module_& m) {
           },
           "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true,
           "A position without a heading, which is taken from the course of its path.")
+      .def("push_gyro", &MotionLearner::push_gyro, "t"_a, "rate"_a)
+      .def_prop_ro("gyro_bias", &MotionLearner::gyro_bias, "Of the gyro [rad/s], and its standard deviation.")
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
           "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,

@@ -24,6 +24,20 @@ std::optional<TimedPose> SegmentStream::headed(TimedPose timed, ChordFinder& cho
   return timed;
 }
 
+/// What a segment between positions is measured by: chords, and the turn of a gyro where there is one.
+void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
+  const auto& first = cut.first.headings[0];
+  const auto& second = cut.second.headings[0];
+  if (!first || !second) {
+    return;
+  }
+  segment.chords = {first->chord, second->chord};
+  if (const auto turn = gyro_.turn(segment.start, segment.end)) {
+    segment.measured.theta = turn->angle;
+    segment.gyro_std = turn->std;
+  }
+}
+
 void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {

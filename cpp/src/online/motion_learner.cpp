@@ -132,6 +132,13 @@ void MotionLearner::push_attitude(double t, double roll, double pitch) {
   work();
 }
 
+void MotionLearner::push_gyro(double t, double rate) {
+  see_stamp(t);
+  stream_.push_gyro({t, rate});
+  take_in();
+  work();
+}
+
 void MotionLearner::push_pose(const MeasuredPose& pose, bool learned) {
   see_stamp(pose.t);
   if (stream_.push_pose(pose, learned) && !pose.position) {

@@ -20,18 +20,22 @@ void merge(const Recording& run, Receiver&& receiver) {
   std::size_t wheel = 0;
   std::size_t attitude = 0;
   std::size_t pose = 0;
-  const std::size_t count = run.commands.size() + run.wheels.size() + run.attitudes.size() + run.poses.size();
+  std::size_t gyro = 0;
+  const std::size_t count =
+      run.commands.size() + run.wheels.size() + run.attitudes.size() + run.poses.size() + run.gyro.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double t = std::min({stamp(run.commands, command), stamp(run.wheels, wheel), stamp(run.attitudes, attitude),
-                               stamp(run.poses, pose)});
+                               stamp(run.poses, pose), stamp(run.gyro, gyro)});
     if (stamp(run.commands, command) == t) {
       receiver.command(run.commands[command++]);
     } else if (stamp(run.wheels, wheel) == t) {
       receiver.wheels(run.wheels[wheel++]);
     } else if (stamp(run.attitudes, attitude) == t) {
       receiver.attitude(run.attitudes[attitude++]);
-    } else {
+    } else if (stamp(run.poses, pose) == t) {
       receiver.pose(run.poses[pose++]);
+    } else {
+      receiver.gyro(run.gyro[gyro++]);
     }
   }
 }
@@ -43,6 +47,7 @@ struct ToLearner {
   void wheels(const InputSample& sample) const { learner.push_wheels(sample.t, sample.twist); }
   void attitude(const Attitude& tilt) const { learner.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
   void pose(const MeasuredPose& measured) const { learner.push_pose(measured); }
+  void gyro(const YawRate& sample) const { learner.push_gyro(sample.t, sample.rate); }
 };
 
 struct ToStream {
@@ -52,6 +57,7 @@ struct ToStream {
   void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
   void attitude(const Attitude& tilt) const { stream.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
   void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
+  void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
 };
 
 struct ToGate {
@@ -71,6 +77,7 @@ struct ToGate {
   void command(const InputSample& sample) { commands.push(sample); }
   void wheels(const InputSample& sample) { wheels_known.push(sample); }
   void attitude(const Attitude& /*tilt*/) const {}
+  void gyro(const YawRate& /*sample*/) const {}
   void pose(const MeasuredPose& measured) { add(gate.push(measured, inputs())); }
 };
 

@@ -30,20 +30,23 @@ double median_of(std::vector<double> values) {
 /// The second position, headed by another chord where its own begins at the first: the turn between such a pair says
 /// nothing that their distance does not. Nothing where it has no other.
 std::optional<MeasuredPose> headed_apart(const MeasuredPose& first, MeasuredPose second) {
-  if (second.headings[0] && second.headings[0]->chord.from == first.t) {
-    std::swap(second.headings[0], second.headings[1]);
-    if (!second.headings[0]) {
-      return std::nullopt;
-    }
-    second.yaw = second.headings[0]->yaw;
+  auto& [used, other] = second.headings;
+  if (!used || used->chord.from != first.t) {
+    return second;
   }
+  if (!other) {
+    return std::nullopt;
+  }
+  second.yaw = other->yaw;
+  std::swap(used, other);
   return second;
 }
 
 /// From when on inputs must be known for a segment between these [s].
 double earliest(const MeasuredPose& first, const MeasuredPose& second) {
   const auto chord_start = [](const MeasuredPose& pose) {
-    return pose.headings[0] ? pose.headings[0]->chord.from : pose.t;
+    const std::optional<ChordHeading>& heading = pose.headings.front();
+    return heading ? heading->chord.from : pose.t;
   };
   return std::min({first.t, chord_start(first), chord_start(second)});
 }

@@ -59,6 +59,7 @@ void SegmentStream::start_run() {
   commands_.clear();
   wheels_.clear();
   tilts_.clear();
+  gyro_.restart();
   gate_.restart();
   timer_.restart();
   wheel_timer_.restart();
@@ -120,6 +121,13 @@ void SegmentStream::push_wheels(const InputSample& sample) {
 void SegmentStream::push_attitude(double t, double roll, double pitch) {
   if (arrives(Stream::Attitude, t, std::array{roll, pitch})) {
     tilts_.push({t, roll, pitch});
+  }
+  advance(newest_ - settings_.latency);
+}
+
+void SegmentStream::push_gyro(const YawRate& sample) {
+  if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
+    gyro_.push(sample);
   }
   advance(newest_ - settings_.latency);
 }
@@ -204,10 +212,14 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       reject(Stream::Pose, Reason::LatePose, pose.t);
       continue;
     }
+    gyro_.see_inputs(pose.t, gate_inputs(pose.t), settings_.rules.still_speed);
     timed = headed(*std::move(timed), chords_);
     if (!timed) {
       reject(Stream::Pose, Reason::NoCourse, pose.t);
       continue;
+    }
+    if (pose.position) {
+      gyro_.see_course(timed->pose);
     }
     if (settings_.from_commands && wheels_ever_) {
       emit_slip(slip_.push(*timed, wheels_));
@@ -243,9 +255,7 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gy = cut.first.gy,
                   .sensor = settings_.sensor,
                   .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
-  if (cut.first.headings[0] && cut.second.headings[0]) {
-    segment.chords = {cut.first.headings[0]->chord, cut.second.headings[0]->chord};
-  }
+  set_course(segment, cut);
   stand_on_ground(segment, foreseen);
   if (!by_wheels) {
     set_actuator_state(segment);
@@ -288,6 +298,7 @@ void SegmentStream::trim() {
   commands_.drop_before(oldest);
   wheels_.drop_before(oldest);
   tilts_.drop_before(oldest);
+  gyro_.drop_before(oldest);
 }
 
 std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items_, {}); }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/present.hpp"
 
 namespace slipwise {
 namespace {
@@ -96,12 +97,13 @@ double path_start(const Segment& segment) {
 }
 
 CoursePlaces cut_for_course(ActuatorSteps& drive, const Segment& segment) {
-  const auto& [first, second] = *segment.chords;
+  const auto& [first, second] = present(segment.chords);
   const double start = path_start(segment);
   std::array<std::pair<double, CoursePoint>, 3> moments{
       {{first.from - start, kStartChord}, {segment.start - start, kStart}, {second.from - start, kEndChord}}};
   std::ranges::sort(moments);
-  CoursePlaces places{.at = {}, .offset = {first.offset, second.offset}, .turn = segment.measured.theta};
+  CoursePlaces places{
+      .at = {}, .offset = {first.offset, second.offset}, .turn = segment.measured.theta, .gyro_std = segment.gyro_std};
   CutSteps cut(!drive.jacobians.empty());
   auto next = moments.begin();
   const auto place = [&] { places.at[(next++)->second] = cut.count(); };
@@ -128,11 +130,12 @@ CoursePlaces cut_for_course(ActuatorSteps& drive, const Segment& segment) {
   return places;
 }
 
-Pose2 course_motion(const CoursePositions& points, const CoursePlaces& places) {
+Pose2 course_motion(const CoursePositions& points, const CoursePlaces& places, double turned) {
   const double first = course(chord(points, kStartChord, kStart)) + places.offset[0];
   const double second = course(chord(points, kEndChord, kEnd)) + places.offset[1];
   const Eigen::Vector2d moved = rotation(-first) * chord(points, kStart, kEnd);
-  return {moved.x(), moved.y(), places.turn + wrap_angle(second - first - places.turn)};
+  const double turn = places.gyro_std ? turned : places.turn + wrap_angle(second - first - places.turn);
+  return {moved.x(), moved.y(), turn};
 }
 
 ByPosition course_by_position(const CoursePositions& points, const CoursePlaces& places) {
@@ -148,6 +151,11 @@ ByPosition course_by_position(const CoursePositions& points, const CoursePlaces&
   by[kEnd].topRows<2>() += turned;
   by[kEnd].bottomRows<1>() += second;
   by[kEndChord].bottomRows<1>() -= second;
+  if (places.gyro_std) {
+    for (auto& of_point : by) {
+      of_point.bottomRows<1>().setZero();
+    }
+  }
   return by;
 }
 

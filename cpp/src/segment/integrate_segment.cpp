@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "slipwise/linear/present.hpp"
 #include "slipwise/segment/ground_step.hpp"
 #include "slipwise/segment/path_step.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
@@ -181,11 +182,18 @@ std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segme
 Eigen::Matrix<double, 3, Eigen::Dynamic> of_course(
     const SegmentPath& path, const std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints>& at_points,
     Eigen::Index parameters) {
-  const ByPosition by_position = course_by_position(path.course_positions(), *path.course);
+  const CoursePlaces& course = present(path.course);
+  const ByPosition by_position = course_by_position(path.course_positions(), course);
   Eigen::Matrix<double, 3, Eigen::Dynamic> sum = Eigen::Matrix<double, 3, Eigen::Dynamic>::Zero(3, parameters);
   for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    if (path.course->at[i] > 0) {
+    if (course.at[i] > 0) {
       sum += by_position[i] * at_points[i].topRows<2>();
+    }
+  }
+  if (course.gyro_std) {
+    sum.row(2) += at_points[kEnd].row(2);
+    if (course.at[kStart] > 0) {
+      sum.row(2) -= at_points[kStart].row(2);
     }
   }
   return sum;
@@ -261,14 +269,19 @@ void see_nothing(const GrowingPath& /*path*/, std::span<const ActuatorStep> /*st
 CoursePositions SegmentPath::course_positions() const {
   CoursePositions points;
   for (std::size_t i = 0; i < kCoursePoints; ++i) {
-    const Pose2 seen = slipwise::sensor_motion(poses[course->at[i]], sensor);
+    const Pose2 seen = slipwise::sensor_motion(poses[present(course).at[i]], sensor);
     points[i] = {seen.x, seen.y};
   }
   return points;
 }
 
+double SegmentPath::course_turn() const {
+  return poses[present(course).at[kEnd]].theta - poses[present(course).at[kStart]].theta;
+}
+
 Pose2 SegmentPath::sensor_motion() const {
-  return course ? course_motion(course_positions(), *course) : slipwise::sensor_motion(poses.back(), sensor);
+  return course ? course_motion(course_positions(), *course, course_turn())
+                : slipwise::sensor_motion(poses.back(), sensor);
 }
 
 Pose2 SegmentPath::robot_motion(const Pose2& measured) const {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "slipwise/linear/present.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
 namespace slipwise {
@@ -39,14 +40,18 @@ class ChartBySteps {
   Eigen::Matrix3d course_by_tangent(std::size_t k) const {
     Eigen::Matrix3d world = chart_jacobian(path_.tangents[k]);
     world.topRows<2>() = rotation(path_.poses[k].theta) * world.topRows<2>().eval();
+    const CoursePlaces& course = present(path_.course);
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     for (std::size_t i = 0; i < kCoursePoints; ++i) {
-      const std::size_t place = path_.course->at[i];
+      const std::size_t place = course.at[i];
       if (place > k) {
         const Pose2& pose = path_.poses[place];
         const Eigen::Matrix3d moved =
             sensor_by_robot(pose, path_.sensor) * transition(path_.poses[k + 1], pose) * world;
         sum += by_position_[i] * moved.topRows<2>();
+        if (course.gyro_std && (i == kStart || i == kEnd)) {
+          sum.row(2) += (i == kEnd ? 1.0 : -1.0) * moved.row(2);
+        }
       }
     }
     return sum;
@@ -138,6 +143,11 @@ Eigen::Matrix3d pose_noise_covariance(const SegmentPath& path, const Pose2& meas
   MotionNoise headings = noise;
   headings.pose_std_xy = 0.0;
   Eigen::Matrix3d covariance = pose_noise_covariance(measured, headings, path.pose_std_ratio);
+  if (path.course->gyro_std) {  // the turn is the gyro's, whatever the heading at the start
+    covariance.row(2).setZero();
+    covariance.col(2).setZero();
+    covariance(2, 2) = *path.course->gyro_std * *path.course->gyro_std;
+  }
   for (std::size_t i = 0; i < kCoursePoints; ++i) {
     const double std = path.pose_std_ratio[i < kEndChord ? 0 : 1].xy * noise.pose_std_xy;
     covariance += std * std * by[i] * by[i].transpose();

@@ -30,6 +30,12 @@ Segment between_positions() {
   return segment;
 }
 
+Segment by_gyro() {
+  Segment segment = between_positions();
+  segment.gyro_std = 0.02;
+  return segment;
+}
+
 Eigen::VectorXd with_slip(const Basis& basis, const Eigen::VectorXd& others) {
   Eigen::VectorXd all(static_cast<Eigen::Index>(basis.size()) + others.size());
   all << tests::sample_slip(basis, 21), others;
@@ -58,7 +64,7 @@ TEST_CASE("courses have the exact derivative by slip, by the drive, by clocks an
   for (const tests::SampleDrive& drive : tests::sample_drives()) {
     CAPTURE(drive.name);
     const InputHistory inputs = tests::sampled(drive.twist, 0.0, 0.05, 200);
-    for (const Segment& segment : {between_positions(), overlapping}) {
+    for (const Segment& segment : {between_positions(), overlapping, by_gyro()}) {
       CHECK(derivative_error(model, with_slip(basis, others), segment, inputs) < 1e-5);
       CHECK(linearize_slip(model, with_slip(basis, others), inputs, segment)
                 .by_parameter.isApprox(linearize_segment(model, with_slip(basis, others), inputs, segment)
@@ -130,13 +136,32 @@ TEST_CASE("the noise of four positions is that of seeded draws, and of one error
       if (path.course->at[kEndChord] == path.course->at[kStart]) {
         points[kEndChord] = points[kStart];
       }
-      const Eigen::Vector3d error = course_motion(points, *path.course).vector() - truth;
+      const Eigen::Vector3d error = course_motion(points, *path.course, 0.0).vector() - truth;
       squares += error * error.transpose();
     }
     const Eigen::Matrix3d stated = pose_noise_covariance(path, path.sensor_motion(), noise);
     const Eigen::Matrix3d sampled = squares / kDraws;
     CHECK((sampled - stated).norm() < 0.05 * stated.norm());
   }
+}
+
+TEST_CASE("where a gyro measures, the turn is the robot's own with the gyro's noise, and the rest is of courses") {
+  const InputHistory inputs = tests::sampled(tests::sample_drives()[0].twist, 0.0, 0.05, 200);
+  const MotionModel model(Basis("none", {}, {}, {}), {});
+  const Eigen::VectorXd none(0);
+  const SegmentPath path = integrate_segment(model, none, inputs, by_gyro());
+  const Pose2 found = path.sensor_motion();
+  const Pose2 courses = integrate_segment(model, none, inputs, between_positions()).sensor_motion();
+  const Pose2 robot = integrate_segment(model, none, inputs, {.start = 3.0131, .end = 5.0177}).sensor_motion();
+  CHECK(found.x == doctest::Approx(courses.x));
+  CHECK(found.y == doctest::Approx(courses.y));
+  CHECK(found.theta == doctest::Approx(robot.theta));
+  const MotionNoise noise{.pose_std_xy = 0.01, .pose_std_yaw = 1e-3};
+  const Eigen::Matrix3d covariance = pose_noise_covariance(path, found, noise);
+  CHECK(covariance(2, 2) == doctest::Approx(4e-4));
+  CHECK(covariance.block<2, 1>(0, 2).isZero(0.0));
+  const MotionNoise turning{.psd_time = {0.0, 0.0, 1e-4}};
+  CHECK(slip_covariance(path, turning)(2, 2) == doctest::Approx(1e-4 * (5.0177 - 3.0131)).epsilon(0.01));
 }
 
 TEST_CASE("slip moves courses as it moves the path") {

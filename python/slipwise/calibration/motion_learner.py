@@ -150,6 +150,10 @@ class MotionLearner:
             raise SettingsError("this learner expects poses", advice="make it with positions=True")
         self._core.push_position(t, x, y, frame, std_xy or 0.0, learned)
 
+    def push_gyro(self, t: float, rate: float) -> None:
+        """Take a yaw rate [rad/s], counter-clockwise, at a stamp [s]: turns between positions are its own."""
+        self._core.push_gyro(t, rate)
+
     def push_attitude(self, t: float, roll: float, pitch: float) -> None:
         """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
         self._core.push_attitude(t, roll, pitch)

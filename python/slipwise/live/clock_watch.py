@@ -6,9 +6,9 @@ from __future__ import annotations
 import math
 from enum import Enum
 
-from slipwise.live.samples import Command, Override, Pose, Wheels
+from slipwise.live.samples import Command, Gyro, Override, Pose, Wheels
 
-Stamped = Command | Wheels | Pose | Override
+Stamped = Command | Wheels | Pose | Gyro | Override
 
 BACK = 1.0  # s behind the newest stamp; streams are late by less, and delayed ones are never set back
 AHEAD = 60.0  # s ahead of it, after which one stamp alone is doubted

@@ -8,7 +8,7 @@ from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
 from slipwise.live.gates import Gates
 from slipwise.live.said import Said
-from slipwise.live.samples import Command, Pose, Twist, Wheels
+from slipwise.live.samples import Command, Gyro, Pose, Twist, Wheels
 
 
 class Intake:
@@ -71,6 +71,8 @@ class Intake:
             learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
         elif isinstance(sample, Wheels):
             learner.push_wheels(sample.t, sample.v, sample.omega, sample.vy)
+        elif isinstance(sample, Gyro):
+            learner.push_gyro(sample.t, sample.rate)
         elif isinstance(sample, Pose):
             self._push_pose(sample)
 

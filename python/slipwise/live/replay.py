@@ -10,8 +10,9 @@ from collections.abc import Iterator
 from slipwise.calibration.prepared_run import PreparedRun, prepare_run
 from slipwise.errors import SettingsError
 from slipwise.live.feed import Feed
-from slipwise.live.samples import Command, Pose, RunStart, Sample, Wheels
+from slipwise.live.samples import Command, Gyro, Pose, RunStart, Sample, Wheels
 from slipwise.logs import Log
+from slipwise.logs.gyro import gyro_rows
 from slipwise.segments import recording_rows
 
 AS_FAST_AS_IT_GOES = 0.0
@@ -46,17 +47,18 @@ class Replay(Feed):
                 yield sample
 
 
-def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose]:
-    """Yield the samples of a run in the order of their stamps; at one stamp commands first, poses last."""
+def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose | Gyro]:
+    """Yield the samples of a run in the order of their stamps: commands, wheels, poses, the gyro."""
     commands, wheels, attitudes, poses = (rows.tolist() for rows in recording_rows(run.run))
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
         [(t, 0, i, Command(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(commands)],
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
         [(row[0], 2, i, _pose(row, tilt.get(row[0]))) for i, row in enumerate(poses)],
+        [(t, 3, i, Gyro(t, rate)) for i, (t, rate) in enumerate(gyro_rows(run.run).tolist())],
     )
     for _, _, _, sample in heapq.merge(*streams):
-        assert isinstance(sample, Command | Wheels | Pose)
+        assert isinstance(sample, Command | Wheels | Pose | Gyro)
         yield sample
 
 

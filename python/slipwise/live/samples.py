@@ -45,6 +45,14 @@ class Pose:
 
 
 @dataclass(frozen=True, slots=True)
+class Gyro:
+    """How fast a gyro measured the robot to turn."""
+
+    t: float  # s
+    rate: float  # rad/s, counter-clockwise
+
+
+@dataclass(frozen=True, slots=True)
 class Override:
     """Whether an operator drives the robot past its commands."""
 
@@ -70,4 +78,4 @@ class RunStart:
     name: str
 
 
-Sample = Command | Wheels | Pose | Override | Request | RunStart
+Sample = Command | Wheels | Pose | Gyro | Override | Request | RunStart

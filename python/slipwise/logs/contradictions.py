@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.driven_windows import driven_windows
+from slipwise.logs.gyro import gyro_contradictions
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, Log, Run, has_course
 from slipwise.logs.motion_windows import MotionWindows, motion_windows
@@ -31,7 +32,7 @@ def contradictions(
     words = COMMANDS if input_name == "command" else WHEELS
     speed = unlikely_speed(driven, words)
     still = None if speed is not None else standstill(windows, _starts(log, input_name), _CAUSES[input_name])
-    found = [speed, still]
+    found = [speed, still, *gyro_contradictions(log.runs)]
     if (still is None or not still.spoils) and not has_course(
         log.runs
     ):  # a course tells nothing of a heading

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
+from slipwise.logs.gyro import gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Run
 
@@ -89,7 +90,8 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
 
 def recording_of(run: Run, since: float = -np.inf, until: float = np.inf) -> _core.Recording:
     """Return what was measured in a run from `since` on, and before `until` [s], as the core takes it."""
-    return _core.Recording(*(_between(rows, since, until) for rows in recording_rows(run)))
+    rows = (*recording_rows(run), gyro_rows(run))
+    return _core.Recording(*(_between(each, since, until) for each in rows))
 
 
 def _between(rows: Floats, since: float, until: float) -> Floats:

@@ -109,6 +109,8 @@ class MotionLearner {
   /// A pose, or a position alone, whose heading is taken from the course of its path; odometry needs poses.
   /// A pose that is not `learned` from serves odometry and the monitor alone; no segment lies across it.
   void push_pose(const MeasuredPose& pose, bool learned = true);
+  /// Yaw rate of a gyro [rad/s], counter-clockwise; turns between positions are taken from it, its bias is learned.
+  void push_gyro(double t, double rate);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
 
@@ -162,6 +164,8 @@ class MotionLearner {
   /// \throws std::invalid_argument when the terms are not those that are learned.
   std::vector<std::string> add_surfaces(const KnownBefore& other);
 
+  /// Bias of the gyro [rad/s], and its standard deviation.
+  std::array<double, 2> gyro_bias() const { return {stream_.gyro().bias(), stream_.gyro().bias_std()}; }
   const LearnerSettings& settings() const { return settings_; }
   /// All of it as bytes, from which `load` makes a learner that goes on to the same results.
   std::string save() const;

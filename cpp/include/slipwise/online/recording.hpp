@@ -23,9 +23,10 @@ struct Recording {
   std::vector<InputSample> wheels;
   std::vector<Attitude> attitudes;
   std::vector<MeasuredPose> poses;
+  std::vector<YawRate> gyro = {};
 };
 
-/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses last.
+/// Pushes all of it in the order of the stamps; at one stamp commands come first, poses and then the gyro last.
 void push(MotionLearner& learner, const Recording& run);
 
 /// Recorded runs as segments.

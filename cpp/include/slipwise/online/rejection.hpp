@@ -10,8 +10,8 @@
 namespace slipwise {
 
 /// Which stream a measurement came from.
-enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude };
-inline constexpr std::size_t kStreams = 4;
+enum class Stream : std::uint8_t { Command, Wheels, Pose, Attitude, Gyro };
+inline constexpr std::size_t kStreams = 5;
 constexpr std::size_t enumerators(Stream /*type*/) { return kStreams; }
 
 /// Why a measurement, or a segment, was rejected.

@@ -11,6 +11,7 @@
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
 #include "slipwise/online/chord_finder.hpp"
+#include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -76,6 +77,8 @@ class SegmentStream {
   void push_wheels(const InputSample& sample);
   /// Roll and pitch [rad]; by REP-103 nose down is positive pitch.
   void push_attitude(double t, double roll, double pitch);
+  /// Yaw rate [rad/s] of a gyro, from which turns between positions are taken; poses tell theirs themselves.
+  void push_gyro(const YawRate& sample);
   /// Whether it may be used; otherwise it is rejected.
   /// No segment lies between a pose and what is a position alone.
   bool push_pose(const MeasuredPose& pose, bool learned = true);
@@ -87,6 +90,7 @@ class SegmentStream {
   /// The newest stamp of the run [s]; minus infinity before the first.
   double newest() const { return newest_; }
   const InputBuffer& commands() const { return commands_; }
+  const GyroBuffer& gyro() const { return gyro_; }
   const InputBuffer& wheels() const { return wheels_; }
   const StreamSettings& settings() const { return settings_; }
   bool wheels_known() const { return wheels_ever_; }
@@ -115,7 +119,7 @@ class SegmentStream {
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_, self.learned_last_);
-    a(self.chords_, self.position_last_);
+    a(self.chords_, self.position_last_, self.gyro_);
   }
 
  private:
@@ -137,6 +141,7 @@ class SegmentStream {
   std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
   DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at, bool foreseen = false) const;
   void set_actuator_state(Segment& segment) const;
+  void set_course(Segment& segment, const SegmentCut& cut) const;
   MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;
   void stand_on_ground(Segment& segment, bool foreseen) const;
   void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
@@ -168,6 +173,7 @@ class SegmentStream {
   long breaks_ = 0;           ///< times that poses were not learned from
   bool learned_last_ = true;  ///< whether the last pose was
   ChordFinder chords_;
+  GyroBuffer gyro_;
   bool position_last_ = false;  ///< whether the last pose was a position alone
 };
 

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/se2.hpp"
@@ -15,7 +17,7 @@ namespace slipwise {
 
 /// The positions that a segment between positions is made of, in this order: where the chord at its start begins, its
 /// start, where the chord at its end begins, and its end.
-enum CoursePoint : std::size_t { kStartChord, kStart, kEndChord, kEnd };
+enum CoursePoint : std::uint8_t { kStartChord, kStart, kEndChord, kEnd };
 inline constexpr std::size_t kCoursePoints = 4;
 
 /// Where these are on a path, and what makes headings of courses.
@@ -23,6 +25,7 @@ struct CoursePlaces {
   std::array<std::size_t, kCoursePoints> at;  ///< places of the poses
   std::array<double, 2> offset;               ///< heading minus course, of the start and of the end [rad]
   double turn;                                ///< the measured turn, next to which a predicted one is unwrapped [rad]
+  std::optional<double> gyro_std = {};        ///< where a gyro measured the turn: its standard deviation [rad]
 };
 
 using CoursePositions = std::array<Eigen::Vector2d, kCoursePoints>;
@@ -33,9 +36,10 @@ double path_start(const Segment& segment);
 /// Cuts steps where chords begin and at the segment's start, which are fixed moments whatever the actuator does.
 /// Returns where the points are among the poses. The segment must be one between positions.
 CoursePlaces cut_for_course(ActuatorSteps& drive, const Segment& segment);
-/// The chart (x, y, theta) of the end as seen from the start, headings by courses.
-Pose2 course_motion(const CoursePositions& points, const CoursePlaces& places);
-/// Its derivative by each of the positions.
+/// The chart (x, y, theta) of the end as seen from the start, headings by courses; where a gyro measures, the turn is
+/// the robot's own, `turned` [rad].
+Pose2 course_motion(const CoursePositions& points, const CoursePlaces& places, double turned);
+/// Its derivative by each of the positions. The robot's own turn depends on none of them.
 ByPosition course_by_position(const CoursePositions& points, const CoursePlaces& places);
 
 }  // namespace slipwise

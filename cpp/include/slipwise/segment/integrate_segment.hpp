@@ -33,6 +33,8 @@ struct SegmentPath {
 
   /// Where the sensor is at the points of the course, seen from the path's start.
   CoursePositions course_positions() const;
+  /// By how much the robot turns between the start and the end of the course [rad].
+  double course_turn() const;
   /// The sensor's motion, X^-1 T X, or between positions that by courses: what `Segment::measured` is compared with.
   Pose2 sensor_motion() const;
   /// The robot's motion that a sensor's motion tells, X M X^-1.

@@ -38,6 +38,8 @@ struct Segment {
   std::shared_ptr<const Ground> ground = {};        ///< what tilts the robot; nothing on level ground
   /// Where the poses are positions: the chords to the first and to the second, whose courses stand for headings.
   std::optional<std::array<Chord, 2>> chords = {};
+  /// Between positions, where a gyro measured the turn and not the chords: its standard deviation [rad].
+  std::optional<double> gyro_std = {};
 };
 
 }  // namespace slipwise

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Yaw rates of a gyro of late, the turns that they make, and the gyro's bias.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/pose_gate.hpp"
+
+namespace slipwise {
+
+/// A yaw rate at its stamp.
+struct YawRate {
+  double t;     ///< [s]
+  double rate;  ///< counter-clockwise [rad/s]
+};
+
+/// A turn that a gyro measured.
+struct GyroTurn {
+  double angle;  ///< [rad]
+  double std;    ///< [rad]
+};
+
+/// Yaw rates in the order of their stamps. The bias is learned where the inputs stand still, and from turns of the
+/// course over longer times; it may drift.
+class GyroBuffer {
+ public:
+  /// Adds a sample, whose stamp is later than those before.
+  void push(const YawRate& sample) { samples_.push_back(sample); }
+  /// Learns the bias from the samples until `t` [s], where `inputs`, which are known until then, stand still.
+  void see_inputs(double t, const InputBuffer& inputs, double still_speed);
+  /// Learns the bias from where a position's course heads.
+  void see_course(const MeasuredPose& position);
+  /// The turn over [start, end] [s]; nothing where samples are missing.
+  std::optional<GyroTurn> turn(double start, double end) const;
+  /// [rad/s], and its standard deviation.
+  double bias() const { return bias_; }
+  double bias_std() const;
+  void drop_before(double t);
+  /// Another run begins; the bias stays.
+  void restart();
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.samples_, self.bias_, self.variance_, self.seen_until_, self.course_);
+  }
+
+ private:
+  std::optional<double> angle(double start, double end) const;
+  void learn_bias(double measured, double variance);
+
+  std::deque<YawRate> samples_;
+  double bias_ = 0.0;                   ///< [rad/s]
+  double variance_ = 4e-4;              ///< of the bias
+  double seen_until_ = 0.0;             ///< inputs were looked at until then [s]
+  std::optional<MeasuredPose> course_;  ///< since which the course's turn is compared
+};
+
+}  // namespace slipwise

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// Integrals of yaw rates, and a filter of one state for the bias.
+#include "slipwise/online/gyro_buffer.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/tuning.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kMissing = 0.25;    // [s] between samples, over which the robot may have turned otherwise
+SLIPWISE_TUNING(kStillTime, 1.0);    // [s] of standing still whose mean is a measured bias,
+SLIPWISE_TUNING(kCalm, 0.5);         // [s] after the inputs stopped and before they start
+SLIPWISE_TUNING(kStillStd, 2e-3);    // [rad/s] of that mean
+SLIPWISE_TUNING(kCourseTime, 20.0);  // [s] over which turns of the course measure the bias,
+SLIPWISE_TUNING(kCourseStd, 0.15);   // [rad] such a turn, the change of the side-slip angle included
+SLIPWISE_TUNING(kDrift, 1e-4);       // [rad/s] per root of a second
+SLIPWISE_TUNING(kWalk, 3e-3);        // [rad] per root of a second: noise of the gyro
+SLIPWISE_TUNING(kScale, 5e-3);       // of the turn: the gyro's scale
+
+double squared(double value) { return value * value; }
+
+double at(const YawRate& first, const YawRate& second, double t) {
+  const double part = (t - first.t) / (second.t - first.t);
+  return first.rate + part * (second.rate - first.rate);
+}
+
+}  // namespace
+
+double GyroBuffer::bias_std() const { return std::sqrt(variance_); }
+
+void GyroBuffer::learn_bias(double measured, double variance) {
+  const double gain = variance_ / (variance_ + variance);
+  bias_ += gain * (measured - bias_);
+  variance_ *= 1.0 - gain;
+}
+
+void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_speed) {
+  if (seen_until_ < t - kCourseTime) {
+    seen_until_ = t;
+    return;
+  }
+  for (; seen_until_ + kStillTime + kCalm <= t; seen_until_ += kStillTime) {
+    variance_ += squared(kDrift) * kStillTime;
+    const double from = seen_until_ - kCalm;
+    const double until = seen_until_ + kStillTime + kCalm;
+    if (inputs.empty() || inputs.unknown_since(from, until)) {
+      continue;
+    }
+    const BodyTwist fastest = inputs.fastest(from, until);
+    const auto turned = angle(seen_until_, seen_until_ + kStillTime);
+    if (turned && std::max(fastest.v, fastest.omega) <= still_speed) {
+      learn_bias(*turned / kStillTime, squared(kStillStd));
+    }
+  }
+}
+
+void GyroBuffer::see_course(const MeasuredPose& position) {
+  if (!course_ || course_->frame != position.frame) {
+    course_ = position;
+    return;
+  }
+  const double seconds = position.t - course_->t;
+  if (seconds < kCourseTime) {
+    return;
+  }
+  if (const auto turned = angle(course_->t, position.t)) {
+    const double apart = wrap_angle(*turned - bias_ * seconds - (position.yaw - course_->yaw));
+    learn_bias(bias_ + apart / seconds, squared(kCourseStd / seconds));
+  }
+  course_ = position;
+}
+
+std::optional<double> GyroBuffer::angle(double start, double end) const {
+  auto next = std::ranges::upper_bound(samples_, start, {}, &YawRate::t);
+  if (next == samples_.begin() || next == samples_.end()) {
+    return std::nullopt;
+  }
+  double sum = 0.0;
+  double now = start;
+  for (; next != samples_.end(); ++next) {
+    const YawRate& before = *std::prev(next);
+    if (next->t - before.t > kMissing) {
+      return std::nullopt;
+    }
+    const double until = std::min(next->t, end);
+    sum += (until - now) * at(before, *next, 0.5 * (now + until));
+    now = until;
+    if (next->t >= end) {
+      return sum;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<GyroTurn> GyroBuffer::turn(double start, double end) const {
+  const auto turned = angle(start, end);
+  if (!turned) {
+    return std::nullopt;
+  }
+  const double seconds = end - start;
+  const double angle = *turned - bias_ * seconds;
+  const double variance = squared(kWalk) * seconds + variance_ * seconds * seconds + squared(kScale * angle);
+  return GyroTurn{.angle = angle, .std = std::sqrt(variance)};
+}
+
+void GyroBuffer::drop_before(double t) {
+  while (samples_.size() > 1 && samples_[1].t <= t) {
+    samples_.pop_front();
+  }
+}
+
+void GyroBuffer::restart() {
+  samples_.clear();
+  course_.reset();
+  seen_until_ = 0.0;
+}
+
+}  // namespace slipwise

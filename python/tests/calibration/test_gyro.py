@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Positions beside a gyro: turns are the gyro's, its bias is learned, and its errors are as large as said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_positions import ANTENNA, BASIS, HORIZONS, SECONDS, SETTINGS, SLIP, commands
+
+from slipwise import _core
+from slipwise.calibration.core_settings import core_settings
+from slipwise.logs import Log, Run
+from slipwise.logs.contradictions import contradictions
+from slipwise.segments import recording_of
+from slipwise.simulation.known_robot import KnownRobot, known_run
+
+BIAS = 0.012  # rad/s
+
+
+def run_with_gyro(seed: int, *, noise: float = 0.01, scale: float = 1.0) -> Run:
+    random = np.random.default_rng(seed)
+    robot = KnownRobot(
+        lag=(0.2, 0.3),
+        delay=(0.1, 0.15),
+        basis=BASIS,
+        slip=SLIP,
+        sensor=ANTENNA,
+        pose_std=(0.01, 0.0),
+    )
+    run = known_run(robot, commands(random), (0.0, SECONDS), random=random)
+    t = run.poses.t
+    rate = np.diff(np.unwrap(run.poses.yaw)) / np.diff(t) + BIAS + noise * random.standard_normal(len(t) - 1)
+    extra = {"t": 0.5 * (t[1:] + t[:-1]), "gyro_z": scale * rate}
+    return replace(run, poses=replace(run.poses, course=True), extra=extra)
+
+
+def learned(run: Run) -> _core.MotionLearner:
+    learner = _core.MotionLearner(core_settings(SETTINGS, "wheel", HORIZONS, positions=True))
+    learner.push(recording_of(run))
+    learner.end_run()
+    return learner
+
+
+@pytest.mark.slow
+def test_slip_and_bias_are_true_within_their_uncertainty_and_turns_are_known_better() -> None:
+    errors, stds, without = [], [], []
+    for seed in range(8):
+        run = run_with_gyro(seed)
+        learner = learned(run)
+        bias, std = learner.gyro_bias
+        assert abs(bias - BIAS) < 3.0 * std < 0.01
+        estimate = learner.model().motion.estimate
+        errors.append(estimate.mean[:6] - SLIP)
+        stds.append(np.sqrt(np.diag(estimate.covariance))[:6])
+        plain = learned(replace(run, extra={})).model().motion.estimate
+        without.append(np.sqrt(np.diag(plain.covariance))[:6])
+    z = np.array(errors) / np.array(stds)
+    assert np.abs(z).max() < 4.0
+    assert np.sqrt(np.mean(z**2, axis=0)).max() < 1.7
+    assert np.mean(stds, axis=0)[5] < 0.8 * np.mean(without, axis=0)[5]
+
+
+def test_a_gyro_that_turns_the_other_way_is_left_out_and_said() -> None:
+    run = run_with_gyro(1, scale=-1.0)
+    assert learned(run).gyro_bias[1] == pytest.approx(0.02, rel=0.1)  # nothing was pushed
+    found = contradictions(Log(runs=(run,)), "wheel")
+    assert [each.kind for each in found] == ["gyro-turns-otherwise"]
+    assert not found[0].spoils
+    assert "counter-clockwise" in found[0].advice[0]
+    degrees = contradictions(Log(runs=(run_with_gyro(1, scale=57.3),)), "wheel")
+    assert [each.kind for each in degrees] == ["gyro-turns-otherwise"]
+    assert contradictions(Log(runs=(run_with_gyro(1),)), "wheel") == ()
+
+
+def test_poses_tell_their_turns_themselves() -> None:
+    run = run_with_gyro(1)
+    run = replace(run, poses=replace(run.poses, course=False))
+    assert learned(run).gyro_bias[0] == 0.0
