@@ -300,6 +300,7 @@ bool SurfaceBank::consider(const Averages& averages, std::size_t leader, const D
 /// One that has no entry yet gets one when it is left.
 void SurfaceBank::enter_new() {
   present_.reset();
+  doubted_for_.clear();
   ++clock_;
   drop_least_used(settings_.most - 1);
 }

@@ -17,5 +17,16 @@ TEST_CASE("eigenvalues rise, eigenvectors are orthonormal, and together they are
   CHECK((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a).norm() < 1e-13);
 }
 
+TEST_CASE("the root of a covariance gives it back, singular or slightly negative by rounding too") {
+  Eigen::Matrix3d full;
+  full << 4.0, 1.0, 0.5, 1.0, 2.0, -0.3, 0.5, -0.3, 1.0;
+  const Eigen::Vector3d direction(1.0, -2.0, 0.5);
+  for (const Eigen::Matrix3d& covariance : {full, Eigen::Matrix3d(direction * direction.transpose()),
+                                            Eigen::Matrix3d(-1e-18 * Eigen::Matrix3d::Identity())}) {
+    const Eigen::MatrixXd root = covariance_root(covariance);
+    CHECK((root * root.transpose() - covariance).norm() < 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace slipwise
