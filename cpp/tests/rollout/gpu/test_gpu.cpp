@@ -88,6 +88,23 @@ TEST_CASE("rollouts on a grade are the processor's on a GPU too") {
   }
 }
 
+TEST_CASE("rollouts over surfaces ahead are the processor's on a GPU too") {
+  if (skipped()) {
+    return;
+  }
+  Gpu gpu;
+  const tests::SampleCommands<double> commands(37, 100, kPeriod);
+  for (const tests::SampleChain& actuator : tests::sample_chains()) {
+    CAPTURE(std::string(actuator.name));
+    const MotionModel model(named_basis("drive-9"), actuator.learned);
+    const Eigen::VectorXd change = Eigen::VectorXd::LinSpaced(model.slip_size(), -0.1, 0.1);
+    const SlipAhead ahead{.edges = {0.5, 1.7}, .changes = {change, -2.0 * change}};
+    const RolloutProgram program(model, tests::sample_parameters(model, actuator), {.period = kPeriod, .ahead = ahead});
+    const auto expected = tests::roll(program, commands.batch(kStart, kPast));
+    CHECK(apart(tests::roll(program, commands.batch(kStart, kPast), {.gpu = &gpu}), expected) < 1e-9);
+  }
+}
+
 TEST_CASE("a GPU takes commands as they lie, and starts of every rollout's own") {
   if (skipped()) {
     return;
