@@ -72,7 +72,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
   const ClassCounts said = even_odds(answer);
   const auto likeliest = std::ranges::max_element(said, {}, [](const auto& each) { return each.second; });
   if (!averages[leader_]->trial()) {
-    std::vector<SurfaceCandidate> candidates = candidates_of_change();
+    const std::vector<SurfaceCandidate> candidates = candidates_of_change();
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
     const bool others = surfaces_.size() > (present_ ? 1 : 0);
     if (!others || doubted_for_ == likeliest->first || likelihoods.maxCoeff() < kFarBetter * likelihoods[0]) {

@@ -50,13 +50,14 @@ void TerrainWatch::push(Stream<kColumns>& stream, double t, const std::array<dou
     ++left_out_;
     return;
   }
-  if (!start_ || t - newest() > kLongestSilence) {
+  if (!begun_ || t - newest() > kLongestSilence) {
     imu_.samples.clear();
     drive_.samples.clear();
     start_ = t;
+    begun_ = true;
   }
   stream.samples.emplace_back(t, sample);
-  while (complete(*start_ + cutting_.seconds)) {
+  while (complete(start_ + cutting_.seconds)) {
     answer_window();
   }
 }
@@ -86,7 +87,7 @@ std::optional<Eigen::MatrixXd> TerrainWatch::window_of(const Stream<kColumns>& s
     times[i] = t;
     values.row(i) = Eigen::Map<const Eigen::Matrix<double, 1, static_cast<int>(kColumns)>>(sample.data());
   }
-  return even_samples(times, values, *start_, {cutting_.seconds, rate});
+  return even_samples(times, values, start_, {cutting_.seconds, rate});
 }
 
 template <std::size_t kColumns>
@@ -107,14 +108,14 @@ void TerrainWatch::answer_window() {
     current = current_features(*samples);
   }
   if (auto answer = classifier_.answer(vibration, current)) {
-    answers_.push_back({*start_, *start_ + cutting_.seconds, std::move(*answer)});
+    answers_.push_back({start_, start_ + cutting_.seconds, std::move(*answer)});
   }
   if (answers_.size() > kMostAnswers) {
     answers_.erase(answers_.begin());
   }
-  *start_ += step_;
-  forget_before(imu_, *start_);
-  forget_before(drive_, *start_);
+  start_ += step_;
+  forget_before(imu_, start_);
+  forget_before(drive_, start_);
 }
 
 std::vector<TimedAnswer> TerrainWatch::take_answers() { return std::exchange(answers_, {}); }

@@ -66,7 +66,8 @@ class TerrainWatch {
   VibrationBands bands_;
   Stream<kImuAxes> imu_;
   Stream<kDriveColumns> drive_;
-  std::optional<double> start_;  ///< of the next window [s]
+  bool begun_ = false;  ///< whether there was a sample
+  double start_ = 0.0;  ///< of the next window [s]
   std::vector<TimedAnswer> answers_;
   std::size_t left_out_ = 0;
 };
