@@ -34,7 +34,15 @@ void MotionLearner::start_drive(const DriveStart& start) {
   known_.back() = now_known(known_.back().until);
 }
 
+/// Without a memory there is nothing to recall: what is the terrain's becomes as unsure as after a suspicion.
 void MotionLearner::cue_surface(const std::string& label) {
+  const ModelAverageSettings& average = settings_.hypotheses.average;
+  if (!average.surfaces.remember) {
+    if (label.empty()) {
+      forget(average.change.forget);
+    }
+    return;
+  }
   work_through();  // what waits was driven on the surface before
   hypotheses_.cue_surface(disturbance_.law(), label);
   note_surfaces(runs_, newest());

@@ -15,17 +15,17 @@ from slipwise.calibration.calibrate import (
     model_of,
     refuse_empty,
 )
-from slipwise.calibration.learned_log import Keep, LearnedLog
+from slipwise.calibration.learned_log import Keep
 from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
 from slipwise.calibration.learner import Progress
 from slipwise.calibration.prepared_run import PreparedRun, choose_input, prepare_run
 from slipwise.calibration.result import Calibration
 from slipwise.calibration.settings import AVERAGE, Settings, make_settings
-from slipwise.calibration.surface_sections import label_section, surface_sections
+from slipwise.calibration.sloping_ground import for_the_ground_of
+from slipwise.calibration.surface_sections import with_memory
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs.log import Log
 from slipwise.logs.open_log import joined
-from slipwise.models import schema
 from slipwise.models.model import Model
 
 _NOTHING = SequenceOptions()
@@ -47,7 +47,8 @@ def calibrate_sequence(
     Args:
         logs: what `open_log` returned of each, in the order of time.
         input: "command" or "wheel"; without it that of the model to begin with, or what the first log has.
-        settings: what to learn and how; without them those of the model to begin with, or the defaults.
+        settings: what to learn and how; without them those of the model to begin with, or the defaults. The
+            first log decides whether terms of gravity are tried: no prediction depends on what comes later.
         options: the model to begin with, and labels.
         progress: called with the fraction done, 0 to 1.
 
@@ -66,6 +67,8 @@ def calibrate_sequence(
             where="--memory",
             advice="leave --estimator or --memory away",
         )
+    if start is None:  # what is begun with keeps its terms: nothing is remembered of others
+        settings = for_the_ground_of(logs[0], settings)
     input_name = input or (start.content.input if start is not None else choose_input(logs[0]))
     log = joined(list(logs))
     drives = _drives(logs, input_name)
@@ -79,7 +82,8 @@ def calibrate_sequence(
     learned = learned_by(sequence.learned)
     found = found_contradictions(log, input_name, settings)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
-    model = model_of(_with_memory(content, sequence, sequence.learned, start), log, found)
+    kept = learned.kept.structure, learned.kept.motion
+    model = model_of(with_memory(content, sequence.learner, kept, start), log, found)
     calibration = Calibration(
         model,
         judged.verdict,
@@ -104,34 +108,3 @@ def _drives(logs: Sequence[Log], input_name: str) -> list[tuple[PreparedRun, ...
         drives.append(tuple(replace(run, index=run.index + before) for run in prepare_run(log, input_name)))
         before += len(log.runs)
     return drives
-
-
-def _with_memory(
-    content: schema.ModelFile, sequence: LearnedSequence, learned: LearnedLog, start: Model | None
-) -> schema.ModelFile:
-    """Add surfaces and labels, and what the model that was begun with was learned from."""
-    kept = learned.kept
-    memory: dict[str, object] = {
-        "surfaces": list(surface_sections(sequence.learner, kept.structure, kept.motion)),
-        "labels": label_section(sequence.learner),
-    }
-    if start is None:
-        return content.model_copy(update=memory)
-    before, now = start.content.provenance, content.provenance
-    memory["provenance"] = now.model_copy(
-        update={
-            "logs": [*before.logs, *(log for log in now.logs if log not in before.logs)],
-            "learned_seconds": before.learned_seconds + now.learned_seconds,
-            "learned_segments": before.learned_segments + now.learned_segments,
-        }
-    )
-    memory["range"] = _wider(start.content.range, content.range)
-    return content.model_copy(update=memory)
-
-
-def _wider(a: schema.Range, b: schema.Range) -> schema.Range:
-    return schema.Range(
-        speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
-        yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
-        slope=max(a.slope, b.slope),
-    )

@@ -24,8 +24,8 @@ from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
-from slipwise.logs.log import has_course
 from slipwise.calibration.terrain_cues import Labels, check_labels, cues_of
+from slipwise.logs.log import has_course
 from slipwise.models.model import Model
 
 _WORDS = {
@@ -191,7 +191,7 @@ def _visited(
     return VisitedLog(
         predictions,
         "" if bank.present is None else bank.surfaces[bank.present].name,
-        tuple(_change(event, runs) for event in learner.surface_events()),
+        tuple(change_of(event, runs[event.run].index) for event in learner.surface_events()),
         course_of(windows, [runs[each.run].index for each in windows], [_alarm(each) for each in windows]),
     )
 
@@ -204,14 +204,15 @@ def summary_of(surface: _core.Surface) -> SurfaceSummary:
     )
 
 
-def _change(event: _core.DatedSurfaceEvent, runs: tuple[PreparedRun, ...]) -> SurfaceChange:
+def change_of(event: _core.DatedSurfaceEvent, run: int) -> SurfaceChange:
+    """Return what happened; `run` is the index of its run in the log."""
     return SurfaceChange(
         _WORDS[event.kind],
         event.name,
         event.other,
         event.probability,
         event.segments,
-        runs[event.run].index,
+        run,
         event.t,
     )
 

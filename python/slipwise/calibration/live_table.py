@@ -57,7 +57,15 @@ class LiveTable(_Table):
     input: Literal["command", "wheel"] | None = None
     positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so
     model: str | None = None  # start model
+    memory: bool | str = False  # remember surfaces; a model file: begin with those in it
+    terrain: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
+    terrain_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain
     cache: str | None = None  # folder
     save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written
     gates: GatesTable = GatesTable()
     apply: ApplyTable = ApplyTable()
+
+    @property
+    def memory_begins(self) -> bool:
+        """Whether a memory begins with the surfaces of a model file."""
+        return isinstance(self.memory, str)

@@ -52,8 +52,6 @@ class ModelFacts:
     range: schema.Range
     seconds: float  # of all segments learned
     segments: int
-    surfaces: tuple[schema.SurfaceSection, ...] = ()  # that are remembered
-    labels: schema.LabelSection | None = None  # what labels of them were worth
 
 
 def judged_horizon(counts: Sequence[int]) -> int:
@@ -110,8 +108,6 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
             contradictions=list(verdict.contradictions),
             held_out=judged.judgement.held_out,
         ),
-        surfaces=list(facts.surfaces),
-        labels=facts.labels,
     )
 
 

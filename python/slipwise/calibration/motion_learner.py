@@ -8,14 +8,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import kept_posterior, predictions_of
-from slipwise.calibration.learned_sequence import SurfaceSummary, summary_of
+from slipwise.calibration.learned_sequence import SurfaceChange, SurfaceSummary, change_of, summary_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.limit_words import advice_on_limits
@@ -30,17 +30,15 @@ from slipwise.calibration.model_content import (
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
-from slipwise.calibration.surface_sections import begin_with, label_section, surface_sections
+from slipwise.calibration.surface_sections import begin_with, with_memory
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
-from slipwise.models import Model
-from slipwise.models.schema import Range
+from slipwise.models import Model, parse_model
+from slipwise.models.schema import ModelFile, Range
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
-
-Floats = NDArray[np.float64]
 
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
@@ -80,6 +78,8 @@ class MotionLearner:
         self._positions = positions
         self._runs: list[str] = []
         self._wheels = False
+        self._remember = remember
+        self._start: Model | None = None  # that it began with
 
     def start_run(self, name: str) -> None:
         """Begin a run: nothing is joined across runs; what was learned stays."""
@@ -251,9 +251,14 @@ class MotionLearner:
             SettingsError: something was pushed already, or the model was learned with other bases.
         """
         begin_with(self._core, model, self._input, wheels=wheels)
+        self._start = model
 
     def cue_surface(self, label: str = "") -> None:
-        """Say that the surface changes now: to the one of this name, or to another where it is empty."""
+        """Say that the surface changes now: to the one of this name, or to another where it is empty.
+
+        A learner that remembers no surfaces makes nothing of a name; without one it gives slip a tenth of its
+        prior variance back, as where it suspects a change itself.
+        """
         self._core.cue_surface(label)
 
     def cue_terrain(self, probability: Mapping[str, float], *, unknown: float = 0.0) -> None:
@@ -278,6 +283,28 @@ class MotionLearner:
     def surfaces(self) -> tuple[SurfaceSummary, ...]:
         """Return the surfaces that are remembered, the present one as it is known now."""
         return tuple(summary_of(surface) for surface in self._core.surfaces().surfaces)
+
+    @property
+    def remembers(self) -> bool:
+        """Whether surfaces are remembered."""
+        return self._remember
+
+    def probable_surfaces(self) -> tuple[tuple[str, float], ...]:
+        """Return the surfaces that may be under the robot, each with its probability.
+
+        The name is empty where a surface has none yet: it gets one when it is left. Nothing is returned where
+        no surfaces are remembered.
+        """
+        return tuple((each.name, each.probability) for each in self._core.probable_surfaces())
+
+    def surface_changes(self) -> tuple[SurfaceChange, ...]:
+        """Return what happened to the surfaces since the last call; runs are counted as they were begun."""
+        return tuple(change_of(event, event.run) for event in self._core.surface_events())
+
+    def label_counts(self) -> tuple[float, float]:
+        """Return how many labels were judged by what was driven, and how many of them were right."""
+        judged, right = self._core.surfaces().labels
+        return judged, right
 
     def model(self, *, limits: bool = True) -> Model:
         """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
@@ -319,7 +346,8 @@ class MotionLearner:
             )
         learned = self._learned(model, limits=limits)
         if log is not None:
-            return model_of_log(learned, log, self._input, self._settings)
+            made, judgement = model_of_log(learned, log, self._input, self._settings)
+            return model_of(self._remembered(made.content, learned), log, ()), judgement
         judgement = judgement_of(learned)
         known = identified(learned.identifiable, wheels_logged=self._wheels, positions=self._positions)
         verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
@@ -334,11 +362,16 @@ class MotionLearner:
             range=Range(speed=[slowest, fastest], yaw_rate=[right, left], slope=model.steepest),
             seconds=model.seconds,
             segments=model.segments,
-            surfaces=surface_sections(self._core, learned.kept.structure, learned.kept.motion),
-            labels=label_section(self._core),
         )
-        content = model_content(learned, Judged(judgement, verdict), facts)
+        content = self._remembered(model_content(learned, Judged(judgement, verdict), facts), learned)
         return model_of(content, Log(()), ()), judgement
+
+    def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:
+        """Return the content with the surfaces, where these are remembered."""
+        if not self._remember:
+            return content
+        kept = learned.kept
+        return with_memory(content, self._core.completed(), (kept.structure, kept.motion), self._start)
 
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
         found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
@@ -364,6 +397,8 @@ class MotionLearner:
             "runs": self._runs,
             "wheels": self._wheels,
             "positions": self._positions,
+            "remember": self._remember,
+            "start": None if self._start is None else self._start.to_yaml(),
         }
         head = json.dumps(facts).encode()
         body = len(head).to_bytes(_LENGTH_BYTES, "little") + head + self._core.save()
@@ -382,7 +417,14 @@ class MotionLearner:
             facts = json.loads(body[_LENGTH_BYTES:split])
             core = _core.MotionLearner.load(body[split:])
             settings = make_settings(facts["settings"], where="saved settings")
-            learner = cls(facts["input"], settings, positions=bool(facts["positions"]))
+            learner = cls(
+                facts["input"],
+                settings,
+                remember=bool(facts.get("remember")),
+                positions=bool(facts["positions"]),
+            )
+            if facts.get("start"):
+                learner._start = parse_model(facts["start"], where="saved model")
             learner._runs, learner._wheels = [str(run) for run in facts["runs"]], bool(facts["wheels"])
         except (ValueError, TypeError, KeyError) as problem:
             raise SettingsError(f"the saved learner cannot be loaded: {problem}") from problem

@@ -9,7 +9,14 @@ from slipwise import _core
 from slipwise.calibration.learner import BASELINE, CASCADED, DIRECT, JOINT, LIMITS
 from slipwise.errors import ModelError, SettingsError
 from slipwise.models.model import Model
-from slipwise.models.schema import LabelSection, SurfaceBasis, SurfaceMemorySection, SurfaceSection
+from slipwise.models.schema import (
+    LabelSection,
+    ModelFile,
+    Range,
+    SurfaceBasis,
+    SurfaceMemorySection,
+    SurfaceSection,
+)
 
 
 def surface_sections(
@@ -72,6 +79,46 @@ def label_section(learner: _core.MotionLearner) -> LabelSection | None:
     """Return what labels were worth; None where there were none."""
     judged, right = learner.surfaces().labels
     return LabelSection(all=judged, right=right) if judged else None
+
+
+def with_memory(
+    content: ModelFile,
+    learner: _core.MotionLearner,
+    kept: tuple[int, _core.MotionModel],
+    start: Model | None,
+) -> ModelFile:
+    """Add surfaces and labels to a model's content, and what the model that was begun with was learned from.
+
+    Args:
+        content: of what was learned now.
+        learner: what remembers surfaces.
+        kept: how the model explains motion, and the model.
+        start: the model that was begun with.
+    """
+    memory: dict[str, object] = {
+        "surfaces": list(surface_sections(learner, *kept)),
+        "labels": label_section(learner),
+    }
+    if start is None:
+        return content.model_copy(update=memory)
+    before, now = start.content.provenance, content.provenance
+    memory["provenance"] = now.model_copy(
+        update={
+            "logs": [*before.logs, *(log for log in now.logs if log not in before.logs)],
+            "learned_seconds": before.learned_seconds + now.learned_seconds,
+            "learned_segments": before.learned_segments + now.learned_segments,
+        }
+    )
+    memory["range"] = _wider(start.content.range, content.range)
+    return content.model_copy(update=memory)
+
+
+def _wider(a: Range, b: Range) -> Range:
+    return Range(
+        speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
+        yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
+        slope=max(a.slope, b.slope),
+    )
 
 
 def known_before(model: Model) -> _core.KnownBefore:

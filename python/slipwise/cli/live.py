@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from slipwise.cli.memory_options import BEGIN_WITH_NOTHING
 from slipwise.cli.options import (
     Basis,
     Input,
@@ -64,6 +65,20 @@ def live(
     model: Annotated[
         Path | None, optional("MODEL", "What others get until something valid is learned.", "--model")
     ] = None,
+    memory: Annotated[
+        str | None,
+        optional(
+            "[MODEL.yaml]",
+            "Remember surfaces, and recall them; begin with those of a model file.",
+        ),
+    ] = None,
+    terrain: Annotated[
+        str | None, optional("LABEL", "With --memory: name of the surface at the start.")
+    ] = None,
+    terrain_topic: Annotated[
+        str | None,
+        optional("TOPIC", "With --memory: std_msgs/String with the surface's name, beside ~/terrain."),
+    ] = None,
     cache: Annotated[Path | None, optional("DIR", "Keep here what was learned.")] = None,
     output: Annotated[
         Path | None, optional("MODEL.yaml", "Write the model here at the end.", "-o", "--output")
@@ -96,30 +111,41 @@ def live(
       slipwise live --pose-topic /rtk/odom --cache ~/.slipwise --vehicle husky-1
       slipwise live --transport cyclonedds --web --apply auto --settings live.toml
       slipwise live --replay drive.mcap --rate 10 --web
+      slipwise live --memory monday.yaml --terrain-topic /terrain/label -o tuesday.yaml
       slipwise live --demo --web
       robot-log | slipwise live --transport stdin --results -
     """  # noqa: D301
-    from slipwise.calibration.sloping_ground import for_the_ground_of
-    from slipwise.cli.live_parts import Source, live_settings, model_of_replay, open_robot, watchers_for
+    from slipwise.cli.live_parts import (
+        Source,
+        for_the_ground,
+        live_settings,
+        model_of_replay,
+        open_robot,
+        watchers_for,
+        with_memory,
+    )
     from slipwise.cli.writable import refuse_unwritable
     from slipwise.live.build import build_node
 
     given = {
         "transport": transport, "name": name, "vehicle": vehicle, "domain": domain, "address": address,
         "network": network or None, "override_topic": override_topic, "model": model and str(model),
+        "memory": memory and (memory == BEGIN_WITH_NOTHING or memory), "terrain": terrain,
+        "terrain_topic": terrain_topic,
         "cache": cache and str(cache), "input": input_name and input_name.value, "apply": apply,
     }  # fmt: skip
     chosen = live_settings(chosen_settings(settings, basis), given)
+    chosen = with_memory(chosen, chosen=bool(settings or basis))
+    begun = Path(chosen.live.memory) if isinstance(chosen.live.memory, str) else None
     to_file = None if results is None or str(results) == "-" else results
-    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, *log_options.files))
+    refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, begun, *log_options.files))
     shown = Shown(quiet or (results is not None and str(results) == "-"), web, foxglove, host, record)
     with stopped_by_signals() as stopping:
         source = Source(replay, demo, seed, rate, results)
         robot = open_robot(chosen, log_options, source, say=shown.say)
         if robot.positions:
             chosen = live_settings(chosen, {"positions": True})
-        if robot.log is not None:
-            chosen = for_the_ground_of(robot.log, chosen)
+        chosen = for_the_ground(chosen, robot.log)
         watchers = watchers_for(shown, chosen.live)
         built = build_node(robot.transport, robot.input_name, chosen, watchers=watchers, run=robot.run)
         stopping.node = built.node

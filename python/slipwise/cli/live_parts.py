@@ -81,6 +81,41 @@ def live_settings(settings: Settings, given: Mapping[str, Any]) -> Settings:
     return settings.model_copy(update={"live": table})
 
 
+def with_memory(settings: Settings, *, chosen: bool) -> Settings:
+    """Return the settings with which a memory of surfaces goes on.
+
+    Where `chosen` says that nobody chose settings, they are those of the model that is begun with. A start
+    model that remembers surfaces is begun with, too.
+
+    Raises:
+        ModelError: the model cannot be read.
+        SettingsError: there are labels, but no memory.
+    """
+    from slipwise.calibration.calibrate_sequence import settings_of
+    from slipwise.cli.memory_options import refuse_labels
+    from slipwise.models import load_model
+
+    table = settings.live
+    if not table.memory:
+        refuse_labels([label for label in (table.terrain, table.terrain_topic) if label])
+        return settings
+    if table.memory is True and table.model is not None and load_model(table.model).content.surfaces:
+        table = table.model_copy(update={"memory": table.model})
+    if isinstance(table.memory, str) and not chosen:
+        settings = settings_of(load_model(table.memory))
+    return settings.model_copy(update={"live": table})
+
+
+def for_the_ground(settings: Settings, log: Log | None) -> Settings:
+    """Return the settings with terms of gravity where a log with an attitude is replayed.
+
+    What is begun with keeps its terms: nothing is remembered of others.
+    """
+    from slipwise.calibration.sloping_ground import for_the_ground_of
+
+    return settings if log is None or settings.live.memory_begins else for_the_ground_of(log, settings)
+
+
 def open_robot(
     settings: Settings,
     options: LogOptions,
@@ -121,12 +156,14 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
     log = open_log(replay, options=options)
     input_name = table.input or choose_input(log)
-    return Robot(Replay(log, input_name, rate=rate), input_name, None, log, has_course(log.runs))
+    return Robot(
+        Replay(log, input_name, rate=rate, label=table.terrain), input_name, None, log, has_course(log.runs)
+    )
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
     from slipwise.live.ros_roles import find_roles, only_positions
-    from slipwise.live.ros_transport import RosTransport
+    from slipwise.live.ros_transport import RosTransport, ToldTopics
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
@@ -142,7 +179,8 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         say(f"learning from {input_name}s; the node is /{table.name}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are courses of the path")
-        transport = RosTransport(wire, roles, options, name=table.name, override_topic=table.override_topic)
+        told = ToldTopics(table.override_topic, table.terrain_topic)
+        transport = RosTransport(wire, roles, options, name=table.name, told=told)
     except BaseException:
         wire.close()
         raise

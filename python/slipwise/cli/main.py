@@ -22,6 +22,7 @@ from slipwise.cli.fleet import fleet
 from slipwise.cli.inspect import inspect
 from slipwise.cli.lattice import lattice
 from slipwise.cli.live import live
+from slipwise.cli.memory_options import BEGIN_WITH_NOTHING, MODEL_ENDINGS
 from slipwise.cli.plan import plan
 from slipwise.cli.reproduce import reproduce
 from slipwise.cli.score import score
@@ -114,12 +115,15 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def with_ports(arguments: list[str]) -> list[str]:
-    """The same with a port after each option of a server that has none."""
+    """The same with what options stand for that come without a value: ports, and a live memory's model."""
     result = []
+    live = arguments[:1] == ["live"]  # elsewhere --memory takes no value
     for argument, after in zip(arguments, [*arguments[1:], ""], strict=True):
         result.append(argument)
         if argument in PORTS and not after.isdigit():
             result.append(PORTS[argument])
+        if live and argument == "--memory" and not after.lower().endswith(MODEL_ENDINGS):
+            result.append(BEGIN_WITH_NOTHING)
     return result
 
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from slipwise.calibration.learned_sequence import SequenceOptions
 
 MODEL_ENDINGS = (".yaml", ".yml")
+BEGIN_WITH_NOTHING = "nothing"  # what `slipwise live --memory` stands for without a model file
 
 
 def split_model(paths: Sequence[Path]) -> tuple[list[Path], list[Path]]:

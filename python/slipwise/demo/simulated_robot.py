@@ -75,6 +75,11 @@ class SimulatedRobot:
         """Whether the course is driven."""
         return self._done.is_set()
 
+    @property
+    def wheels(self) -> bool:
+        """They come beside commands."""
+        return True
+
     def close(self) -> None:
         """Stop where it is."""
         self._stopped.set()

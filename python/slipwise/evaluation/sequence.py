@@ -11,6 +11,7 @@ import numpy as np
 from slipwise.calibration.learned_sequence import LearnedSequence, SequenceOptions, learn_sequence
 from slipwise.calibration.prepared_run import choose_input, prepare_run
 from slipwise.calibration.settings import AVERAGE, Settings
+from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError, SettingsError
 from slipwise.evaluation.evaluate import EvaluationOptions, Report, evaluate
 from slipwise.evaluation.methods import method_info
@@ -100,9 +101,10 @@ def evaluate_sequence(
     input_name = input or (memory.start.content.input if memory.start else choose_input(logs[0][1]))
     drives = [prepare_run(log, input_name) for _, log in logs]
     horizons = sorted(set(options.horizons))
+    remembering = settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE})
     learned = learn_sequence(
         drives,
-        settings.model_copy(update={"basis": REMEMBERING, "estimator": AVERAGE}),
+        remembering if memory.start else for_the_ground_of(logs[0][1], remembering),
         horizons,
         options=memory,
         progress=None if progress is None else lambda done: progress("memory", done),

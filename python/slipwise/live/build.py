@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from slipwise.calibration import Settings
-from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import SettingsError
 from slipwise.live.applied import AppliedModel
@@ -20,7 +19,9 @@ from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
 from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
+from slipwise.live.samples import DriveStart
 from slipwise.live.status import Identity
+from slipwise.live.surface_watch import today
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
 from slipwise.models import Model, load_model
@@ -54,11 +55,12 @@ def build_node(
 
     Raises:
         SettingsError: settings contradict themselves.
-        ModelError: the start model cannot be read.
+        ModelError: the start model cannot be read, or remembers no surfaces where these are to be known.
         OutputError: a cache that cannot be read cannot be set aside either.
     """
     table, said = settings.live, Said()
-    start = _start_model(table, input_name)
+    start = _start_model(table.model, input_name)
+    before = _start_model(table.memory if isinstance(table.memory, str) else None, input_name)
     cache, learner, valid = None, None, None
     if table.cache is not None:
         cache = Cache(Path(table.cache), CacheKey.of(table.vehicle, input_name, settings))
@@ -66,13 +68,13 @@ def build_node(
         learner, valid = found.learner, found.valid
         if found.said:
             said.note(math.nan, found.said)
-    learner = learner or MotionLearner(input_name, settings, positions=table.positions)
-    learning = Learning(learner, start, valid, said)
+    learner = learner or _new_learner(input_name, settings, before, wheels=transport.wheels)
+    learning = Learning(learner, start or before, valid, said)
     rules = rules_for(start, reverse=table.gates.reverse, stale_after=table.gates.stale_after)
     gates = Gates(rules, input_name=input_name)
     intake = Intake(learner, gates, said, input_name=input_name)
     if run is not None:
-        intake.start_run(run)
+        intake.start_drive(run, DriveStart(table.terrain or "", today()))
     applying = table.apply.mode != "off"
     parts = NodeParts(
         who=Identity(table.vehicle, input_name, table.apply.mode),
@@ -90,14 +92,23 @@ def build_node(
     return Built(LiveNode(parts), learning, said)
 
 
-def _start_model(table: LiveTable, input_name: str) -> Model | None:
-    if table.model is None:
+def _new_learner(input_name: str, settings: Settings, before: Model | None, *, wheels: bool) -> MotionLearner:
+    """A learner that knows nothing, or a robot and its surfaces."""
+    live = settings.live
+    learner = MotionLearner(input_name, settings, remember=bool(live.memory), positions=live.positions)
+    if before is not None:
+        learner.begin_with(before, wheels=wheels)
+    return learner
+
+
+def _start_model(path: str | None, input_name: str) -> Model | None:
+    if path is None:
         return None
-    model = load_model(table.model)
+    model = load_model(path)
     if model.content.input != input_name:
         raise SettingsError(
             f"the start model was learned from {model.content.input}s, this node learns from {input_name}s",
-            where=table.model,
+            where=path,
             advice=f"use --input {model.content.input}",
         )
     return model

@@ -36,6 +36,7 @@ class CacheKey:
     def of(cls, vehicle: str, input_name: str, settings: Settings) -> CacheKey:
         """Return the key of a vehicle that learns from an input with settings."""
         text = json.dumps(settings.model_dump(mode="json", exclude={"log"}), sort_keys=True)
+        text += "with a memory of surfaces" if settings.live.memory else ""
         digest = sha256(text.encode()).hexdigest()[:16]
         return cls(vehicle, input_name, settings.basis, SCHEMA_VERSION, digest)
 

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass
 from enum import IntEnum
 
-from slipwise.live.outputs import Note, ParameterNow, Status
+from slipwise.live.outputs import Note, ParameterNow, Status, SurfaceNow
 
 
 class Level(IntEnum):
@@ -55,7 +55,30 @@ def diagnostics_of(status: Status, name: str) -> tuple[Diagnostic, ...]:
             _parameters_sentence(status.parameters),
             tuple(pair for parameter in status.parameters for pair in _parameter_values(parameter)),
         ),
+        *([] if status.surface is None else [_surface(status.surface, name)]),
     )
+
+
+def _surface(now: SurfaceNow, name: str) -> Diagnostic:
+    """The surface that is driven on; that it is open is no fault."""
+    judged, right = now.labels
+    values = [
+        (f"probability of {surface_name(each)}", _number(value)) for each, value in now.probabilities
+    ] + [
+        (f"remembered: {each.name}", f"{each.seconds / 60.0:.1f} min, {each.visits} visits, {each.last_seen}")
+        for each in now.remembered
+    ]
+    return Diagnostic(
+        Level.OK,
+        f"{name}: surface",
+        f"{surface_name(now.name)} ({now.probability:.2f})",
+        (*values, ("labels right", f"{right:g} of {judged:g}")),
+    )
+
+
+def surface_name(name: str) -> str:
+    """Return how a surface is called in words: it gets a name when it is left."""
+    return name or "a new surface"
 
 
 def note_diagnostic(note: Note, name: str) -> Diagnostic:

@@ -40,6 +40,11 @@ class Feed:
         """Whether all samples were delivered."""
         return self._done.is_set()
 
+    @property
+    def wheels(self) -> bool:
+        """Nobody said so."""
+        return False
+
     def close(self) -> None:
         """Stop where it is."""
         self._stopped.set()

@@ -8,7 +8,8 @@ from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
 from slipwise.live.gates import Gates
 from slipwise.live.said import Said
-from slipwise.live.samples import Command, Gyro, Pose, Twist, Wheels
+from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, Twist, Wheels
+from slipwise.live.surface_watch import SurfaceWatch
 
 
 class Intake:
@@ -18,6 +19,7 @@ class Intake:
         self._learner, self._gates, self._said = learner, gates, said
         self._input = Command if input_name == "command" else Wheels
         self._clock = ClockWatch()
+        self.surfaces = SurfaceWatch(learner, said)
         self._frames: dict[str, int] = {}
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
@@ -30,8 +32,17 @@ class Intake:
 
     def start_run(self, name: str) -> None:
         """Begin a recording: nothing is joined across runs."""
-        self._clock.restart()
-        self._begin(name)
+        self._restart()
+        self.surfaces.start_run(name)
+
+    def start_drive(self, name: str, drive: DriveStart) -> None:
+        """Begin a recording after a while or elsewhere: any surface may be under the robot."""
+        self._restart()
+        self.surfaces.start_drive(name, drive)
+
+    def take_cue(self, cue: SurfaceCue) -> None:
+        """Take what somebody says of the ground: it holds from now on."""
+        self.surfaces.take(cue, self.newest)
 
     def take(self, sample: Stamped) -> None:
         """Take one sample in the order in which it came."""
@@ -46,7 +57,8 @@ class Intake:
                 f"the clock was set back by {before - self._clock.newest:.1f} s: a new run begins",
             )
             self._said.count("the clock was set back")
-            self._begin(f"after the clock was set at {self._clock.newest:.3f} s")
+            self._gates.restart()
+            self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")
         for each in taken:
             self._gates.take(each)
             self._push(each)
@@ -59,9 +71,9 @@ class Intake:
                 self._said.count(event.reason)
         return events
 
-    def _begin(self, name: str) -> None:
+    def _restart(self) -> None:
+        self._clock.restart()
         self._gates.restart()
-        self._learner.start_run(name)
 
     def _push(self, sample: Stamped) -> None:
         learner = self._learner

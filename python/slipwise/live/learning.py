@@ -41,15 +41,18 @@ class Learning:
         self._judged = -math.inf  # s
         self._changed = -math.inf  # s
 
-    def take(self, events: list[Event]) -> None:
-        """Take what the learner had to say."""
+    def take(self, events: list[Event]) -> bool:
+        """Take what the learner had to say; return whether something was learned."""
+        learned = False
         for event in events:
             if event.kind == "segment-learned":
+                learned = True
                 self._new, self.nis, self.segments = True, event.nis, self.segments + 1
             elif event.kind == "terrain-change":
                 self._changed = event.t
                 self.validity.terrain_changed()
                 self._said.note(event.t, "the terrain changed: slip is learned faster for a while")
+        return learned
 
     def judge(self, t: float) -> bool:
         """Judge what is known where it is time to, at a stamp [s]; return whether it was."""

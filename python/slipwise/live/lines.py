@@ -9,8 +9,17 @@ import math
 from collections.abc import Mapping
 
 from slipwise.errors import LogError
-from slipwise.live.outputs import AppliedParameters, ModelText, Odometry, Output, Path, Status
-from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, Wheels
+from slipwise.live.outputs import (
+    AppliedParameters,
+    ModelText,
+    Odometry,
+    Output,
+    Path,
+    Status,
+    SurfaceNow,
+    surface_content,
+)
+from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, SurfaceCue, Wheels
 
 MOST_CHARACTERS = 10_000  # of a line
 
@@ -23,7 +32,8 @@ class LineReader:
     """Turns lines into samples. Columns are those of a tidy log; an empty cell, or none, is no measurement.
 
     One line may hold a command, wheel speeds and a pose of one stamp. A JSON line may ask, too:
-    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}.
+    {"apply": true} or {"predict": {"horizon": 2, "commands": [[t, v, omega], ...]}}; and
+    it may say what the ground is: {"terrain": "sand"}, or {"terrain_changed": true}.
     """
 
     def __init__(self) -> None:
@@ -73,7 +83,7 @@ def samples_of_row(row: Mapping[str, object]) -> list[Sample]:
     if "t" not in row:
         raise LogError("there is no t, the stamp in seconds")
     t = _number(row, "t")
-    found: list[Sample] = []
+    found: list[Sample] = _labels(row)
     if "override" in row:
         found.append(Override(t, bool(_number(row, "override"))))
     if all(name in row for name in _COMMAND):
@@ -85,6 +95,12 @@ def samples_of_row(row: Mapping[str, object]) -> list[Sample]:
     if all(name in row for name in _POSE):
         found.append(_pose_of(t, row))
     return found
+
+
+def _labels(row: Mapping[str, object]) -> list[Sample]:
+    """What the line says of the ground, before what it measures: as a log's column `terrain` is read."""
+    label = str(row.get("terrain", "")).strip()
+    return [SurfaceCue(label)] if label else []
 
 
 def _pose_of(t: float, row: Mapping[str, object]) -> Pose:
@@ -110,6 +126,10 @@ def _of_json(text: str) -> list[Sample]:
         raise LogError("not a JSON object")
     if "predict" in content:
         return [Request("predict", json.dumps(content["predict"]))]
+    if content.get("terrain_changed") is True:
+        return [SurfaceCue()]
+    if "terrain" in content and "t" not in content:
+        return _labels(content)
     if content.get("apply") is True:
         return [Request("apply")]
     if "run" in content and "t" not in content:
@@ -164,6 +184,8 @@ def _content(output: Output) -> dict[str, object]:
             },
             "counts": output.counts,
         }
+    if isinstance(output, SurfaceNow):
+        return surface_content(output) | {"t": output.t}
     if isinstance(output, ModelText):
         return {"model": output.text, "t": output.t}
     if isinstance(output, AppliedParameters):

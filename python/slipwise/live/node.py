@@ -23,7 +23,7 @@ from slipwise.live.learning import Learning
 from slipwise.live.odometry import odometry_of, path_ahead
 from slipwise.live.outputs import ModelText, Odometry, Output, ParameterNow, Path
 from slipwise.live.said import Said
-from slipwise.live.samples import Override, Pose, Request, RunStart, Sample
+from slipwise.live.samples import Override, Pose, Request, RunStart, Sample, SurfaceCue
 from slipwise.live.status import DrivenPath, Identity, Now, parameters_now, status_of
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
@@ -112,14 +112,21 @@ class LiveNode:
         if isinstance(sample, Request):
             self._answer(sample)
             return
+        if isinstance(sample, SurfaceCue):
+            parts.intake.take_cue(sample)
+            return
         if isinstance(sample, RunStart):
-            parts.intake.start_run(sample.name)
+            if sample.drive is None:
+                parts.intake.start_run(sample.name)
+            else:
+                parts.intake.start_drive(sample.name, sample.drive)
             return
         parts.intake.take(sample)
         t = parts.intake.newest
         if isinstance(sample, Pose):
             self._driven.take(sample.x, sample.y, sample.yaw)
-            parts.learning.take(parts.intake.events())
+            if parts.learning.take(parts.intake.events()):
+                self._publish_surface(t)
             if parts.learning.judge(t):
                 self._publish_model(t)
                 self._parameters = parameters_now(parts.learning, parts.applied)
@@ -147,6 +154,11 @@ class LiveNode:
             parts.said.ends(t, "stuck", "the robot moves again")
         self._stuck = monitor.stuck
 
+    def _publish_surface(self, t: float) -> None:
+        surface = self._parts.intake.surfaces.learned(t)
+        if surface is not None:
+            self._publish(surface)
+
     def _publish_model(self, t: float) -> None:
         """Others get the newest valid model, the last valid one, or the start, whenever it is another."""
         parts = self._parts
@@ -159,6 +171,7 @@ class LiveNode:
         if model is None or (model, which) == self._given:
             return
         self._given = (model, which)
+        parts.intake.surfaces.look_again()
         text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
         self._publish(ModelText(t, text))
 
@@ -226,7 +239,8 @@ class LiveNode:
         predicted = self._present_path()
         if predicted is not None:
             self._publish(predicted)
-        now = Now(self._odometry, predicted, self._stuck, parts.gates.waits(parts.intake.newest))
+        waits, surface = parts.gates.waits(parts.intake.newest), parts.intake.surfaces.now
+        now = Now(self._odometry, predicted, self._stuck, waits, surface)
         shown = (parts.learning, parts.intake, parts.said)
         self._publish(status_of(parts.who, shown, self._parameters, self._driven, now))
 

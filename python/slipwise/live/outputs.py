@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+from slipwise.calibration.learned_sequence import SurfaceSummary
 
 Floats = NDArray[np.float64]
 Validity = Literal["unestimated", "estimated", "invalid"]
@@ -52,6 +54,18 @@ class ParameterNow:
     applied: float | None = None  # what others were given; None: nothing
 
 
+@dataclass(frozen=True)
+class SurfaceNow:
+    """The surface that is driven on, `~/surface`, and what is remembered, `~/surface_json` (both latched)."""
+
+    t: float  # s
+    name: str  # the likeliest; empty: one that has no name yet
+    probability: float  # of it
+    probabilities: tuple[tuple[str, float], ...]  # of all that it may be, the likeliest first
+    remembered: tuple[SurfaceSummary, ...]
+    labels: tuple[float, float]  # that were judged by what was driven, and that were right
+
+
 @dataclass(frozen=True, eq=False)
 class Status:
     """The state of the node, `~/diagnostics`: a new one several times a second."""
@@ -75,6 +89,7 @@ class Status:
     log: tuple[tuple[float, str], ...]  # the last things said: stamp [s], text
     apply: str  # "off", "manual" or "auto"
     given: str = ""  # which model others have, such as "valid" or "the start model; ..."
+    surface: SurfaceNow | None = None  # where surfaces are remembered
 
 
 @dataclass(frozen=True)
@@ -103,4 +118,16 @@ class AppliedParameters:
     values: dict[str, Any]  # by the parameter's full name
 
 
-Output = Odometry | Path | Status | ModelText | Note | AppliedParameters
+Output = Odometry | Path | Status | SurfaceNow | ModelText | Note | AppliedParameters
+
+
+def surface_content(now: SurfaceNow) -> dict[str, Any]:
+    """Return the surface and what is remembered as JSON has it; the name "" is of one that has none yet."""
+    judged, right = now.labels
+    return {
+        "surface": now.name,
+        "probability": round(now.probability, 4),
+        "probabilities": {name: round(value, 4) for name, value in now.probabilities},
+        "remembered": [asdict(each) for each in now.remembered],
+        "labels": {"all": judged, "right": right},
+    }

@@ -51,6 +51,11 @@ class Pipe:
         """Whether the stream is at its end."""
         return self._done.is_set()
 
+    @property
+    def wheels(self) -> bool:
+        """Nobody knows before a line says so."""
+        return False
+
     def close(self) -> None:
         """Take no more lines; the thread ends with the stream, or with the process."""
         self._stopped.set()

@@ -5,12 +5,24 @@ from __future__ import annotations
 
 import heapq
 import time
-from collections.abc import Iterator
+from collections import deque
+from collections.abc import Iterator, Sequence
 
-from slipwise.calibration.prepared_run import PreparedRun, prepare_run
+from slipwise.calibration.learned_log import Cue
+from slipwise.calibration.prepared_run import PreparedRun, has_wheels, prepare_run
+from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.errors import SettingsError
 from slipwise.live.feed import Feed
-from slipwise.live.samples import Command, Gyro, Pose, RunStart, Sample, Wheels
+from slipwise.live.samples import (
+    Command,
+    DriveStart,
+    Gyro,
+    Pose,
+    RunStart,
+    Sample,
+    SurfaceCue,
+    Wheels,
+)
 from slipwise.logs import Log
 from slipwise.logs.gyro import gyro_rows
 from slipwise.segments import recording_rows
@@ -25,26 +37,50 @@ class Replay(Feed):
         log: what `open_log` returned.
         input_name: "command" or "wheel".
         rate: times real time; 0 for as fast as it goes.
+        label: name of the surface; without it those of the column `terrain`.
 
     Raises:
         LogError: no run has such inputs and poses.
         SettingsError: the rate is negative.
     """
 
-    def __init__(self, log: Log, input_name: str, *, rate: float = 1.0) -> None:
+    def __init__(self, log: Log, input_name: str, *, rate: float = 1.0, label: str | None = None) -> None:
         if not rate >= AS_FAST_AS_IT_GOES:
             raise SettingsError(f"the rate is {rate:g}", where="--rate", advice="such as 10, or 0: no waits")
-        super().__init__(self._paced(prepare_run(log, input_name), rate))
+        drive = prepare_run(log, input_name)
+        super().__init__(self._paced(drive, rate, label))
+        self._wheels = has_wheels(drive)
 
-    def _paced(self, drive: tuple[PreparedRun, ...], rate: float) -> Iterator[Sample]:
-        for run in drive:
-            yield RunStart(run.run.name)
+    @property
+    def wheels(self) -> bool:
+        """Whether some run has them."""
+        return self._wheels
+
+    def _paced(self, drive: tuple[PreparedRun, ...], rate: float, label: str | None) -> Iterator[Sample]:
+        for place, run in enumerate(drive):
+            cues = labels_of(run.run) if label is None else ()
+            begins = DriveStart(label or label_at_start(cues, run.run), date_of(drive))
+            yield RunStart(run.run.name, begins if place == 0 else None)
             begin = time.monotonic()
-            for sample in samples_of(run):
+            for sample in with_labels(samples_of(run), cues):
+                if isinstance(sample, SurfaceCue):
+                    yield sample
+                    continue
                 if rate > 0.0:
                     due = begin + (sample.t - run.run.span[0]) / rate
                     self._stopped.wait(max(0.0, due - time.monotonic()))
                 yield sample
+
+
+def with_labels(
+    samples: Iterator[Command | Wheels | Pose | Gyro], cues: Sequence[Cue]
+) -> Iterator[Command | Wheels | Pose | Gyro | SurfaceCue]:
+    """Yield the samples, with each label before the first one that is not older."""
+    waiting = deque(cues)
+    for sample in samples:
+        while waiting and waiting[0][0] <= sample.t:
+            yield SurfaceCue(waiting.popleft()[1])
+        yield sample
 
 
 def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose | Gyro]:

@@ -12,7 +12,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from slipwise.live.diagnostics import Diagnostic, diagnostics_of, note_diagnostic
-from slipwise.live.outputs import AppliedParameters, Floats, ModelText, Note, Odometry, Output, Path, Status
+from slipwise.live.outputs import (
+    AppliedParameters,
+    Floats,
+    ModelText,
+    Note,
+    Odometry,
+    Output,
+    Path,
+    Status,
+    SurfaceNow,
+    surface_content,
+)
 from slipwise.live.wires.ros_types import ros_types
 
 if TYPE_CHECKING:
@@ -46,6 +57,8 @@ TOPICS: Mapping[str, RosTopic] = {
     "prediction_json": RosTopic(STRING),
     "diagnostics": RosTopic(DIAGNOSTICS),
     "model": RosTopic(STRING, latched=True),
+    "surface": RosTopic(STRING, latched=True),
+    "surface_json": RosTopic(STRING, latched=True),
 }
 
 
@@ -79,6 +92,7 @@ class RosMessages:
         """`name`: of the node, which stands before what diagnostics are about."""
         self.store: Typestore = ros_types()
         self._name = name
+        self._surface_name: str | None = None  # that was said
         types: dict[str, Callable[..., Any]] = dict(self.store.types)
         self._types = types
         self._time, self._header = types["builtin_interfaces/msg/Time"], types["std_msgs/msg/Header"]
@@ -106,6 +120,8 @@ class RosMessages:
                 return self._path(output) if output.asked or heard("predicted_path") else []
             case Status():
                 return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
+            case SurfaceNow():
+                return self._surface(output)
             case ModelText():
                 return [self._string("model", output.t, output.text)]
             case Note():
@@ -159,6 +175,14 @@ class RosMessages:
             for one in diagnostics
         ]
         return self._message("diagnostics", stamp, self._types[DIAGNOSTICS](self._head(stamp, ""), status))
+
+    def _surface(self, now: SurfaceNow) -> list[RosMessage]:
+        """The name where it is another one, and all that is known of it."""
+        whole = self._string("surface_json", now.t, json.dumps(surface_content(now)))
+        if now.name == self._surface_name:
+            return [whole]
+        self._surface_name = now.name
+        return [self._string("surface", now.t, now.name), whole]
 
     def _string(self, topic: str, t: float, text: str) -> RosMessage:
         return self._message(topic, stamp_ns(t), self._types[STRING](_text(text)))

@@ -8,6 +8,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 from slipwise.errors import SlipwiseError
@@ -17,7 +18,7 @@ from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
 from slipwise.live.ros_messages import TOPICS, RosMessages
 from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
-from slipwise.live.samples import Override, Request
+from slipwise.live.samples import Override, Request, SurfaceCue
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
 from slipwise.live.wires.ros_types import ros_types
@@ -34,6 +35,17 @@ ANSWER_WITHIN = 2.0  # s, of a node whose parameters are set
 ToSample = Callable[[Any, float], Any]
 
 
+@dataclass(frozen=True)
+class ToldTopics:
+    """Topics on which others say what they know of the drive."""
+
+    override: str | None = None  # std_msgs/Bool that is true while an operator drives
+    terrain: str | None = None  # std_msgs/String with the name of the surface, beside `~/terrain`
+
+
+_NOTHING_TOLD = ToldTopics()
+
+
 class RosTransport:
     """Reads the topics of the roles, publishes below the node's name, sets parameters of other nodes.
 
@@ -42,7 +54,7 @@ class RosTransport:
         roles: which topic is what.
         options: scales and sizes.
         name: of the node.
-        override_topic: std_msgs/Bool that is true while an operator drives.
+        told: topics on which others say what they know.
     """
 
     def __init__(
@@ -52,10 +64,10 @@ class RosTransport:
         options: LogOptions,
         *,
         name: str,
-        override_topic: str | None = None,
+        told: ToldTopics = _NOTHING_TOLD,
     ) -> None:
         self._wire, self._roles, self._options = wire, roles, options
-        self._name, self._override = name, override_topic
+        self._name, self._override, self._terrain = name, told.override, told.terrain
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._stamps = Stamps()
@@ -84,6 +96,10 @@ class RosTransport:
         if self._override is not None:
             self._take(self._override, BOOL, lambda message, t: Override(t, bool(message.data)), on_sample)
         self._take(self._full("apply"), EMPTY, lambda _message, _t: Request("apply"), on_sample)
+        for topic in filter(None, (self._full("terrain"), self._terrain)):
+            self._take(topic, STRING, lambda message, _: SurfaceCue(message.data or " "), on_sample)
+        changed = self._full("terrain_changed")
+        self._take(changed, EMPTY, lambda _message, _t: SurfaceCue(), on_sample)
         asked = self._full("predict")
         self._take(asked, STRING, lambda message, _: Request("predict", message.data), on_sample)
         self._caller.start()
@@ -93,6 +109,8 @@ class RosTransport:
 
         What is latched, notes and answers are published all the same: they come once.
         """
+        if self._closed:  # the last words of the node are for those that watch it
+            return
         if isinstance(output, AppliedParameters):
             self._calls.put(output)
             return
@@ -124,6 +142,11 @@ class RosTransport:
     def finished(self) -> bool:
         """Never: a robot may go on."""
         return False
+
+    @property
+    def wheels(self) -> bool:
+        """Whether there is a topic with them."""
+        return self._roles.wheel is not None
 
     def close(self) -> None:
         """Leave the graph."""

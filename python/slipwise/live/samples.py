@@ -72,10 +72,26 @@ class Request:
 
 
 @dataclass(frozen=True, slots=True)
+class SurfaceCue:
+    """What somebody says of the ground, when it comes: its name, or that it changes now."""
+
+    label: str = ""  # empty: it changes, to what is not known
+
+
+@dataclass(frozen=True, slots=True)
+class DriveStart:
+    """What is known of a drive that begins after a while or elsewhere."""
+
+    label: str = ""  # name of the surface, where somebody thinks to know it
+    date: str = ""  # ISO, for the table of surfaces
+
+
+@dataclass(frozen=True, slots=True)
 class RunStart:
     """Another recording begins: nothing is joined with what was before."""
 
     name: str
+    drive: DriveStart | None = None  # a drive begins with it; None: the surface is still the one of before
 
 
-Sample = Command | Wheels | Pose | Gyro | Override | Request | RunStart
+Sample = Command | Wheels | Pose | Gyro | Override | Request | SurfaceCue | RunStart

@@ -11,7 +11,7 @@ import numpy as np
 from slipwise.live.applied import AppliedModel, physical
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
-from slipwise.live.outputs import Odometry, ParameterNow, Path, Status
+from slipwise.live.outputs import Odometry, ParameterNow, Path, Status, SurfaceNow
 from slipwise.live.said import Said
 from slipwise.models.parameter_table import physical_name
 
@@ -58,6 +58,7 @@ class Now:
     predicted: Path | None
     stuck: bool
     waits: str  # what is missing for learning
+    surface: SurfaceNow | None = None
 
 
 def status_of(
@@ -98,6 +99,7 @@ def status_of(
         log=said.log(),
         apply=who.apply,
         given=learning.given()[1],
+        surface=now.surface,
     )
 
 

@@ -32,5 +32,9 @@ class Transport(Protocol):
     def finished(self) -> bool:
         """Whether nothing more will come, as at the end of a file."""
 
+    @property
+    def wheels(self) -> bool:
+        """Whether wheel speeds are known to come, beside commands if there are some."""
+
     def close(self) -> None:
         """Stop; may be called twice."""

@@ -70,6 +70,11 @@ class Udp:
         """Never: somebody may send again."""
         return False
 
+    @property
+    def wheels(self) -> bool:
+        """Nobody knows before a packet says so."""
+        return False
+
     def close(self) -> None:
         """Stop listening."""
         self._stopped.set()

@@ -11,6 +11,7 @@ import numpy as np
 from sample_logs import Drive, simulated_run
 
 from slipwise import MotionLearner, Settings, _core
+from slipwise.calibration.learned_sequence import SurfaceSummary
 from slipwise.calibration.learner_answers import PredictedPath
 from slipwise.errors import SettingsError
 from slipwise.live.outputs import (
@@ -22,6 +23,7 @@ from slipwise.live.outputs import (
     ParameterNow,
     Path,
     Status,
+    SurfaceNow,
     Validity,
 )
 from slipwise.logs import Run
@@ -82,6 +84,14 @@ def waiting_status(**changes: object) -> Status:
     return replace(status, **changes)  # type: ignore[arg-type]
 
 
+def surface_at(t: float = 3.0, name: str = "sand", probability: float = 0.9) -> SurfaceNow:
+    """Return a surface that is likely, beside one that has no name yet."""
+    hall = SurfaceSummary("hall", 600.0, 300, 2, "2026-01-02", 1.0, 0.5)
+    return SurfaceNow(
+        t, name, probability, ((name, probability), ("", 1.0 - probability)), (hall,), (3.0, 2.0)
+    )
+
+
 @functools.cache
 def driven_outputs(seconds: float = 40.0) -> tuple[Output, ...]:
     """Return what a node says of a drive with slip, lag and delay: a status a second, odometry at 10 Hz."""
@@ -131,6 +141,7 @@ def _driven(run: Run) -> Iterator[Output]:
                 log=tuple(log),
                 counts={"standstill": i // 200, "pose jumps": i // 500, "late input": i // 300},
             )
+    yield surface_at()
     yield ModelText(float(c.t[-1]), "schema: 1\n")
 
 

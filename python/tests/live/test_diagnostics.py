@@ -7,7 +7,7 @@ import math
 from typing import Any
 
 import pytest
-from live.sample_outputs import driven_status, waiting_status
+from live.sample_outputs import driven_status, surface_at, waiting_status
 
 from slipwise.live.diagnostics import Level, diagnostics_of, note_diagnostic
 from slipwise.live.outputs import Note, ParameterNow
@@ -70,3 +70,13 @@ def test_it_is_said_which_model_others_have() -> None:
 def test_a_note_is_a_line_of_its_own() -> None:
     one = note_diagnostic(Note(1.0, "nothing comes on /odom"), "husky")
     assert (one.level, one.name, one.message) == (Level.OK, "husky: note", "nothing comes on /odom")
+
+
+def test_the_surface_has_a_line_of_its_own_where_surfaces_are_remembered() -> None:
+    *_, line = diagnostics_of(waiting_status(surface=surface_at()), "slipwise")
+    assert (line.name, line.level, line.message) == ("slipwise: surface", Level.OK, "sand (0.90)")
+    values = dict(line.values)
+    assert values["probability of sand"] == "0.9"
+    assert float(values["probability of a new surface"]) == pytest.approx(0.1)
+    assert values["remembered: hall"] == "10.0 min, 2 visits, 2026-01-02"
+    assert values["labels right"] == "2 of 3"

@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from live.sample_outputs import surface_at
 
 from slipwise.errors import LogError
 from slipwise.live.lines import LineReader, line_of
 from slipwise.live.outputs import AppliedParameters, ModelText, Note, Odometry, Path
-from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Wheels
+from slipwise.live.samples import Command, Override, Pose, Request, RunStart, SurfaceCue, Wheels
 
 
 def test_a_csv_line_holds_what_its_filled_cells_say() -> None:
@@ -83,3 +84,17 @@ def test_results_are_json_without_what_json_cannot_say() -> None:
     assert contents[3] == {"note": "said", "t": None}
     told = json.loads(line_of(AppliedParameters(1.0, "mppi", "/controller_server", {"vx_max": 0.4})))
     assert told["set"] == {"vx_max": 0.4}
+
+
+def test_a_line_may_name_the_ground_or_say_that_it_changes() -> None:
+    reader = LineReader()
+    assert reader.read('{"terrain": "sand"}') == [SurfaceCue("sand")]
+    assert reader.read('{"terrain_changed": true}') == [SurfaceCue()]
+    reader.read("t,odo_v,odo_omega,terrain")
+    assert reader.read("1.0,0.5,0.1,sand") == [SurfaceCue("sand"), Wheels(1.0, 0.5, 0.1)]
+    assert reader.read("1.1,0.5,0.1,") == [Wheels(1.1, 0.5, 0.1)]
+
+
+def test_the_surface_is_a_line_with_its_probability() -> None:
+    content = json.loads(line_of(surface_at()))
+    assert (content["surface"], content["probability"], content["t"]) == ("sand", 0.9, 3.0)

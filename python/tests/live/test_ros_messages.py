@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_outputs, odometry_at, straight_path, waiting_status
+from live.sample_outputs import driven_outputs, odometry_at, straight_path, surface_at, waiting_status
 
 from slipwise.live.outputs import ModelText, Note, Output
 from slipwise.live.ros_messages import TOPICS, RosMessage, RosMessages, stamp_ns
@@ -82,11 +82,26 @@ def test_json_has_null_for_what_is_not_finite(messages: RosMessages) -> None:
     assert answer["covariance"][2][0][0] == pytest.approx(2e-3)
 
 
-def test_only_the_model_is_kept_for_who_comes_late(messages: RosMessages) -> None:
-    assert {name for name, topic in TOPICS.items() if topic.latched} == {"model"}
+def test_the_model_and_the_surface_are_kept_for_who_comes_late(messages: RosMessages) -> None:
+    assert {name for name, topic in TOPICS.items() if topic.latched} == {"model", "surface", "surface_json"}
     (message,) = messages.of(ModelText(1.0, "schema: 4\nname: Ä\n"))
     assert message.latched
     assert _read(messages, message).data == "schema: 4\nname: Ä\n"
+
+
+def test_the_name_of_a_surface_is_sent_where_it_is_another_and_the_rest_each_time() -> None:
+    messages = RosMessages()
+    sent = [messages.of(surface_at(name=name)) for name in ("sand", "sand", "")]
+    assert [[message.topic for message in each] for each in sent] == [
+        ["surface", "surface_json"],
+        ["surface_json"],
+        ["surface", "surface_json"],
+    ]
+    assert [_read(messages, each[0]).data for each in (sent[0], sent[2])] == ["sand", ""]
+    content = json.loads(_read(messages, sent[0][1]).data)
+    assert (content["surface"], content["probabilities"]) == ("sand", {"sand": 0.9, "": 0.1})
+    assert content["remembered"][0]["name"] == "hall"
+    assert content["labels"] == {"all": 3.0, "right": 2.0}
 
 
 def test_every_output_of_a_drive_is_read_back_to_the_same_bytes(messages: RosMessages) -> None:

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from live.sample_outputs import odometry_at, straight_path, waiting_status
+from live.sample_outputs import odometry_at, straight_path, surface_at, waiting_status
 
 from slipwise.live.outputs import ModelText, Note
 from slipwise.live.ros_samples import to_pose, to_wheels
-from slipwise.live.ros_transport import RosTransport
-from slipwise.live.samples import Pose, Sample, Wheels
+from slipwise.live.ros_transport import RosTransport, ToldTopics
+from slipwise.live.samples import Pose, Sample, SurfaceCue, Wheels
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import WireTopic
 from slipwise.logs.messages import ODOMETRY
@@ -41,7 +41,7 @@ class Wire:
         self.takers[topic] = on_message
 
     def publish(self, topic: str, _type_name: str, payload: bytes, *, latched: bool = False) -> None:
-        assert latched == (topic == "/slipwise/model")
+        assert latched == (topic.removeprefix("/slipwise/") in ("model", "surface", "surface_json"))
         assert payload
         self.published.append(topic.removeprefix("/slipwise/"))
 
@@ -62,9 +62,9 @@ class Wire:
         pass
 
 
-def transport_on(wire: Wire) -> RosTransport:
+def transport_on(wire: Wire, terrain: str | None = None) -> RosTransport:
     roles = Roles(command=None, wheel=CHOSEN, pose=CHOSEN, imu=None, guessed=(), advice={})
-    return RosTransport(wire, roles, LogOptions(), name="slipwise")
+    return RosTransport(wire, roles, LogOptions(), name="slipwise", told=ToldTopics(terrain=terrain))
 
 
 def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
@@ -73,9 +73,16 @@ def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
     for output in (odometry_at(1.0), straight_path(), waiting_status()):
         transport.publish(output)
     assert wire.published == []
-    for once in (ModelText(1.0, "x: 1"), Note(1.0, "said"), straight_path(asked=True)):
+    for once in (ModelText(1.0, "x: 1"), Note(1.0, "said"), straight_path(asked=True), surface_at()):
         transport.publish(once)
-    assert wire.published == ["model", "diagnostics", "prediction", "prediction_json"]
+    assert wire.published == [
+        "model",
+        "diagnostics",
+        "prediction",
+        "prediction_json",
+        "surface",
+        "surface_json",
+    ]
 
 
 @pytest.mark.parametrize("topic", ["odometry", "twist", "predicted_path", "diagnostics"])
@@ -106,3 +113,31 @@ def test_an_odometry_that_is_wheels_and_pose_gives_both_as_decoding_in_full_does
     (said,) = transport.notices()
     assert said.startswith("messages of /odom that cannot be read are left out")
     transport.close()
+
+
+def test_after_the_end_nothing_is_asked_of_the_wire_nor_sent() -> None:
+    wire = Wire("odometry", "diagnostics")
+    transport = transport_on(wire)
+    transport.subscribe(lambda _sample: None)
+    transport.close()
+    wire.heard = None  # type: ignore[assignment]  # whoever asks it fails
+    for output in (odometry_at(1.0), waiting_status(), Note(1.0, "said"), surface_at()):
+        transport.publish(output)
+    assert wire.published == []
+
+
+def test_labels_come_on_two_topics_and_a_change_on_its_own() -> None:
+    wire, samples = Wire(), list[Sample]()
+    transport_on(wire, "/label").subscribe(samples.append)
+    store = ros_types()
+    string, empty = store.types["std_msgs/msg/String"], store.types["std_msgs/msg/Empty"]
+    for topic, text in (("/slipwise/terrain", "sand"), ("/label", "gravel"), ("/label", "")):
+        message = string(text)  # type: ignore[call-arg]
+        wire.takers[topic](bytes(store.serialize_cdr(message, "std_msgs/msg/String")))
+    wire.takers["/slipwise/terrain_changed"](bytes(store.serialize_cdr(empty(), "std_msgs/msg/Empty")))
+    assert [sample for sample in samples if isinstance(sample, SurfaceCue)] == [
+        SurfaceCue("sand"),
+        SurfaceCue("gravel"),
+        SurfaceCue(" "),  # no name, and no change: counted
+        SurfaceCue(),
+    ]

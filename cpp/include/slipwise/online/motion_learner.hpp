@@ -141,7 +141,8 @@ class MotionLearner {
   /// Another drive begins, after a while or elsewhere: the run so far is complete, and where surfaces are remembered,
   /// each of them may be the one under the robot. What was learned of the robot stays.
   void start_drive(const DriveStart& start = {});
-  /// The surface changes now, somebody says: to the one of this name, or to another where it is empty.
+  /// The surface changes now, somebody says: to the one of this name, or to another where it is empty. Where no
+  /// surfaces are remembered, a name says nothing, and none gives slip `change.forget` of its prior variance back.
   void cue_surface(const std::string& label);
   /// A sensor says what the terrain under the robot is now: a prior for the surfaces that it said that on before, as
   /// far as surfaces are remembered. Each answer, in the order of time, as soon as it is known.
@@ -149,6 +150,8 @@ class MotionLearner {
   void cue_terrain(const TerrainAnswer& answer);
   /// The surfaces that are remembered, the present one as it is known now.
   SurfaceBank surfaces() const;
+  /// How probable each surface is to be the one under the robot; nothing where none are remembered.
+  std::vector<SurfaceProbability> probable_surfaces() const { return hypotheses_.probable_surfaces(); }
   /// What happened to them since the last call; the oldest are dropped where nobody asks for long.
   std::vector<DatedSurfaceEvent> surface_events();
   /// Slip on a surface of `surfaces()` in the terms of a structure; nothing where it has no memory.

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
+from slipwise.live.diagnostics import surface_name
 from slipwise.live.outputs import ParameterNow, Status
 from slipwise.number_text import DASH, estimate_texts, number_text
 
@@ -112,3 +113,9 @@ def _rounded(value: float) -> str:
         return DASH
     text = f"{value:.{_MOST_DECIMALS}f}"
     return text.removeprefix("-") if float(text) == 0.0 else text
+
+
+def surface_text(status: Status) -> str:
+    """Return the surface that is driven on and its probability; nothing where none are remembered."""
+    now = status.surface
+    return "" if now is None else f"{surface_name(now.name)}, {100.0 * now.probability:.0f} %"

@@ -16,6 +16,7 @@ from slipwise.live.watch.status_texts import (
     parameter_texts,
     slip_texts,
     stamp_text,
+    surface_text,
 )
 
 if TYPE_CHECKING:
@@ -109,6 +110,8 @@ def _numbers(seen: Seen, status: Status, width: int) -> list[Text]:
         "segments": f"{status.segments}{pose}",
         "left out": left_out or "nothing",
     }
+    if status.surface is not None:
+        facts["surface"] = clean(surface_text(status))
     return [_line([(f"{name:<10}", "dim"), (text, "")], width) for name, text in facts.items()]
 
 

@@ -20,6 +20,7 @@ from slipwise.live.watch.status_texts import (
     parameter_texts,
     slip_texts,
     stamp_text,
+    surface_text,
 )
 
 _MOST_POINTS = 500  # of the driven path
@@ -58,6 +59,7 @@ def _status(status: Status) -> dict[str, Any]:
         "validity": status.validity,
         "validityWhy": status.validity_why,
         "segments": status.segments,
+        "surface": surface_text(status),
         "frame": status.odometry.frame if status.odometry is not None else "",
         "sincePose": None if status.odometry is None else _round(status.odometry.since_pose),
         "parameters": [_parameter(parameter) for parameter in status.parameters],

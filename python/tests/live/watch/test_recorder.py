@@ -55,7 +55,11 @@ def test_all_outputs_are_read_back_in_their_order(tmp_path: Path) -> None:
         read = [(c.topic, c.msgtype, bytes(data)) for c, _, data in reader.messages()]
         latched = {c.topic: "transient_local" in str(c.ext).lower() for c in reader.connections}
     assert sorted(read) == sorted((f"/slipwise/{m.topic}", m.type, m.payload) for m in expected)
-    assert [topic for topic, kept in latched.items() if kept] == ["/slipwise/model"]
+    assert [topic for topic, kept in latched.items() if kept] == [
+        "/slipwise/model",
+        "/slipwise/surface",
+        "/slipwise/surface_json",
+    ]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.mcap"]
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_outputs, driven_status, waiting_status
+from live.sample_outputs import driven_outputs, driven_status, surface_at, waiting_status
 from rich.console import Console
 
 from slipwise.live.outputs import Note, Output, ParameterNow
@@ -102,3 +102,9 @@ def test_names_command_no_terminal_and_numbers_may_be_missing() -> None:
 
 def test_clean_text_is_one_printable_line() -> None:
     assert clean("a\tb\r\nc\x1b[0m é 机") == "a b  c�[0m é 机"
+
+
+def test_the_surface_has_a_line_where_surfaces_are_remembered() -> None:
+    lines = _lines(80, 24, waiting_status(surface=surface_at(name="s\x1b[31m")))
+    assert _named(lines, "surface").split(maxsplit=1)[1].rstrip() == "s�[31m, 90 %"
+    assert not any(line.startswith("surface") for line in _lines(80, 24, waiting_status()))

@@ -10,9 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_outputs, driven_status, odometry_at, straight_path, waiting_status
+from live.sample_outputs import (
+    driven_outputs,
+    driven_status,
+    odometry_at,
+    straight_path,
+    surface_at,
+    waiting_status,
+)
 
-from slipwise.live.outputs import Output, ParameterNow
+from slipwise.live.outputs import Output, ParameterNow, SurfaceNow
 from slipwise.live.watch.history import History
 from slipwise.live.watch.web_snapshot import snapshot
 
@@ -87,3 +94,12 @@ def test_the_newest_measured_pose_stays_where_a_long_path_is_thinned() -> None:
     shown = _shown(waiting_status(driven=driven))
     assert len(shown["path"]["driven"][0]) <= 500
     assert shown["path"]["driven"][0][-1] == 12_344.0
+
+
+def test_the_surface_is_named_where_surfaces_are_remembered() -> None:
+    def shown(surface: SurfaceNow | None) -> str:
+        return str(_shown(waiting_status(surface=surface))["status"]["surface"])
+
+    assert shown(None) == ""
+    assert shown(surface_at()) == "sand, 90 %"
+    assert shown(surface_at(name="", probability=1.0)) == "a new surface, 100 %"

@@ -26,7 +26,10 @@ HEARD = {
     "predicted_path": "nav_msgs/msg/Path",
     "diagnostics": "diagnostic_msgs/msg/DiagnosticArray",
     "model": "std_msgs/msg/String",
+    "surface": "std_msgs/msg/String",
+    "surface_json": "std_msgs/msg/String",
 }
+LATCHED = ("model", "surface", "surface_json")
 
 
 def get_message(name: str) -> type:
@@ -51,7 +54,7 @@ def main(file: str, rate: float) -> None:
         last[name] = message
 
     for name, kind in HEARD.items():
-        quality = latched if name == "model" else 100
+        quality = latched if name in LATCHED else 100
         node.create_subscription(
             get_message(kind), f"/slipwise/{name}", lambda message, n=name: take(n, message), quality
         )
@@ -73,6 +76,7 @@ def main(file: str, rate: float) -> None:
         "heard": dict(heard),
         "frame": odometry.header.frame_id if odometry else "",
         "model": model.data[:40] if model else "",
+        "surfaces": [last[name].data if name in last else None for name in ("surface", "surface_json")],
         "nodes": node.get_node_names(),
     }
     print(json.dumps(found), flush=True)

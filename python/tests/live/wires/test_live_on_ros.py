@@ -12,16 +12,20 @@ import sys
 import sysconfig
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from live.wires.peer import DOMAIN, HERE
 from sample_logs import simulated_log
+from sample_surfaces import FIRM, LOOSE, floor_log, model_of_floors
 from scripted_node import SLIP
 
 import slipwise as sw
+from slipwise.live.wires.ros_types import ros_types
 from slipwise.logs.bag_file import BagFile, bag_files
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import Log
+from slipwise.models import load_model
 
 pytestmark = pytest.mark.slow
 
@@ -70,41 +74,85 @@ def without_origin(text: str) -> str:
     return "\n".join(line for line in text.splitlines() if "sha256" not in line and "logs:" not in line)
 
 
-@pytest.mark.parametrize("transport", ["cyclonedds", "rclpy"])
-def test_a_bag_played_by_a_real_node_gives_the_model_of_the_bag(
-    bag: Path, ros_python: Path, tmp_path: Path, transport: str
-) -> None:
-    python = sys.executable if transport == "cyclonedds" else str(ros_python)
+def played(lines: Path, ros_python: Path, command: list[str]) -> dict[str, Any]:
+    """Run the node while a real ROS 2 node plays; return what that one heard, and what the node said."""
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTHON")} | ROS
-    ours = (
-        f"import site; site.addsitedir({sysconfig.get_path('purelib')!r}); "
-        "from slipwise.cli.main import main; main()"
-    )
-    start = ["-m", "slipwise"] if transport == "cyclonedds" else ["-c", ours]
-    command = [python, *start, "live", "--transport", transport, "--domain", str(DOMAIN)]
-    output = tmp_path / "live.yaml"
-    player = [str(ros_python), str(HERE / "bag_player.py"), str(messages(bag, tmp_path / "lines")), str(RATE)]
+    player = [str(ros_python), str(HERE / "bag_player.py"), str(lines), str(RATE)]
     with subprocess.Popen(
-        [*command, "-o", str(output)],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as live:
-        played = subprocess.run(
+        done = subprocess.run(
             player, check=False, env=environment, capture_output=True, text=True, timeout=120.0
         )
         live.send_signal(signal.SIGTERM)
         said, error = live.communicate(timeout=30.0)
-    assert played.returncode == 0, played.stderr
+    assert done.returncode == 0, done.stderr
     assert live.returncode == 0, error
-    assert "pose topic: /ground_truth/pose" in said
+    return dict(json.loads(done.stdout.splitlines()[-1])) | {"said": said}
+
+
+def command_of(transport: str, ros_python: Path, output: Path) -> list[str]:
+    ours = (
+        f"import site; site.addsitedir({sysconfig.get_path('purelib')!r}); "
+        "from slipwise.cli.main import main; main()"
+    )
+    start = [sys.executable, "-m", "slipwise"] if transport == "cyclonedds" else [str(ros_python), "-c", ours]
+    return [*start, "live", "--transport", transport, "--domain", str(DOMAIN), "-o", str(output)]
+
+
+@pytest.mark.parametrize("transport", ["cyclonedds", "rclpy"])
+def test_a_bag_played_by_a_real_node_gives_the_model_of_the_bag(
+    bag: Path, ros_python: Path, tmp_path: Path, transport: str
+) -> None:
+    output = tmp_path / "live.yaml"
+    found = played(messages(bag, tmp_path / "lines"), ros_python, command_of(transport, ros_python, output))
+    assert "pose topic: /ground_truth/pose" in found["said"]
     wanted = sw.calibrate(sw.open_log(bag)).model.to_yaml()
     assert without_origin(output.read_text()) == without_origin(wanted)
-    found = json.loads(played.stdout.splitlines()[-1])
     assert "slipwise" in found["nodes"]
     assert found["frame"]
     assert found["model"].startswith("# slipwise live, robot")
     assert found["heard"]["odometry"] > 100
     assert found["heard"]["twist"] == found["heard"]["odometry"]
     assert min(found["heard"][name] for name in ("predicted_path", "diagnostics")) > 10
+
+
+def told(lines: Path, said: dict[str, tuple[str, dict[str, str]]]) -> Path:
+    """Add messages to a drive: at a third of it, what each topic says."""
+    rows = [json.loads(line) for line in lines.read_text().splitlines()]
+    at = len(rows) // 3
+    store = ros_types()
+    for topic, (kind, content) in said.items():
+        payload = bytes(store.serialize_cdr(store.types[kind](**content), kind))
+        text = base64.b64encode(payload).decode()
+        rows.insert(at, {"t": rows[at]["t"], "topic": topic, "type": kind, "message": text})
+    lines.write_text("\n".join(json.dumps(row) for row in rows))
+    return lines
+
+
+@pytest.mark.parametrize("transport", ["cyclonedds", "rclpy"])
+def test_a_real_node_names_the_surface_and_hears_which_one_it_is(
+    ros_python: Path, tmp_path: Path, transport: str
+) -> None:
+    floors, bag, output = (tmp_path / name for name in ("floors.yaml", "drive.mcap", "live.yaml"))
+    model_of_floors(FIRM, LOOSE, labels=("hall", "sand")).save(floors)
+    sw.save_log(later(floor_log(LOOSE, 21), 100.0), bag)
+    lines = told(
+        messages(bag, tmp_path / "lines"),
+        {
+            "/slipwise/terrain_changed": ("std_msgs/msg/Empty", {}),
+            "/label": ("std_msgs/msg/String", {"data": "hall"}),  # a wrong one: it is overruled
+            "/slipwise/terrain": ("std_msgs/msg/String", {"data": "hall"}),
+        },
+    )
+    command = command_of(transport, ros_python, output)
+    command += ["--input", "wheel", "--memory", str(floors), "--terrain-topic", "/label"]
+    found = played(lines, ros_python, command)
+    name, whole = found["surfaces"]
+    assert name == "sand"
+    content = json.loads(whole)
+    assert (content["surface"], content["probability"]) == ("sand", 1.0)
+    assert {each["name"] for each in content["remembered"]} == {"hall", "sand"}
+    assert content["labels"]["all"] > content["labels"]["right"]
+    assert found["heard"]["surface_json"] > 10
+    assert {each.name for each in load_model(output).content.surfaces} == {"hall", "sand"}

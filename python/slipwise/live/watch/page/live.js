@@ -59,6 +59,8 @@
     put(at("stamp"), status.stamp);
     put(at("input"), OF_INPUT[status.input] || status.input);
     put(at("segments"), String(status.segments));
+    at("surface-box").hidden = !status.surface;
+    put(at("surface"), status.surface || "–");
     put(at("apply"), OF_APPLY[status.apply] || status.apply);
     put(at("since-pose"), status.sincePose === null ? "–" : status.sincePose < 0.05 ? "now" : seconds(status.sincePose) + " ago");
   };
