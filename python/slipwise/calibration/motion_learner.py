@@ -30,6 +30,7 @@ from slipwise.calibration.model_content import (
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.settings import Settings, make_settings
+from slipwise.calibration.sloping_ground import with_gravity
 from slipwise.calibration.surface_sections import begin_with, with_memory
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
@@ -57,6 +58,7 @@ class MotionLearner:
         *,
         remember: bool = False,
         positions: bool = False,
+        attitude: bool = False,
     ) -> None:
         """Start with nothing learned.
 
@@ -65,13 +67,16 @@ class MotionLearner:
             settings: what to learn and how.
             remember: keep the surfaces that are driven on, and recall them where they come back.
             positions: positions will come (`push_position`), and no poses.
+            attitude: roll and pitch will be pushed: `auto` tries terms of gravity too, as `calibrate` does of
+                a log that has them. Learning takes about half as long again.
 
         Raises:
             SettingsError: there is no such input, or a basis or a term is unknown.
         """
         if input not in ("command", "wheel"):
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
-        self._input, self._settings = input, settings or Settings()
+        settings = settings or Settings()
+        self._input, self._settings = input, with_gravity(settings) if attitude else settings
         self._core = _core.MotionLearner(
             core_settings(self._settings, input, JUDGING_HORIZONS, remember=remember, positions=positions)
         )

@@ -32,8 +32,12 @@ def for_the_ground_of(log: Log, settings: Settings) -> Settings:
 
     Only the default list of `auto` is extended; bases that were chosen stay as they are.
     """
-    default = settings.basis == "auto" and tuple(settings.auto.bases) == AUTO_BASES
-    if not default or not has_attitude(log):
+    return with_gravity(settings) if has_attitude(log) else settings
+
+
+def with_gravity(settings: Settings) -> Settings:
+    """Return the settings with terms of gravity in the default list of `auto`; other lists stay."""
+    if settings.basis != "auto" or tuple(settings.auto.bases) != AUTO_BASES:
         return settings
     bases = [*AUTO_BASES, *SLOPE_BASES]
     return settings.model_copy(update={"auto": settings.auto.model_copy(update={"bases": bases})})

@@ -7,14 +7,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sample_slopes import Hills, hilly_log
 from sample_surfaces import FIRM, LOOSE, floor_log, model_of_floors
 
 from slipwise.calibration.calibrate_sequence import calibrate_sequence, settings_of
 from slipwise.calibration.learned_sequence import SequenceOptions
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import make_settings
+from slipwise.calibration.sloping_ground import SLOPE_BASES
 from slipwise.errors import LogError, ModelError, SettingsError
-from slipwise.models import load_model, on_surface
+from slipwise.models import Model, load_model, on_surface
 
 
 @pytest.mark.slow
@@ -53,6 +55,23 @@ def test_a_learner_of_measurements_begins_with_a_model() -> None:
     assert [each.name for each in learner.surfaces()] == ["hall", "sand"]
     with pytest.raises(ModelError, match="of wheels, and these logs are of commands"):
         MotionLearner("command", remember=True).begin_with(start)
+
+
+def bases_of(model: Model) -> set[str]:
+    memory = model.content.surfaces[-1].memory
+    assert memory is not None
+    return set(memory.bases)
+
+
+def test_the_first_log_decides_whether_terms_of_gravity_are_tried() -> None:
+    hills, flat = hilly_log(1, Hills(seconds=60.0)), floor_log(FIRM, 1)
+    on_hills, _ = calibrate_sequence([hills], input="command")
+    assert not bases_of(on_hills.model).isdisjoint(SLOPE_BASES)
+    assert "gy" in on_hills.model.to_yaml()
+    on_flat, _ = calibrate_sequence([flat, hills], input="command")
+    assert bases_of(on_flat.model).isdisjoint(SLOPE_BASES)
+    begun, _ = calibrate_sequence([hills], options=SequenceOptions(start=on_flat.model))
+    assert bases_of(begun.model).isdisjoint(SLOPE_BASES)
 
 
 def test_what_has_no_memory_is_refused() -> None:

@@ -11,8 +11,9 @@ from sample_logs import Drive, simulated_log
 from sample_slopes import Hills, hilly_log
 
 from slipwise.calibration import calibrate
-from slipwise.calibration.settings import AUTO_BASES, make_settings
-from slipwise.calibration.sloping_ground import SLOPE_BASES, for_the_ground_of, has_attitude
+from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.settings import AUTO_BASES, Settings, make_settings
+from slipwise.calibration.sloping_ground import SLOPE_BASES, for_the_ground_of, has_attitude, with_gravity
 from slipwise.logs.log import Log
 
 GRAVITY_TERMS = ("lon.gx", "lat.gy", "ang.gy")
@@ -38,14 +39,14 @@ def test_an_attitude_of_zeros_or_of_nothing_was_never_measured() -> None:
 @pytest.mark.slow
 def test_gravity_is_found_on_hills_and_predictions_are_better_for_it() -> None:
     log = hilly_log(3, Hills(seconds=200.0))
-    with_gravity = calibrate(log)
+    tried = calibrate(log)
     without = calibrate(log, settings=make_settings({"auto": {"bases": list(AUTO_BASES[:-1])}}))
-    found = {p.name: p for p in with_gravity.model.content.parameters}
+    found = {p.name: p for p in tried.model.content.parameters}
     truth = {"lon.gx": 0.06, "lat.gy": 0.12, "ang.gy": 0.05}
     for name, value in truth.items():
         assert abs(found[name].value - value) < 3.0 * found[name].std
         assert found[name].identifiable
-    better, worse = with_gravity.model.content.verdict.held_out, without.model.content.verdict.held_out
+    better, worse = tried.model.content.verdict.held_out, without.model.content.verdict.held_out
     assert better is not None
     assert worse is not None
     assert better.position < 0.6 * worse.position
@@ -79,3 +80,11 @@ def test_no_prediction_depends_on_an_attitude_that_is_measured_after_its_start()
         assert one.pose[before].tobytes() == other.pose[before].tobytes()
         assert one.covariance[before].tobytes() == other.covariance[before].tobytes()
         assert (one.pose[~before] != other.pose[~before]).any()
+
+
+def test_a_learner_tries_terms_of_gravity_where_an_attitude_is_announced() -> None:
+    plain, remembering = MotionLearner("command"), MotionLearner("command", remember=True, attitude=True)
+    assert plain.settings == Settings()
+    assert set(SLOPE_BASES) < set(remembering.settings.auto.bases)
+    chosen = Settings().choosing("edd-2", None)
+    assert MotionLearner("command", chosen, attitude=True).settings == chosen == with_gravity(chosen)

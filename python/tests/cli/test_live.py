@@ -54,6 +54,59 @@ def test_a_log_of_hills_is_replayed_with_the_terms_that_calibrate_tries(
     assert "gy" in live.read_text(encoding="utf-8")
 
 
+def test_with_a_memory_a_log_is_replayed_into_the_model_that_calibrate_writes_with_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hills, live, log = tmp_path / "hills.csv", tmp_path / "live.yaml", tmp_path / "calibrate.yaml"
+    sw.save_log(hilly_log(1, Hills(seconds=60.0)), hills)
+    monkeypatch.chdir(tmp_path)
+    replay = ["live", "--replay", str(hills), "--rate", "0", "--quiet"]
+    assert run([*replay, "--memory", "--terrain", "grass", "-o", str(live)]) == 0
+    learn = ["calibrate", "--memory", "--no-report"]
+    assert run([*learn, str(hills), "--terrain", "grass", "-o", str(log)]) in (0, 1)
+    assert live.read_bytes() == log.read_bytes()
+    assert [each.name for each in sw.load_model(live).content.surfaces] == ["grass"]
+    assert "gy" in live.read_text(encoding="utf-8")
+    on, on_too = tmp_path / "on.yaml", tmp_path / "on-too.yaml"
+    assert run([*learn, str(log), str(hills), "-o", str(on)]) in (0, 1)
+    assert run([*replay, "--memory", str(live), "-o", str(on_too)]) == 0
+    assert on_too.read_bytes() == on.read_bytes()
+
+
+def test_labels_without_a_memory_are_refused(drive: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["live", "--replay", str(drive), "--rate", "0", "--terrain", "sand"]) == 2
+    assert "add --memory" in capsys.readouterr().err
+
+
+def test_a_start_model_that_remembers_surfaces_is_begun_with(
+    drive: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, second = tmp_path / "first.yaml", tmp_path / "second.yaml"
+    replay = ["live", "--replay", str(drive), "--rate", "0", "--memory"]
+    assert run([*replay, "--terrain", "hall", "--quiet", "-o", str(first)]) == 0
+    capsys.readouterr()
+    assert run([*replay, "--model", str(first), "-o", str(second)]) == 0
+    assert "the surface is hall, as before" in capsys.readouterr().out
+    (hall,) = sw.load_model(second).content.surfaces
+    assert (hall.name, hall.visits) == ("hall", 2)
+
+
+@pytest.mark.slow
+def test_a_process_that_is_killed_loses_what_came_after_the_last_save(drive: Path, tmp_path: Path) -> None:
+    cache = ["--cache", str(tmp_path)]
+    common = [*SLIPWISE, "live", "--replay", str(drive), *cache, "--input", "wheel", "--memory"]
+    subprocess.run([*common, "--rate", "0"], capture_output=True, check=True)
+    saved = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    with subprocess.Popen([*common, "--rate", "5"], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as live:
+        time.sleep(10.0)  # under way, and before the first save after 60 s
+        assert live.poll() is None
+        live.kill()
+        live.communicate(timeout=30.0)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == saved
+    again = subprocess.run([*common, "--rate", "0"], capture_output=True, text=True, check=True)
+    assert "goes on from" in again.stdout
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_it_with_the_cache_written(drive: Path, tmp_path: Path, number: signal.Signals) -> None:

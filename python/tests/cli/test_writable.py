@@ -97,6 +97,7 @@ DESTROYING = (
     "live --replay drive.csv --record drive.csv",
     "live --replay drive.csv --results drive.csv",
     "live --replay drive.csv --model m.yaml -o m.yaml",
+    "live --replay drive.csv --memory m.yaml -o m.yaml",
     "live --replay drive.csv --settings s.toml -o s.toml",
     "excite --area 8x8 --vehicle husky --model m.yaml --json m.yaml",
     "fleet drive.csv --settings s.toml --json s.toml",
