@@ -57,6 +57,7 @@ class LiveTable(_Table):
     input: Literal["command", "wheel"] | None = None
     positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so
     model: str | None = None  # start model
+    attitude: bool = False  # poses have a true roll and pitch: terms of gravity are tried
     memory: bool | str = False  # remember surfaces; a model file: begin with those in it
     terrain: Annotated[str, Field(min_length=1, max_length=80)] | None = None  # name of the first surface
     terrain_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from slipwise.calibration import Settings
 from slipwise.calibration.motion_learner import MotionLearner
+from slipwise.calibration.sloping_ground import with_gravity
 from slipwise.errors import SettingsError
 from slipwise.live.applied import AppliedModel
 from slipwise.live.cache import Cache, CacheKey
@@ -59,6 +60,8 @@ def build_node(
         OutputError: a cache that cannot be read cannot be set aside either.
     """
     table, said = settings.live, Said()
+    if table.attitude and not table.memory_begins:  # what is begun with keeps its terms
+        settings = with_gravity(settings)
     start = _start_model(table.model, input_name)
     before = _start_model(table.memory if isinstance(table.memory, str) else None, input_name)
     cache, learner, valid = None, None, None

@@ -9,11 +9,14 @@ from pathlib import Path
 
 import pytest
 from sample_models import make_model, named
+from sample_slopes import Hills, hilly_log
 from scripted_node import SLIP, driven, run_node
 
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.live_table import LiveTable
+from slipwise.calibration.prepared_run import prepare_run
 from slipwise.live.outputs import ModelText, Output, Validity
+from slipwise.live.replay import samples_of
 from slipwise.live.validity import judged
 from slipwise.models import Model
 
@@ -55,3 +58,11 @@ def test_the_last_valid_model_is_published_once_while_nothing_newer_is_valid(
     assert published[-1][1] == published[-2][1]
     assert all(before != after for before, after in itertools.pairwise(published))
     assert transport.statuses[-1].given == "the last valid one; the model is invalid now"
+
+
+@pytest.mark.parametrize("attitude", [False, True])
+def test_terms_of_gravity_are_tried_where_poses_are_said_to_have_an_attitude(attitude: bool) -> None:
+    (run,) = prepare_run(hilly_log(1, Hills(seconds=60.0)), "command")
+    built, _ = run_node(list(samples_of(run)), LiveTable(attitude=attitude), "command")
+    model = built.learning.learner.model(limits=False)
+    assert any(".gy" in name for name in model.parameters) == attitude
