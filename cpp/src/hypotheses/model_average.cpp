@@ -211,18 +211,13 @@ void ModelAverage::reweigh() {
   }
 }
 
-/// By what the average predicted as it was before the segments that are tested together: the noise factors and the
-/// weights follow a change at once, and would hide it.
+/// By what the average predicts of the segment before it learns it.
 ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
   const ChangeSettings& change = settings_.change;
   if (!change.detect) {
     return {};
   }
-  before_.push_back(state());
-  if (std::ssize(before_) > change.longest) {
-    before_.pop_front();
-  }
-  const AverageState& known = before_.front();
+  const AverageState known = state();
   const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
   const Eigen::Matrix3d covariance =
       prediction_covariance(at, known.estimate.covariance, filters_.front().noise().shape, known.noise_scale);
@@ -235,7 +230,6 @@ ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segme
 /// Every model once as if the terrain had changed and once as it was: what follows decides between them, so that a
 /// passing disturbance costs little, and the old terrain is known at once where it comes back soon.
 void ModelAverage::branch() {
-  before_.clear();
   detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
   for (CausalFilter& filter : filters_) {
