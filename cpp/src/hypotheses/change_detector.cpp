@@ -75,8 +75,8 @@ ChangeDetector::Whitened ChangeDetector::whitened(const Eigen::Vector3d& innovat
 }
 
 /// In units of how large residuals were up to `longest` segments ago, since a covariance that is still wide from the
-/// first segments would hide a change, and less what the segment before foretells of it. Both as they were known before
-/// a change that is tested, which would teach them to expect it.
+/// first segments would hide a change, and less what the segment before lets expect of it. Both as they were known
+/// before a change that is tested, which would teach them to expect it.
 ChangeDetector::Whitened ChangeDetector::apart_from_last(const Whitened& segment) const {
   const Likeness& known = known_.front();
   Whitened fresh = segment;
