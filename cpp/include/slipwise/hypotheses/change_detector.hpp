@@ -24,7 +24,7 @@ struct ChangeSettings {
 
 /// The test of one segment together with those just before it.
 struct ChangeTest {
-  double log_odds = 0.0;   ///< of a change within the last segments; 0 where nothing is tested
+  double log_odds = 0.0;   ///< of a change within the last segments; below 0 where little speaks for one
   int segments = 0;        ///< since the likeliest change
   bool suspicion = false;  ///< enough to try models that forgot
   bool alarm = false;      ///< a change was found: by the test, or since models that forgot predicted better
