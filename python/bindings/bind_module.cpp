@@ -12,6 +12,7 @@ NB_MODULE(_core, m) {
   bind_vehicle(m);
   bind_slip(m);
   bind_actuator(m);
+  bind_car(m);
   bind_motion(m);
   bind_segment(m);
   bind_rollout(m);

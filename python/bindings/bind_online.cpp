@@ -83,7 +83,8 @@ void bind_settings(nb::module_& m) {
       .def_rw("unknown_after", &StreamSettings::unknown_after)
       .def_rw("latency", &StreamSettings::latency)
       .def_rw("horizons", &StreamSettings::horizons)
-      .def_rw("sensor", &StreamSettings::sensor);
+      .def_rw("sensor", &StreamSettings::sensor)
+      .def_rw("car", &StreamSettings::car);
   nb::class_<HypothesisSettings>(m, "HypothesisSettings", "What is learned.")
       .def(nb::init<>())
       .def_rw("bases", &HypothesisSettings::bases)
@@ -143,6 +144,22 @@ void bind_recordings(nb::module_& m) {
       "cut_segments",
       [](const StreamSettings& settings, const std::vector<Recording>& runs) { return cut_segments(settings, runs); },
       "settings"_a, "runs"_a, "The segments that a learner with these settings learns.");
+  m.def(
+      "expected_commands",
+      [](const StreamSettings& settings, const std::vector<Recording>& runs) {
+        std::vector<Rows> all;
+        for (const auto& run : expected_commands(settings, runs)) {
+          Rows rows(std::ssize(run), 4);
+          for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+            const InputSample& sample = run[static_cast<std::size_t>(i)];
+            rows.row(i) << sample.t, sample.twist.v, sample.twist.vy, sample.twist.omega;
+          }
+          all.push_back(std::move(rows));
+        }
+        return all;
+      },
+      "settings"_a, "runs"_a,
+      "About what a car makes of each command: rows of (t, v, vy, omega), a table for each run.");
   nb::class_<GatedPoses>(m, "GatedPoses", "What the gate makes of the poses; rows of (t, x, y, yaw, frame).")
       .def_prop_ro("accepted", [](const GatedPoses& gated) { return pose_rows(gated.accepted); })
       .def_prop_ro("outliers", [](const GatedPoses& gated) { return pose_rows(gated.outliers); })
@@ -212,7 +229,8 @@ void bind_results(nb::module_& m) {
       .def_ro("steepest", &LearnedModel::steepest)
       .def_ro("seconds", &LearnedModel::seconds)
       .def_ro("segments", &LearnedModel::segments)
-      .def_ro("rejected", &LearnedModel::rejected);
+      .def_ro("rejected", &LearnedModel::rejected)
+      .def_ro("car", &LearnedModel::car);
 }
 
 void bind_events(nb::module_& m) {

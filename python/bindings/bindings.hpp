@@ -12,6 +12,7 @@ void bind_lie(nanobind::module_& m);
 void bind_vehicle(nanobind::module_& m);
 void bind_slip(nanobind::module_& m);
 void bind_actuator(nanobind::module_& m);
+void bind_car(nanobind::module_& m);
 void bind_motion(nanobind::module_& m);
 void bind_segment(nanobind::module_& m);
 void bind_planning(nanobind::module_& m);

@@ -95,7 +95,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             (t [s], v [m/s], omega [rad/s]), [N, 3]. Those before `start` matter where there is lag or delay.
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s]; by default at the first command.
-        initial: the drive's measured (v [m/s], omega [rad/s]) at the start; by default it follows from the
+        initial: the drive's measured (v [m/s], omega [rad/s]) at the start, of which a car that is told
+            throttle and steering takes the speed; by default it follows from the
             commands, before the first of which the robot is at rest.
         slip_now: where the slip disturbance is at the start, as `slip_seen` says; by default nothing recent
             is known of it.
@@ -127,8 +128,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
         if not np.isfinite(initial).all():
             raise SettingsError("the initial speeds must be finite", advice="such as initial=(0.5, 0.0)")
         _check_speeds("initial speeds", np.asarray(initial))
-    given = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
-    known = _measured_actuator(begin, initial)
+    given = asked_twists(model, inputs, begin, initial)
+    known = None if model.car is not None else _measured_actuator(begin, initial)
     history = model.driven(given) if known is None else model.driven_from(given, begin, known[-1])
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
@@ -172,8 +173,21 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
         windows: between two measured poses, in order of time, as long as those that the model was learned
             from (`slip_disturbance.segment` of the model file). Those of the last 30 s say all there is.
     """
-    history = model.driven(_core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega))
+    history = model.driven(asked_twists(model, inputs))
     return _core.DisturbanceFilter(model.disturbance).now(model.posterior, history, list(windows))
+
+
+def asked_twists(
+    model: Model, inputs: Inputs, begin: float | None = None, initial: tuple[float, float] | None = None
+) -> _core.InputHistory:
+    """Inputs as twists; those of a car that is told throttle and steering go through its curves."""
+    car, told = model.car, inputs.car
+    if car is None:
+        return _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
+    throttle, steering = (inputs.v, inputs.omega) if told is None else (told.throttle, told.steering)
+    commands = _core.InputHistory(inputs.t, throttle, np.zeros_like(throttle), steering)
+    measured = None if begin is None or initial is None else (begin, initial[0])
+    return car.twists(commands, float(inputs.t[0]), measured)
 
 
 def _measured_actuator(

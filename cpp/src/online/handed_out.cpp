@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What cutters cut, handed out as segments; positions get their heading first.
+#include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/segment_stream.hpp"
 
 namespace slipwise {
@@ -43,7 +45,7 @@ void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
     if (!cut.rejected) {
       const double start = cut.first.t;
       const double end = cut.second.t;
-      items_.emplace_back(WheelSegment{.commands = commands_.slice(start - kActuatorBack, end, SliceKind::Commands),
+      items_.emplace_back(WheelSegment{.commands = commanded({.start = start, .end = end}, kActuatorBack, start),
                                        .wheels = wheels_.slice(start, end, SliceKind::Wheels),
                                        .start = start,
                                        .end = end});
@@ -62,7 +64,7 @@ void SegmentStream::emit_slip(const std::vector<SegmentCut>& cuts) {
 void SegmentStream::emit_twists(const std::vector<TwistStretch>& stretches) {
   for (const TwistStretch& stretch : stretches) {
     items_.emplace_back(
-        TwistSegment{{.commands = commands_.slice(stretch.start - kActuatorBack, stretch.end, SliceKind::Commands),
+        TwistSegment{{.commands = commanded({.start = stretch.start, .end = stretch.end}, kActuatorBack, stretch.start),
                       .wheels = InputHistory(stretch.t, stretch.twist),
                       .start = stretch.start,
                       .end = stretch.end}});
@@ -82,7 +84,12 @@ void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
 void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (!cut.rejected) {
-      items_.emplace_back(TargetSegment{horizon, driven(cut, !settings_.from_commands, now_, true)});
+      const double length = settings_.horizons[horizon];
+      TargetSegment target{horizon, driven(cut, !settings_.from_commands, now_, length)};
+      if (car_ && settings_.from_commands) {
+        target.baseline = car_->baseline(cut.first.t, cut.second.t, cut.first.t - std::max(length, kReady));
+      }
+      items_.emplace_back(std::move(target));
     }
   }
 }

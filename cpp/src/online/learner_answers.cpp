@@ -120,7 +120,8 @@ LearnedModel MotionLearner::model() const {
                        .steepest = complete.steepest_,
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),
-                       .rejected = complete.rejected_};
+                       .rejected = complete.rejected_,
+                       .car = complete.stream_.car_curves()};
   const double spacing = complete.stream_.wheel_interval();
   learned.known.motion = supported(learned.known.motion, spacing, learned.segments);
   learned.known.slip = supported(learned.known.slip, spacing, learned.segments);

@@ -41,8 +41,10 @@ const MotionModel& baseline_model() {
   return model;
 }
 
-Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven) {
-  return integrate_segment(model, mean, driven.inputs, driven.segment).sensor_motion().vector();
+/// Driven by `other` inputs, where there are some.
+Eigen::Vector3d pose_after(const MotionModel& model, const Eigen::VectorXd& mean, const DrivenSegment& driven,
+                           const std::optional<InputHistory>& other = std::nullopt) {
+  return integrate_segment(model, mean, other ? *other : driven.inputs, driven.segment).sensor_motion().vector();
 }
 
 void keep(std::deque<WheelSegment>& kept, WheelSegment&& segment) {
@@ -343,6 +345,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   errors.learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
+  const bool at_start = segment.initial || settings_.stream.car;  // what the drive did then was measured
   const auto prediction = std::make_shared<const HeldOutPrediction>(
       HeldOutPrediction{.run = runs_,
                         .horizon = target.horizon,
@@ -354,9 +357,9 @@ void MotionLearner::judge(const TargetSegment& target) {
                         .nominal_nis = nominal_squared,
                         .structure = structure,
                         .measured = measured,
-                        .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven),
+                        .baseline = pose_after(baseline_model(), Eigen::VectorXd(0), driven, target.baseline),
                         .in_sample = pose_after(after.motion->model, after.motion->estimate.mean, driven),
-                        .learned_until = segment.initial ? segment.start : std::min(used, segment.start)});
+                        .learned_until = at_start ? segment.start : std::min(used, segment.start)});
   held_out_[target.horizon].keep(prediction);
   say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction});
 }

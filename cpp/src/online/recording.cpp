@@ -60,6 +60,20 @@ struct ToStream {
   void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
 };
 
+/// Looks at what the stream's gates see of each command.
+struct ToExpected {
+  SegmentStream& stream;
+  std::vector<InputSample>& expected;
+
+  void command(const InputSample& sample) const {
+    stream.push_command(sample);
+    expected.push_back({sample.t, stream.commands().held_at(sample.t).value_or(BodyTwist{})});
+  }
+  void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
+  void attitude(const Attitude& tilt) const { stream.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
+  void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
+};
+
 struct ToGate {
   InputBuffer commands;
   InputBuffer wheels_known;
@@ -104,6 +118,20 @@ CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> 
     }
   }
   return cut;
+}
+
+std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& settings,
+                                                        std::span<const Recording> runs) {
+  SegmentStream stream(settings);
+  std::vector<std::vector<InputSample>> expected;
+  for (const Recording& run : runs) {
+    stream.start_run();
+    merge(run, ToExpected{stream, expected.emplace_back()});
+    stream.end_run();
+    stream.take_items();
+    stream.take_rejected();
+  }
+  return expected;
 }
 
 GatedPoses gate_poses(const Recording& run, double unknown_after) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "slipwise/linear/tuning.hpp"
+#include "slipwise/online/learner_times.hpp"
 #include "slipwise/segment/course.hpp"
 
 namespace slipwise {
@@ -19,8 +20,6 @@ namespace {
 
 SLIPWISE_TUNING(kSlipLength, 1.0);                // [s] of segments behind wheel speeds
 SLIPWISE_TUNING(kWheelLength, 1.0);               // [s] wheel speeds tell a step's response from its start on
-constexpr double kLookBack = 20.0;                // [s] of inputs before a segment; an actuator remembers no more
-constexpr double kWheelsBack = 3.0;               // [s] of wheel speeds before a segment; no clock offset is larger
 constexpr double kLongestGap = 120.0;             // [s] between poses, after which the segment before it may still end
 constexpr long kFramesApart = 1'000'000'000'000;  // numbers of frames before a break and after it are never the same
 constexpr double kSpare = 10.0;                   // [s] that inputs are kept for longer than a segment may need
@@ -49,6 +48,9 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
     longest = std::max(longest, horizon);
   }
   keep_ += 2.0 * longest;
+  if (settings.car) {
+    car_.emplace(*settings.car, settings.sensor, settings.unknown_after);
+  }
 }
 
 void SegmentStream::start_run() {
@@ -63,6 +65,9 @@ void SegmentStream::start_run() {
   gate_.restart();
   timer_.restart();
   wheel_timer_.restart();
+  if (car_) {
+    car_->start_run();
+  }
 }
 
 void SegmentStream::end_run() {
@@ -105,7 +110,15 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
 }
 
 void SegmentStream::push_command(const InputSample& sample) {
-  push_input(Stream::Command, sample);
+  if (car_) {
+    const std::size_t before = commands_.size();
+    push_input(Stream::Command, {sample.t, car_->expected(sample, settings_.latency)});
+    if (commands_.size() > before) {
+      car_->push_command(sample, settings_.latency);
+    }
+  } else {
+    push_input(Stream::Command, sample);
+  }
   advance(newest_ - settings_.latency);
 }
 
@@ -221,6 +234,9 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     if (pose.position) {
       gyro_.see_course(timed->pose);
     }
+    if (car_) {
+      car_->push_pose(timed->pose);
+    }
     if (settings_.from_commands && wheels_ever_) {
       emit_slip(slip_.push(*timed, wheels_));
     } else if (settings_.from_commands && !pose.position) {  // a course lags behind the heading by half its chord
@@ -247,7 +263,15 @@ void SegmentStream::finish_cutters() {
   }
 }
 
-DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at, bool foreseen) const {
+InputHistory SegmentStream::commanded(const Segment& over, double back, double known,
+                                      const std::vector<InputSample>& future) const {
+  return car_ ? car_->inputs(path_start(over), over.end, known, future)
+              : commands_.slice(path_start(over) - back, over.end, SliceKind::Commands, future);
+}
+
+/// A segment to be learned, or over a `horizon` to be predicted from what was known one horizon before.
+DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, double known_at,
+                                    std::optional<double> horizon) const {
   Segment segment{.start = cut.first.t,
                   .end = cut.second.t,
                   .measured = cut.measured(),
@@ -256,15 +280,14 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .sensor = settings_.sensor,
                   .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
   set_course(segment, cut);
-  stand_on_ground(segment, foreseen);
+  stand_on_ground(segment, horizon.has_value());
   if (!by_wheels) {
     set_actuator_state(segment);
   }
-  const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
-  const double back = by_wheels ? kWheelsBack : kLookBack;
-  return {.inputs = (by_wheels ? wheels_ : commands_).slice(path_start(segment) - back, segment.end, kind),
-          .segment = std::move(segment),
-          .known_at = known_at};
+  const double known = segment.start - (horizon ? std::max(*horizon, kReady) : 0.0);
+  InputHistory driving = by_wheels ? wheels_.slice(path_start(segment) - kWheelsBack, segment.end, SliceKind::Wheels)
+                                   : commanded(segment, kLookBack, known);
+  return {.inputs = std::move(driving), .segment = std::move(segment), .known_at = known_at};
 }
 
 /// What wheel speeds say of the actuator until the segment starts.
@@ -299,80 +322,13 @@ void SegmentStream::trim() {
   wheels_.drop_before(oldest);
   tilts_.drop_before(oldest);
   gyro_.drop_before(oldest);
+  if (car_) {
+    car_->drop_before(oldest);
+  }
 }
 
 std::vector<StreamItem> SegmentStream::take_items() { return std::exchange(items_, {}); }
 
 std::vector<Rejected> SegmentStream::take_rejected() { return std::exchange(rejected_, {}); }
-
-std::vector<DrivenSegment> SegmentStream::pending_segments() const {
-  PoseAccuracy accuracy = accuracy_;
-  PoseGate gate = gate_;
-  PoseTimer timer = timer_;
-  ChordFinder chords = chords_;
-  SegmentCutter cutter = learned_;
-  std::vector<DrivenSegment> found;
-  for (const MeasuredPose& raw : poses_) {
-    for (const MeasuredPose& pose : gate.push(complete(raw, accuracy), gate_inputs(raw.t)).accepted) {
-      auto timed = timer.push(pose, settings_.rules.late_factor);
-      if (timed) {
-        timed = headed(*std::move(timed), chords);
-      }
-      for (const SegmentCut& cut : timed ? cutter.push(*timed, inputs()) : std::vector<SegmentCut>{}) {
-        if (!cut.rejected) {
-          found.push_back(driven(cut, !settings_.from_commands, raw.t));
-        }
-      }
-    }
-  }
-  return found;
-}
-
-std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>& future, double end) const {
-  std::vector<InputSample> all;
-  std::optional<BodyTwist> held = inputs().known_at(newest_);
-  double since = newest_;
-  const auto repeat_until = [&](double t) {
-    double next = since + settings_.unknown_after;
-    while (held && next < t) {
-      all.push_back({next, *held});
-      next += settings_.unknown_after;
-    }
-  };
-  for (const InputSample& sample : future) {
-    repeat_until(std::min(sample.t, end));
-    all.push_back(sample);
-    held = sample.twist;
-    since = std::max(sample.t, newest_);
-  }
-  repeat_until(end);
-  return all;
-}
-
-DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
-  Segment segment{.start = newest_, .end = newest_ + horizon, .sensor = settings_.sensor};
-  stand_on_ground(segment, true);
-  const bool by_wheels = !settings_.from_commands;
-  if (!by_wheels) {
-    set_actuator_state(segment);
-  }
-  const SliceKind kind = by_wheels ? SliceKind::Wheels : SliceKind::Commands;
-  const double back = by_wheels ? kWheelsBack : kLookBack;
-  return {.inputs = inputs().slice(segment.start - back, segment.end, kind, repeated(future, segment.end)),
-          .segment = std::move(segment),
-          .known_at = newest_};
-}
-
-DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
-  Segment segment{.start = start, .end = end, .sensor = settings_.sensor};
-  stand_on_ground(segment, false);
-  if (settings_.from_commands) {
-    set_actuator_state(segment);
-  }
-  const SliceKind kind = settings_.from_commands ? SliceKind::Commands : SliceKind::Wheels;
-  return {.inputs = inputs().slice(start - std::min(back, kLookBack), end, kind),
-          .segment = std::move(segment),
-          .known_at = end};
-}
 
 }  // namespace slipwise

@@ -10,7 +10,7 @@
 
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/symmetric_eigen.hpp"
-#include "slipwise/thesis/nonnegative.hpp"
+#include "slipwise/linear/nonnegative.hpp"
 
 namespace slipwise {
 namespace {

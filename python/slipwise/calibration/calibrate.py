@@ -29,7 +29,7 @@ from slipwise.calibration.shortage import shortage_advice
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
-from slipwise.errors import LogError, ModelError
+from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
 from slipwise.logs.log import Log, has_course
@@ -142,11 +142,17 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.history,
         learned.bases,
         learned.limits,
+        learned.car,
     )
 
 
 def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn with one of the estimators that the learner is compared with."""
+    if any(run.run.commands is not None and run.run.commands.car is not None for run in windows.drive):
+        raise SettingsError(
+            "throttle and steering are learned by the average of bases alone",
+            advice=f"estimator = {AVERAGE!r}",
+        )
     run = run_estimator(settings, windows.drive[0].input_name, windows, record=True, progress=progress)
     predictor = Predictor("learned", settings.filter_settings().noise.shape, run.posterior, run.dynamics)
     sets = [collect_windows(windows.drive, horizon, settings.rules()) for horizon in JUDGING_HORIZONS]

@@ -10,14 +10,21 @@ from slipwise.calibration.settings import Settings
 
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
+_CAR_BASES = (
+    "none",
+    "edd-2",
+)  # what other terms would say, curves, drag of cornering and understeer say already
+_CAR_LAG, _CAR_DELAY = 0.03, 0.05  # s; medians of what is left behind the lags of a car
 
-def core_settings(
+
+def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     settings: Settings,
     input_name: str,
     horizons: Sequence[float],
     *,
     remember: bool = False,
     positions: bool = False,
+    car: _core.CarPrior | None = None,
 ) -> _core.LearnerSettings:
     """Return the core's settings.
 
@@ -27,6 +34,7 @@ def core_settings(
         horizons: of the predictions that are held against what was measured [s].
         remember: keep surfaces that were driven on, and recall them.
         positions: headings are courses of positions, which do not tell a side slip that is always the same.
+        car: what is taken of a car whose commands are throttle and steering, before it drives.
 
     Raises:
         SettingsError: a basis or a term is unknown.
@@ -57,6 +65,20 @@ def core_settings(
         surfaces.remember = True
         average.surfaces = surfaces
     hypotheses.average = average
+    if car is not None and from_commands:
+        stream.car = car
+        _behind_curves(hypotheses, settings)
     core.stream, core.hypotheses = stream, hypotheses
     core.learn_disturbance = settings.slip_disturbance.learn
     return core
+
+
+def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> None:
+    """Expect little slip and lag where a car's curves hold most of both."""
+    if settings.basis == "auto":
+        hypotheses.bases = [basis for basis in hypotheses.bases if basis.name in _CAR_BASES]
+    causal = hypotheses.filter
+    prior = causal.prior
+    prior.time_constant, prior.delay = _CAR_LAG, _CAR_DELAY
+    causal.prior = prior
+    hypotheses.filter = causal

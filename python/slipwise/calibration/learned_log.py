@@ -18,7 +18,7 @@ from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import course_of
 from slipwise.logs.log import has_course
-from slipwise.segments import recording_of
+from slipwise.segments import car_prior, recording_of
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +39,7 @@ class LearnedLog:
     segments: int
     seconds: float  # of all segments learned
     limits: _core.LimitSearch | None = None  # what was found of the actuator's limits, where it was asked
+    car: _core.CarCurves | None = None  # where commands are throttle and steering
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,8 @@ def learn_log(
         SettingsError: a basis or a term is unknown.
     """
     positions = has_course(run.run for run in drive)
-    core = core_settings(settings, drive[0].input_name, horizons, positions=positions)
+    car = car_prior([run.run for run in drive])
+    core = core_settings(settings, drive[0].input_name, horizons, positions=positions, car=car)
     learner, events = _core.MotionLearner(core), []
     for done in pushed(learner, drive):
         events += [event for event in learner.events() if keep is not None and event.kind == LEARNED]
@@ -98,7 +100,8 @@ def learned_of(
     hypotheses = learner.settings.hypotheses
     bases = tuple(basis.name for basis in hypotheses.bases)
     predictions, baseline = held_out_predictions(model, horizons, drive)
-    found = None if keep is None else learner.find_limits(keep.wheel_separation)
+    told = model.car is not None  # its curves hold a dead band and a top speed
+    found = None if keep is None or told else learner.find_limits(keep.wheel_separation)
     history = None
     if keep is not None:
         history = _history(events, model.motion, bases, drive, several=hypotheses.several)
@@ -113,6 +116,7 @@ def learned_of(
         segments=model.segments,
         seconds=model.seconds,
         limits=None if found is None else found.search,
+        car=model.car,
     )
 
 

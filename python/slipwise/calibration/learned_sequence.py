@@ -27,6 +27,7 @@ from slipwise.calibration.surface_sections import begin_with
 from slipwise.calibration.terrain_cues import Labels, check_labels, cues_of
 from slipwise.logs.log import has_course
 from slipwise.models.model import Model
+from slipwise.segments import car_prior
 
 _WORDS = {
     _core.SurfaceEventKind.Opened: "new",
@@ -161,7 +162,8 @@ def _begun(
 ) -> _core.MotionLearner:
     input_name = drives[0][0].input_name
     positions = has_course(run.run for drive in drives for run in drive)
-    core = core_settings(settings, input_name, horizons, remember=True, positions=positions)
+    car = car_prior([run.run for drive in drives for run in drive])
+    core = core_settings(settings, input_name, horizons, remember=True, positions=positions, car=car)
     learner = _core.MotionLearner(core)
     if start is not None:
         begin_with(learner, start, input_name, wheels=any(has_wheels(drive) for drive in drives))

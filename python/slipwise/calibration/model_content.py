@@ -17,6 +17,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import History, Verdict
 from slipwise.calibration.settings import Settings
 from slipwise.models import schema
+from slipwise.models.car import car_section
 from slipwise.models.limits import limits_section
 
 
@@ -32,6 +33,7 @@ class Learned:
     history: History | None
     bases: tuple[str, ...]
     limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
+    car: _core.CarCurves | None = None  # where commands are throttle and steering
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +82,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         clock_offset=motion.clock_offset,
         response=motion.response,
         sensor_extrinsics=motion.sensor_extrinsics,
+        car=None if learned.car is None else car_section(learned.car),
         limits=_limits(learned),
         parameters=_parameters(learned.kept),
         covariance=learned.kept.covariance.tolist(),

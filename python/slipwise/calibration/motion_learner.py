@@ -78,7 +78,14 @@ class MotionLearner:
         settings = settings or Settings()
         self._input, self._settings = input, with_gravity(settings) if attitude else settings
         self._core = _core.MotionLearner(
-            core_settings(self._settings, input, JUDGING_HORIZONS, remember=remember, positions=positions)
+            core_settings(
+                self._settings,
+                input,
+                JUDGING_HORIZONS,
+                remember=remember,
+                positions=positions,
+                car=_car(self._settings),
+            )
         )
         self._positions = positions
         self._runs: list[str] = []
@@ -92,7 +99,11 @@ class MotionLearner:
         self._core.start_run()
 
     def push_command(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
-        """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
+        """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s].
+
+        Of a car that is told throttle and steering (`vehicle` of [log]) v is the throttle and omega the
+        steering, both in [-1, 1].
+        """
         self._core.push_command(t, v, omega, vy)
 
     def push_wheels(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
@@ -379,7 +390,8 @@ class MotionLearner:
         return with_memory(content, self._core.completed(), (kept.structure, kept.motion), self._start)
 
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
-        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if limits else None
+        wanted = limits and model.car is None  # a car's curves hold a dead band and a top speed
+        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if wanted else None
         each = list(zip(JUDGING_HORIZONS, model.held_out, model.students, strict=True))
         horizon, held_out, _ = each[judged_horizon([len(predictions) for _, predictions, _ in each])]
         predictions, baseline = predictions_of([held_out.columns()], [horizon])
@@ -392,6 +404,7 @@ class MotionLearner:
             None,
             tuple(basis.name for basis in self._settings.bases()),
             None if found is None else found.search,
+            model.car,
         )
 
     def save(self) -> bytes:
@@ -447,3 +460,9 @@ class MotionLearner:
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""
+
+
+def _car(settings: Settings) -> _core.CarPrior | None:
+    """Return what is taken of a car that is told throttle and steering, where the settings name one."""
+    car = settings.log_options().car
+    return None if car is None else _core.CarPrior(car.top_speed, car.curvature)

@@ -127,7 +127,7 @@ def _figures(held_out: HeldOut) -> str:
 
 def _unknown(known: Identified) -> str:
     count = len(known.not_identifiable)
-    if count == 0:
+    if count == 0 or known.parameters == 0:
         return ""
     return f"{count} of {known.parameters} parameters stay about where they were before {known.from_log}."
 

@@ -20,6 +20,7 @@ from slipwise.evaluation.neural import neural, neural_residual
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_predictor
 from slipwise.models.model import Model
+from slipwise.segments import car_prior
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,9 +66,7 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
         SettingsError: there is no such method.
     """
     special = {
-        "none": MethodInfo(
-            _by(lambda _, c: baseline_predictor(c.settings)), "the kinematic baseline: no slip, no lag"
-        ),
+        "none": MethodInfo(_plain, "the kinematic baseline: no slip, no lag"),
         "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
         "model": MethodInfo(_by(_model), "the model file as it is"),
         "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
@@ -136,6 +135,22 @@ def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     return tuple(replace(predictions, method=name) for predictions in learned.predictions)
 
 
+def _refuse_car(model: Model) -> None:
+    if model.car is not None:
+        raise SettingsError(
+            "a model of throttle and steering is not judged as it is", advice="auto learns it again, causally"
+        )
+
+
+def _plain(_: str, contest: Contest) -> tuple[Predictions, ...]:
+    """Predict by the input alone; throttle and steering by a bicycle with the best constant gains so far."""
+    drive = contest.windows.drive
+    if drive[0].input_name == "wheel" or car_prior([run.run for run in drive]) is None:
+        return predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
+    horizons = [targets.length for targets in contest.targets]
+    return learn_log(drive, contest.settings, horizons).baseline
+
+
 def _neural(_: str, contest: Contest) -> tuple[Predictions, ...]:
     baseline = predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
     return tuple(neural(*pair) for pair in zip(contest.targets, baseline, strict=True))
@@ -175,5 +190,6 @@ def _model(name: str, contest: Contest) -> Predictor:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
+    _refuse_car(contest.models[name])
     causal = name not in contest.learned_from_this
     return replace(model_predictor(contest.models[name]), method=name, causal=causal)

@@ -99,6 +99,7 @@ def export_model(
         SettingsError: there is no such target.
     """
     made = find_target(target)
+    model.refuse_throttle("exported files")
     if not force:
         refuse_bad_verdict(model)
     return made.make(model, options or ExportOptions(), origin_lines(model, name))

@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.errors import LogError
 
 Floats = NDArray[np.float64]
@@ -18,6 +19,24 @@ Bools = NDArray[np.bool_]
 
 ABSURD = 1e30  # no measurement in SI units is larger
 OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw")
+
+
+@dataclass(frozen=True, eq=False)
+class CarCommands:
+    """Throttle and steering as they were commanded, and what is taken of a car before it drives."""
+
+    throttle: Floats  # [N] in [-1, 1]
+    steering: Floats  # [N] in [-1, 1], to the left
+    top_speed: float  # m/s, at full throttle
+    curvature: float  # 1/m, at full steering
+
+    def prior(self) -> _core.CarPrior:
+        """Return what is taken before a car drives, as the core has it."""
+        return _core.CarPrior(self.top_speed, self.curvature)
+
+    def between(self, part: slice) -> CarCommands:
+        """Return the commands of some rows."""
+        return replace(self, throttle=self.throttle[part], steering=self.steering[part])
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +51,9 @@ class Inputs:
     v: Floats  # [N] m/s, forward
     vy: Floats  # [N] m/s, to the left
     omega: Floats  # [N] rad/s, counter-clockwise
+    car: CarCommands | None = (
+        None  # where throttle and steering were commanded: v and omega are about what they do
+    )
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))
@@ -177,7 +199,9 @@ def _check_series(series: Inputs | Poses, *, required: tuple[str, ...]) -> None:
     """Refuse a series whose columns do not fit together; the only place where this is checked."""
     name = type(series).__name__
     length = len(series.t)
-    for column in (column for column in fields(series) if column.init and column.name != "course"):
+    for column in (
+        column for column in fields(series) if column.init and column.name not in ("course", "car")
+    ):
         values = getattr(series, column.name)
         if values is None:
             continue

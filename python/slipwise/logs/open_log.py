@@ -117,7 +117,12 @@ def _completed(log: Log, options: LogOptions) -> Log:
         from slipwise.logs.poses_beside import with_poses
 
         log = with_poses(log, options.poses, options)
-    return cut_to_span(turned_poses(log, options), options.start, options.end)
+    log = cut_to_span(turned_poses(log, options), options.start, options.end)
+    if options.car is None:
+        return log
+    from slipwise.logs.car_commands import with_car_commands
+
+    return with_car_commands(log, options)
 
 
 def _named(log: Log, file: Path, path: Path) -> Log:

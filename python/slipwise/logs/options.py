@@ -14,7 +14,7 @@ from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
 
 if TYPE_CHECKING:
-    from slipwise.logs.vehicle_description import VehicleDescription
+    from slipwise.logs.vehicle_description import ThrottleSteering, VehicleDescription
 
 AUTO = "auto"
 
@@ -87,6 +87,12 @@ class LogOptions:
         """The vehicle, where its description names each wheel."""
         described = self._described()
         return described if described is not None and described.wheels else None
+
+    @property
+    def car(self) -> ThrottleSteering | None:
+        """What is taken of a car that is told throttle and steering, where the vehicle is one."""
+        described = self._described()
+        return None if described is None else described.throttle_steering
 
     @property
     def files(self) -> tuple[Path, ...]:

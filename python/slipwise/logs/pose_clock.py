@@ -235,11 +235,11 @@ def _lagged(inputs: Inputs, lag: float) -> Inputs:
     t = np.arange(float(inputs.t[0]), float(inputs.t[-1]), 2.0 * _FINE)
     kernel = np.exp(-np.arange(0.0, 6.0 * lag, 2.0 * _FINE) / lag)
     held = np.clip(np.searchsorted(inputs.t, t, side="right") - 1, 0, None)
-    columns = (
+    v, vy, omega = (
         np.convolve(column[held], kernel / kernel.sum())[: len(t)]
         for column in (inputs.v, inputs.vy, inputs.omega)
     )
-    return Inputs(t, *columns)
+    return Inputs(t, v, vy, omega)
 
 
 def _correlation(f: Floats, g: Floats) -> float:

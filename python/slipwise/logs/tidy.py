@@ -91,7 +91,9 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
 
 def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
     notes: list[str] = []
-    require_columns(table, poses=options.poses is None, described=options.wheels is not None)
+    require_columns(
+        table, poses=options.poses is None, described=options.wheels is not None, car=options.car is not None
+    )
     if len(table) == 0:
         raise LogError("the table has no rows", where=str(table.path), advice="record the log again")
     rows = _rows(table, options, tally, notes)

@@ -19,7 +19,9 @@ from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import twists_of_wheels, wheel_names
 
 TEXT = ("run", "frame", "terrain")
+CAR = ("throttle", "steering")  # commands without units of a car
 NUMERIC = (
+    *CAR,
     *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_curvature", "cmd_steer", "odo_v", "odo_vy"),
     *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
 )
@@ -48,17 +50,18 @@ class InputColumns:
         return twist if self.vy is None else {**twist, "vy": self.vy}
 
 
-def require_columns(table: Table, *, poses: bool, described: bool = False) -> None:
+def require_columns(table: Table, *, poses: bool, described: bool = False, car: bool = False) -> None:
     """Check that the table has a time, some input and, where `poses` come from it, a pose.
 
-    Wheels of a vehicle that is `described` are looked for when they are read.
+    Wheels of a vehicle that is `described` are looked for when they are read. A `car` is told throttle and
+    steering.
 
     Raises:
         LogError: it does not; the error names what is missing and what was found.
     """
     names = table.names
     missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
-    commands = "cmd_v" in names or "cmd_vx" in names
+    commands = "cmd_v" in names or "cmd_vx" in names or (car and {*CAR} <= set(names))
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
     if not commands and not wheels and not described:
         alone = "cmd_curvature" in names  # without a speed it is no motion
@@ -81,6 +84,9 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     """
     names = table.names
     forward = "cmd_v" if "cmd_v" in names else "cmd_vx"
+    if options.car is not None and {*CAR} <= set(names):
+        throttle, steering = (table.numbers(name, tally) for name in CAR)
+        return InputColumns(throttle, None, steering)
     if forward not in names:
         if "cmd_curvature" in names:
             notes.append(f"{table.path.name}: cmd_curvature has no cmd_v beside it and is not used")

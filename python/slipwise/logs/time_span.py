@@ -54,8 +54,8 @@ def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:
         return None
     held = max(int(np.searchsorted(inputs.t, low, side="right")) - 1, 0)
     part = slice(held, int(np.searchsorted(inputs.t, high, side="right")))
-    columns = (column[part] for column in (inputs.t, inputs.v, inputs.vy, inputs.omega))
-    cut = Inputs(*columns)
+    t, v, vy, omega = (column[part] for column in (inputs.t, inputs.v, inputs.vy, inputs.omega))
+    cut = Inputs(t, v, vy, omega, None if inputs.car is None else inputs.car.between(part))
     return cut if len(cut) else None
 
 

@@ -64,6 +64,13 @@ class Tracks(_Part):
     separation: Size  # m, between the middles of left and right
 
 
+class ThrottleSteering(_Part):
+    """A car that is told throttle and steering in [-1, 1]: what is taken before its curves are learned."""
+
+    top_speed: Annotated[float, Field(gt=0.0, le=100.0)]  # m/s, at full throttle
+    curvature: Annotated[float, Field(gt=0.0, le=100.0)]  # 1/m, at full steering
+
+
 class HingeDescription(_Part):
     """The joint of an articulated vehicle; its angle is the column `steer_NAME` or the joint NAME."""
 
@@ -80,6 +87,7 @@ class VehicleDescription(_Part):
     left_joints: list[Name] = []  # of tracks
     right_joints: list[Name] = []
     wheelbase: Size | None = None  # m, of a car that is commanded or measured by its steering angle
+    throttle_steering: ThrottleSteering | None = None  # of a wheelbase, where commands have no units
     wheels: list[WheelDescription] = Field([], max_length=_MOST_WHEELS)
     hinge: HingeDescription | None = None
     rolling_std: Std = 0.02  # m/s, along the rollers' axes or a plain wheel's direction
@@ -145,6 +153,9 @@ def _checked(content: Any, *, where: str) -> VehicleDescription:
         raise SettingsError(
             f"a vehicle drives on one kind of thing, not on {said}", where=where, advice=advice
         )
+    if found.throttle_steering is not None and found.wheelbase is None:
+        advice = f"give the wheelbase of the car; {_SEE}"
+        raise SettingsError("throttle_steering is of a car", where=where, advice=advice)
     names = [wheel.name for wheel in found.wheels]
     if len(set(names)) < len(names):
         raise SettingsError("two wheels have the same name", where=where, advice="name them by their joints")

@@ -18,6 +18,7 @@ from slipwise import _core
 from slipwise.errors import ModelError
 from slipwise.files import write_text_whole
 from slipwise.frames import data_frame
+from slipwise.models.car import core_car
 from slipwise.models.limits import core_limits
 from slipwise.models.schema import SCHEMA_VERSION, ModelFile
 from slipwise.models.upgrade import READ_VERSIONS, upgraded
@@ -177,6 +178,24 @@ class Model:
         section = self.content.limits
         return None if section is None else core_limits(section)
 
+    @cached_property
+    def car(self) -> _core.CarCurves | None:
+        """What throttle and steering do, where these are the commands."""
+        section = self.content.car
+        return None if section is None else core_car(section)
+
+    def refuse_throttle(self, what: str) -> None:
+        """Refuse a use that takes speeds and yaw rates where the model takes throttle and steering.
+
+        Raises:
+            ModelError: it does.
+        """
+        if self.content.car is not None:
+            raise ModelError(
+                f"{what} need speeds and yaw rates, and this model takes throttle and steering",
+                advice="predict() takes them; or calibrate from measured speeds, with --input wheel",
+            )
+
     def driven(self, inputs: _core.InputHistory) -> _core.InputHistory:
         """Return what reaches the actuator of these inputs: what the drive's limits leave of them."""
         if self.limits is None:
@@ -259,7 +278,7 @@ class Model:
             f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
         )
         content = self.content.model_dump(mode="json")
-        for key in ("surfaces", "labels"):
+        for key in ("surfaces", "labels", "car"):
             if not content[key]:
                 del content[key]
         for surface in content.get("surfaces", ()):

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
@@ -172,6 +173,33 @@ class AxisLimitsSection(_Section):
     slew_rate_down: LearnedLimit | None = None  # towards zero no quicker
 
 
+class KnotCurveSection(_Section):
+    """A function that is straight between its knots; beyond the last it stays level."""
+
+    at: Annotated[list[Finite], Field(min_length=2)]  # increasing
+    value: list[Finite]
+    std: list[NotNegative]  # of the values; near the prior's where nothing was driven
+
+    @model_validator(mode="after")
+    def _knots_fit(self) -> KnotCurveSection:
+        if not len(self.at) == len(self.value) == len(self.std):
+            raise ValueError("a curve needs a value and a deviation at each knot")
+        if any(low >= high for low, high in pairwise(self.at)):
+            raise ValueError("the knots of a curve must increase")
+        return self
+
+
+class CarSection(_Section):
+    """What throttle and steering in [-1, 1] of a car do; the rest of the model stands behind it."""
+
+    speed: KnotCurveSection  # by throttle [m/s]
+    curvature: KnotCurveSection  # by steering [1/m]
+    lag: NotNegative  # of the speed [s]
+    steering_lag: NotNegative  # [s]
+    cornering_drag: NotNegative  # [s/rad]
+    understeer: NotNegative  # [s^2/m^2]
+
+
 class LimitsSection(_Section):
     """Limits before delay and lag: of the commands, then of each side's speed, v -+ w separation / 2."""
 
@@ -260,6 +288,7 @@ class ModelFile(_Section):
     response: bool = False  # gain and slow mode of the drive are parameters, learned from wheel speeds
     sensor_extrinsics: bool = False  # the pose of the pose sensor in base_link is three parameters
     limits: LimitsSection | None = None  # of the drive, in front of its delay and lag
+    car: CarSection | None = None  # commands are throttle and steering of a car
     parameters: list[Parameter]
     covariance: list[list[Finite]]
     noise: Noise

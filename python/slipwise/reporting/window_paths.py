@@ -11,6 +11,7 @@ import numpy as np
 from slipwise import _core
 from slipwise.calibration.settings import make_settings
 from slipwise.logs.log import Floats, Poses, Run
+from slipwise.prediction import asked_twists
 from slipwise.reporting.chosen_windows import ChosenWindow
 from slipwise.reporting.contents import Contents
 from slipwise.segments import WindowRules, cut_windows
@@ -36,7 +37,7 @@ def window_paths(contents: Contents, chosen: Sequence[ChosenWindow]) -> dict[Cho
         inputs = contents.inputs(run)
         if inputs is None:
             continue
-        history = _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)
+        history = asked_twists(contents.calibration.model, inputs)
         limited = contents.calibration.model.driven(history)
         segments = _segments(contents, run)
         for window in (window for window in chosen if window.run == place):
@@ -60,7 +61,8 @@ class _Drive:
 def _paths(contents: Contents, window: ChosenWindow, drive: _Drive) -> WindowPaths:
     model = contents.calibration.model
     baseline_model = _core.MotionModel(_core.Basis("none", [], [], []), False, False)
-    known = _known_parameters(contents, window)
+    # Of a car's curves only the last are known here.
+    known = None if model.car is not None else _known_parameters(contents, window)
     parameters = model.mean if known is None else known
     return WindowPaths(
         measured=drive.measured,

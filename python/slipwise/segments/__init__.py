@@ -4,10 +4,19 @@
 from slipwise.segments.windows import (
     WindowRules,
     Windows,
+    car_prior,
     cut_windows,
     recording_of,
     recording_rows,
     rejections,
 )
 
-__all__ = ["WindowRules", "Windows", "cut_windows", "recording_of", "recording_rows", "rejections"]
+__all__ = [
+    "WindowRules",
+    "Windows",
+    "car_prior",
+    "cut_windows",
+    "recording_of",
+    "recording_rows",
+    "rejections",
+]

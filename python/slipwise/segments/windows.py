@@ -61,9 +61,14 @@ class Windows:
 
 
 def input_rows(inputs: Inputs | None) -> Floats:
-    """Return rows of (t, v, vy, omega), [N, 4]; none where there are no inputs."""
+    """Return rows of (t, v, vy, omega), [N, 4]; none where there are no inputs.
+
+    Of a car that is told throttle and steering, v is the throttle and omega the steering.
+    """
     if inputs is None:
         return np.empty((0, 4))
+    if inputs.car is not None:
+        return np.column_stack((inputs.t, inputs.car.throttle, inputs.vy, inputs.car.steering))
     return np.column_stack((inputs.t, inputs.v, inputs.vy, inputs.omega))
 
 
@@ -99,12 +104,19 @@ def _between(rows: Floats, since: float, until: float) -> Floats:
     return rows[first:last]
 
 
+def car_prior(runs: Sequence[Run]) -> _core.CarPrior | None:
+    """Return what is taken of a car before it drives, where throttle and steering were commanded."""
+    cars = (run.commands.car for run in runs if run.commands is not None)
+    return next((car.prior() for car in cars if car is not None), None)
+
+
 def cut_windows(runs: Sequence[Run], settings: _core.StreamSettings) -> Windows:
     """Cut runs into segments, each as soon after the last as the poses and rules allow.
 
     No segment depends on a pose measured after its end, so that a log cut off at any time has the same
     segments until then.
     """
+    settings.car = car_prior(runs) if settings.from_commands else None
     cut = _core.cut_segments(settings, [recording_of(run) for run in runs])
     segments = tuple(driven.segment for driven in cut.segments)
     measured = [segment.measured.vector() for segment in segments]

@@ -91,6 +91,7 @@ struct LearnedModel {
   double seconds;                            ///< of all segments learned
   std::size_t segments;
   RejectionCounts rejected;
+  std::optional<CarCurves> car = {};  ///< where commands are throttle and steering
 };
 
 /// Streams must be in order each; they may be late relative to each other by the latency of the settings. No push
@@ -104,6 +105,7 @@ class MotionLearner {
   void start_run();
   /// Nothing more comes of this run: what waits for later measurements is learned.
   void end_run();
+  /// Of a car (`StreamSettings::car`) v is the throttle and omega the steering.
   void push_command(double t, const BodyTwist& twist);
   void push_wheels(double t, const BodyTwist& twist);
   /// A pose, or a position alone, whose heading is taken from the course of its path; odometry needs poses.

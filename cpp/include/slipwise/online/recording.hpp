@@ -39,6 +39,10 @@ struct CutRuns {
 /// The segments that a learner with these settings learns.
 CutRuns cut_segments(const StreamSettings& settings, std::span<const Recording> runs);
 
+/// About what a car makes of each command of throttle and steering (`settings.car`): what a learner's gates see.
+std::vector<std::vector<InputSample>> expected_commands(const StreamSettings& settings,
+                                                        std::span<const Recording> runs);
+
 /// The poses of a recorded run as a learner uses them: outliers rejected, frames numbered again where poses jump.
 GatedPoses gate_poses(const Recording& run, double unknown_after);
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/gyro_buffer.hpp"
 #include "slipwise/online/input_buffer.hpp"
@@ -35,12 +36,14 @@ struct StreamSettings {
   double latency = 0.5;                            ///< streams may be late relative to each other by up to this [s]
   std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
   Pose2 sensor = {};                               ///< where the pose sensor is known to sit in base_link
+  std::optional<CarPrior> car = {};                ///< commands are throttle (v) and steering (omega) of a car
 };
 
 /// A segment whose prediction is held against what was measured.
 struct TargetSegment {
   std::size_t horizon;  ///< among the settings'
   DrivenSegment driven;
+  std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
 };
 
 /// A segment from which slip is learned behind measured wheel speeds.
@@ -110,6 +113,8 @@ class SegmentStream {
   DrivenSegment stretch(double start, double end, double back) const;
   /// What motion is predicted from.
   const InputBuffer& inputs() const { return settings_.from_commands ? commands_ : wheels_; }
+  /// What throttle and steering do, where they are the commands.
+  std::optional<CarCurves> car_curves() const { return car_ ? std::optional(car_->curves()) : std::nullopt; }
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -118,7 +123,8 @@ class SegmentStream {
       self.wheels_ever_, self.range_);
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
       self.wheel_timer_, self.learned_, self.slip_);
-    a(self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_, self.learned_last_);
+    a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
+      self.learned_last_);
     a(self.chords_, self.position_last_, self.gyro_);
   }
 
@@ -139,7 +145,12 @@ class SegmentStream {
   void trim();
   const InputBuffer& gate_inputs(double t) const;
   std::vector<InputSample> repeated(const std::vector<InputSample>& future, double end) const;
-  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at, bool foreseen = false) const;
+  DrivenSegment driven(const SegmentCut& cut, bool by_wheels, double known_at,
+                       std::optional<double> horizon = std::nullopt) const;
+  /// What commands ask for over [start, end] and `back` [s] before, by what was known of a car at `known` [s].
+  InputHistory commanded(const Segment& over, double back, double known,
+                         const std::vector<InputSample>& future = {}) const;
+  const InputBuffer& given() const { return car_ && settings_.from_commands ? car_->given() : inputs(); }
   void set_actuator_state(Segment& segment) const;
   void set_course(Segment& segment, const SegmentCut& cut) const;
   MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;
@@ -168,6 +179,7 @@ class SegmentStream {
   SegmentCutter wheel_cutter_;
   PoseTwists twists_;
   std::vector<SegmentCutter> targets_;
+  std::optional<CarStream> car_;  ///< where commands are throttle and steering
   std::vector<StreamItem> items_;
   std::vector<Rejected> rejected_;
   long breaks_ = 0;           ///< times that poses were not learned from

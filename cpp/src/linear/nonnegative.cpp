@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Unknowns enter one by one where that lowers the cost, and leave where the solution would turn negative.
-#include "slipwise/thesis/nonnegative.hpp"
+#include "slipwise/linear/nonnegative.hpp"
 
 #include <algorithm>
 #include <stdexcept>

@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "slipwise/thesis/nonnegative.hpp"
+#include "slipwise/linear/nonnegative.hpp"
 
 namespace slipwise {
 namespace {

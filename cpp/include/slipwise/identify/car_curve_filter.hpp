@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learns what throttle and steering of a car do from how it moved, recursively: nothing later is used
+// (derivations/car-commands.md).
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "slipwise/actuator/car_curves.hpp"
+
+namespace slipwise {
+
+/// What is taken of a car before it drives: straight curves.
+struct CarPrior {
+  double top_speed = 4.0;  ///< at full throttle [m/s]
+  double curvature = 2.0;  ///< at full steering [1/m]
+};
+
+/// Least squares of increments that are not negative, for several lags side by side; the lag that predicts best counts.
+class CurveBank {
+ public:
+  CurveBank() = default;
+  /// `prior` and its `std` [d] of the weights; each output is known to about `noise`. Weights before `free` may be
+  /// negative.
+  CurveBank(std::size_t candidates, const Eigen::VectorXd& prior, const Eigen::VectorXd& std, double noise,
+            Eigen::Index free);
+
+  /// Scores each candidate by what it knew before, then learns; row k of `features` is that of candidate k.
+  void learn(const Eigen::MatrixXd& features, double output);
+  /// Solves for the weights that are used from now on.
+  void solve();
+  std::size_t best() const;
+  const Eigen::VectorXd& weights() const { return weights_[best()]; }
+  /// Of the weights, as if none were bounded: rather too large.
+  Eigen::MatrixXd covariance() const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.information_, self.evidence_, self.weights_, self.squares_, self.precision_, self.prior_, self.free_);
+    a(self.examples_, self.noise_);
+  }
+
+ private:
+  double variance(std::size_t k) const;
+
+  std::vector<Eigen::MatrixXd> information_;  ///< of the data alone, in units of 1 / noise variance
+  std::vector<Eigen::VectorXd> evidence_;
+  std::vector<Eigen::VectorXd> weights_;
+  std::vector<double> squares_;  ///< of the errors of what was predicted, large ones counted less
+  Eigen::VectorXd precision_, prior_;
+  Eigen::Index free_ = 0;
+  double examples_ = 0.0, noise_ = 1.0;
+};
+
+/// How long what curves do not explain lasts: lags side by side, of which the one that predicts best counts.
+class RestFilter {
+ public:
+  RestFilter();
+
+  void start_run() { past_.clear(); }
+  void learn(double t, double rest, double noise);
+  double lag() const;
+  /// What was left lately; 0 at first.
+  double rest() const { return past_.empty() ? 0.0 : past_.back().second; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.score_, self.past_);
+  }
+
+ private:
+  std::vector<double> score_;
+  std::deque<std::pair<double, double>> past_;  ///< stamp [s] and rest, of the last twists
+};
+
+/// The factor that fits best so far.
+struct ConstantGain {
+  double products = 0.0, squares = 0.0;
+
+  void learn(double input, double output) {
+    products += input * output;
+    squares += input * input;
+  }
+  double value() const { return products / squares; }
+};
+
+/// Follows one car through its runs.
+class CarCurveFilter {
+ public:
+  CarCurveFilter() : CarCurveFilter(CarPrior{}) {}
+  explicit CarCurveFilter(const CarPrior& prior);
+
+  /// Another run begins: the car stands; what was learned stays.
+  void start_run(double t);
+  /// Goes on to `until` [s] under the commands (v is the throttle, omega the steering). `twist` is the mean over this
+  /// time as poses tell it; nullptr where they do not.
+  void follow(const InputHistory& commands, double until, const BodyTwist* twist);
+
+  double until() const { return until_; }
+  const CarCurves& curves() const { return curves_; }
+  /// A kinematic bicycle without lag, whose two constant gains are the best so far: what curves are held against.
+  CarCurves straight() const;
+  /// What it does now, followed by the curves and set right by what was measured.
+  KnownMotion motion() const;
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.curves_, self.speed_, self.turn_, self.ramps_, self.drags_, self.steering_, self.observers_,
+      self.observer_score_);
+    a(self.gain_, self.turn_gain_, self.until_, self.held_, self.learned_, self.turn_rest_, self.sideways_);
+  }
+
+ private:
+  struct Means;
+  void step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means);
+  void learn(const Means& means, const BodyTwist& twist);
+  void set_curves();
+
+  CarCurves curves_;
+  CurveBank speed_, turn_;
+  Eigen::MatrixXd ramps_;            ///< [ramps, lags] lagging ramps of the throttle
+  Eigen::VectorXd drags_;            ///< [lags] lagging |omega V|
+  Eigen::VectorXd steering_;         ///< [steering lags]
+  std::vector<CarState> observers_;  ///< each set right by another part of what was measured
+  std::vector<double> observer_score_;
+  double until_ = 0.0;
+  RestFilter turn_rest_, sideways_;
+  ConstantGain gain_, turn_gain_;  ///< of the throttle [m/s], of throttle times steering [rad/s]
+  BodyTwist held_{};               ///< the last measured twist
+  std::size_t learned_ = 0;        ///< twists
+};
+
+}  // namespace slipwise

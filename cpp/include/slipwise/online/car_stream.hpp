@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Commands of throttle and steering as the twists that a car is known to make of them, at each moment of a run
+// (derivations/car-commands.md).
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "slipwise/identify/car_curve_filter.hpp"
+#include "slipwise/lie/se2.hpp"
+#include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/pose_gate.hpp"
+
+namespace slipwise {
+
+/// Keeps the commands as they were given, learns the car's curves from poses, and remembers what was known when.
+class CarStream {
+ public:
+  CarStream() : CarStream({}, {}, 1.0) {}
+  /// `sensor` is where the pose sensor sits in base_link; a command is unknown once it is older than `unknown_after`.
+  CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after);
+
+  /// Another run begins; what was learned stays.
+  void start_run();
+  /// About what the car does under a command, by what is known `latency` before it: the faster of what it does and
+  /// what it goes towards. For gates; v is the throttle, omega the steering.
+  BodyTwist expected(const InputSample& command, double latency) const;
+  void push_command(const InputSample& command, double latency);
+  /// Poses in order, none of them late or an outlier; commands are known until its stamp.
+  void push_pose(const MeasuredPose& pose);
+  /// Drops what is not needed after `t` [s].
+  void drop_before(double t);
+
+  /// Twists over [start, end] [s] and some seconds before, by the curves that were known at `known` [s]. The speed at
+  /// the start is what poses until then tell.
+  InputHistory inputs(double start, double end, double known, const std::vector<InputSample>& future = {}) const;
+  /// The same of a kinematic bicycle with the constant gains that fitted best until `known` [s].
+  InputHistory baseline(double start, double end, double known) const;
+  /// Commands as they were given.
+  const InputBuffer& given() const { return given_; }
+  const CarCurves& curves() const { return known_.back().curves; }
+
+  /// Names what is saved.
+  template <class Self, class Archive>
+  static void archive(Self& self, Archive& a) {
+    a(self.sensor_, self.given_, self.filter_, self.known_, self.motions_, self.since_, self.now_, self.last_);
+  }
+
+ private:
+  struct KnownCurves {
+    double until;  ///< [s] nothing later was used
+    CarCurves curves, straight;
+  };
+  const KnownCurves& known_at(double t) const;
+  CarState state_at(double t, double latency) const;
+
+  Pose2 sensor_;
+  InputBuffer given_;
+  CarCurveFilter filter_;
+  std::deque<KnownCurves> known_;
+  std::deque<KnownMotion> motions_;
+  std::optional<MeasuredPose> since_;  ///< where the twist begins that is being measured
+  CarState now_;                       ///< about, at the last command
+  std::optional<InputSample> last_;    ///< command
+};
+
+}  // namespace slipwise

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lagging ramps of the throttle explain the speed, ramps of the lagging steering the yaw rate.
+#include "slipwise/identify/car_curve_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "slipwise/actuator/first_order_lag.hpp"
+#include "slipwise/linear/cholesky.hpp"
+#include "slipwise/linear/nonnegative.hpp"
+#include "slipwise/linear/tuning.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr std::array kThrottle{0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.6, 0.8, 1.0};
+constexpr std::array kSteering{0.0, 0.2, 0.4, 0.6, 0.8, 1.0};
+constexpr std::array kLags{0.0, 0.1, 0.2, 0.4, 0.7, 1.2, 2.0};  // [s]
+constexpr std::array kSteeringLags{0.0, 0.05, 0.1, 0.2, 0.35};  // [s]
+constexpr std::array kGains{0.0, 0.25, 0.5, 0.75, 1.0};         // of a measured speed over the one that is followed
+constexpr Eigen::Index kThrottleRamps = 2 * (std::ssize(kThrottle) - 1);
+constexpr Eigen::Index kSteeringRamps = 2 * (std::ssize(kSteering) - 1);
+SLIPWISE_TUNING(kSpeedNoise, 0.1);  // [m/s] of a mean speed about the curve, before it is learned
+SLIPWISE_TUNING(kTurnNoise, 0.1);   // [rad/s]
+SLIPWISE_TUNING(kAlike, 0.2);       // examples next to each other are alike: each counts as so many
+SLIPWISE_TUNING(kNoiseExamples, 20.0);
+constexpr double kHuber = 2.0;      // standard deviations, beyond which errors count less
+constexpr double kUnsteep = 0.05;   // [m/s] that a ramp may differ from the prior's however flat that is
+constexpr double kOffsetStd = 0.1;  // of the curvature straight ahead, as a fraction of the full one
+constexpr double kCurvatureStd = 0.8;
+constexpr std::array kDragPrior{0.05, 0.3};                // mean and std [s/rad]
+constexpr std::array kUndersteerPrior{0.02, 0.2};          // [s^2/m^2]
+constexpr std::array kRestLags{0.0, 0.1, 0.25, 0.6, 1.5};  // [s]
+constexpr std::size_t kRestTwists = 3;  // from the one that was left over to the one that it is held against
+constexpr double kGainExamples = 1.0;   // at full throttle and steering, that the gains given are worth
+constexpr double kBeyond = 3.0;         // times the top speed and the tightest turn no car moves
+constexpr std::size_t kSolveEvery = 5;  // twists
+
+/// How far x is up each ramp between knots on its own side of zero; on the other side ramps go down.
+template <std::size_t N>
+Eigen::VectorXd ramps(const std::array<double, N>& knots, double x) {
+  constexpr auto kCount = static_cast<Eigen::Index>(N) - 1;
+  Eigen::VectorXd up(2 * kCount);
+  for (std::size_t i = 0; i + 1 < N; ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double width = knots[i + 1] - knots[i];
+    up[k] = std::clamp((x - knots[i]) / width, 0.0, 1.0);
+    up[kCount + k] = -std::clamp((-x - knots[i]) / width, 0.0, 1.0);
+  }
+  return up;
+}
+
+/// The curve whose increments over the ramps are `rise`, `offset` at zero.
+template <std::size_t N>
+KnotCurve curve_of(const std::array<double, N>& knots, const Eigen::VectorXd& weights,
+                   const Eigen::MatrixXd& covariance, bool offset) {
+  KnotCurve curve;
+  const Eigen::Index ramp_count = 2 * (static_cast<Eigen::Index>(N) - 1);
+  const Eigen::Index first = offset ? 1 : 0;
+  const auto add = [&](double x) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(first + ramp_count);
+    row.tail(ramp_count) = ramps(knots, x);
+    row.head(first).setOnes();
+    curve.at.push_back(x);
+    curve.value.push_back(row.dot(weights.head(row.size())));
+    curve.std.push_back(std::sqrt(std::max(row.dot(covariance.topLeftCorner(row.size(), row.size()) * row), 0.0)));
+  };
+  for (std::size_t i = N - 1; i > 0; --i) {
+    add(-knots[i]);
+  }
+  for (const double knot : knots) {
+    add(knot);
+  }
+  return curve;
+}
+
+template <std::size_t N>
+Eigen::VectorXd widths(const std::array<double, N>& knots) {
+  constexpr auto kCount = static_cast<Eigen::Index>(N) - 1;
+  Eigen::VectorXd both(2 * kCount);
+  for (std::size_t i = 0; i + 1 < N; ++i) {
+    both[static_cast<Eigen::Index>(i)] = both[kCount + static_cast<Eigen::Index>(i)] = knots[i + 1] - knots[i];
+  }
+  return both;
+}
+
+CurveBank speed_bank(const CarPrior& prior) {
+  Eigen::VectorXd mean(kThrottleRamps + 1), std(kThrottleRamps + 1);
+  mean << prior.top_speed * widths(kThrottle), kDragPrior[0];
+  std << (prior.top_speed * widths(kThrottle)).array() + kUnsteep, kDragPrior[1];
+  return {kLags.size(), mean, std, kSpeedNoise, 0};
+}
+
+CurveBank turn_bank(const CarPrior& prior) {
+  Eigen::VectorXd mean(kSteeringRamps + 2), std(kSteeringRamps + 2);
+  mean << 0.0, prior.curvature * widths(kSteering), kUndersteerPrior[0];
+  std << kOffsetStd * prior.curvature, kCurvatureStd * prior.curvature * widths(kSteering), kUndersteerPrior[1];
+  return {kSteeringLags.size(), mean, std, kTurnNoise, 1};
+}
+
+/// Poses that jump would leave a yaw rate and a speed whose product outweighs all others.
+bool plausible(const CarCurves& car, const BodyTwist& twist) {
+  const auto largest = [](const KnotCurve& curve) {
+    return std::max(std::abs(curve.value.front()), std::abs(curve.value.back()));
+  };
+  const double speed = kBeyond * largest(car.speed);
+  return std::abs(twist.v) <= speed && std::abs(twist.omega) <= speed * largest(car.curvature);
+}
+
+double huber_square(double error) {
+  const double size = std::abs(error);
+  return size > kHuber ? 2.0 * kHuber * size - kHuber * kHuber : error * error;
+}
+
+}  // namespace
+
+CurveBank::CurveBank(std::size_t candidates, const Eigen::VectorXd& prior, const Eigen::VectorXd& std, double noise,
+                     Eigen::Index free)
+    : information_(candidates, Eigen::MatrixXd::Zero(prior.size(), prior.size())),
+      evidence_(candidates, Eigen::VectorXd::Zero(prior.size())),
+      weights_(candidates, prior),
+      squares_(candidates, 0.0),
+      precision_(std.cwiseAbs2().cwiseInverse()),
+      prior_(prior),
+      free_(free),
+      noise_(noise) {}
+
+double CurveBank::variance(std::size_t k) const {
+  return (kNoiseExamples * noise_ * noise_ + squares_[k]) / (kNoiseExamples + examples_);
+}
+
+void CurveBank::learn(const Eigen::MatrixXd& features, double output) {
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    const Eigen::VectorXd row = features.row(static_cast<Eigen::Index>(k)).transpose();
+    const double size = variance(k);
+    const double error = (output - row.dot(weights_[k])) / std::sqrt(size);
+    const double weight = kAlike / std::max(1.0, std::abs(error) / kHuber);
+    squares_[k] += size * huber_square(error);
+    information_[k] += weight * row * row.transpose();
+    evidence_[k] += weight * output * row;
+  }
+  examples_ += 1.0;
+}
+
+void CurveBank::solve() {
+  const Eigen::Index d = prior_.size();
+  for (std::size_t k = 0; k < weights_.size(); ++k) {
+    // A weight that may be negative is the difference of two that may not.
+    Eigen::MatrixXd a(d + free_, d + free_);
+    Eigen::VectorXd b(d + free_);
+    a.topLeftCorner(d, d) = information_[k] / variance(k);
+    a.topLeftCorner(d, d).diagonal() += precision_;
+    b.head(d) = evidence_[k] / variance(k) + precision_.cwiseProduct(prior_);
+    a.bottomLeftCorner(free_, d) = -a.topLeftCorner(free_, d);
+    a.topRightCorner(d, free_) = -a.topLeftCorner(d, free_);
+    a.bottomRightCorner(free_, free_) = a.topLeftCorner(free_, free_);
+    a.bottomRightCorner(free_, free_).diagonal() += 1e-6 * precision_.head(free_);
+    b.tail(free_) = -b.head(free_);
+    const Eigen::VectorXd x = nonnegative_solution(a, b);
+    weights_[k] = x.head(d);
+    weights_[k].head(free_) -= x.tail(free_);
+  }
+}
+
+std::size_t CurveBank::best() const {
+  return static_cast<std::size_t>(std::ranges::min_element(squares_) - squares_.begin());
+}
+
+Eigen::MatrixXd CurveBank::covariance() const {
+  Eigen::MatrixXd information = information_[best()] / variance(best());
+  information.diagonal() += precision_;
+  return Cholesky(information).solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+}
+
+RestFilter::RestFilter() : score_(kRestLags.size(), 0.0) {}
+
+void RestFilter::learn(double t, double rest, double noise) {
+  past_.emplace_back(t, rest);
+  if (past_.size() <= kRestTwists) {
+    return;
+  }
+  const auto [since, before] = past_.front();
+  past_.pop_front();
+  for (std::size_t i = 0; i < kRestLags.size(); ++i) {
+    score_[i] += huber_square((rest - lag_output(before, 0.0, kRestLags[i], t - since)) / noise);
+  }
+}
+
+double RestFilter::lag() const {
+  return kRestLags[static_cast<std::size_t>(std::ranges::min_element(score_) - score_.begin())];
+}
+
+/// Sums of the features over the time since the last twist, in seconds of them.
+struct CarCurveFilter::Means {
+  Eigen::MatrixXd ramps = Eigen::MatrixXd::Zero(kThrottleRamps, std::ssize(kLags));
+  Eigen::VectorXd drags = Eigen::VectorXd::Zero(std::ssize(kLags));
+  Eigen::MatrixXd steering = Eigen::MatrixXd::Zero(kSteeringRamps, std::ssize(kSteeringLags));
+  std::array<double, kGains.size()> distance{};
+  BodyTwist told{};  ///< throttle, and throttle times steering
+  double seconds = 0.0;
+};
+
+CarCurveFilter::CarCurveFilter(const CarPrior& prior)
+    : speed_(speed_bank(prior)), turn_(turn_bank(prior)), observer_score_(kGains.size(), 0.0) {
+  gain_ = {.products = kGainExamples * prior.top_speed, .squares = kGainExamples};
+  turn_gain_ = {.products = kGainExamples * prior.top_speed * prior.curvature, .squares = kGainExamples};
+  start_run(0.0);
+  set_curves();
+}
+
+void CarCurveFilter::start_run(double t) {
+  ramps_ = Eigen::MatrixXd::Zero(kThrottleRamps, std::ssize(kLags));
+  drags_ = Eigen::VectorXd::Zero(std::ssize(kLags));
+  steering_ = Eigen::VectorXd::Zero(std::ssize(kSteeringLags));
+  observers_.assign(kGains.size(), {});
+  turn_rest_.start_run();
+  sideways_.start_run();
+  until_ = t;
+  held_ = {};
+}
+
+void CarCurveFilter::step(const BodyTwist& command, double duration, const BodyTwist& moved, Means& means) {
+  const Eigen::VectorXd up = ramps(kThrottle, command.v);
+  const double drag = std::abs(moved.omega * moved.v);
+  for (std::size_t i = 0; i < kLags.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const LagDecay decay(kLags[i], duration);
+    const auto advance = [&decay](double& state, double input, double& sum) {
+      const LagStep done = linearize_lag_step(state, input, decay).value;
+      state = done.output;
+      sum += done.integral;
+    };
+    for (Eigen::Index r = 0; r < kThrottleRamps; ++r) {
+      advance(ramps_(r, k), up[r], means.ramps(r, k));
+    }
+    advance(drags_[k], drag, means.drags[k]);
+  }
+  for (std::size_t i = 0; i < kSteeringLags.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double before = steering_[k];
+    steering_[k] = lag_output(before, command.omega, kSteeringLags[i], duration);
+    means.steering.col(k) += duration * ramps(kSteering, 0.5 * (before + steering_[k]));
+  }
+  for (std::size_t i = 0; i < observers_.size(); ++i) {
+    const double before = observers_[i].speed;
+    observers_[i] = advanced(curves_, observers_[i], command, duration);
+    means.distance[i] += 0.5 * duration * (before + observers_[i].speed);
+  }
+  means.told.v += duration * command.v;
+  means.told.omega += duration * command.v * command.omega;
+  means.seconds += duration;
+}
+
+void CarCurveFilter::follow(const InputHistory& commands, double until, const BodyTwist* twist) {
+  if (!(until > until_)) {
+    return;
+  }
+  if (twist != nullptr && !plausible(curves_, *twist)) {
+    twist = nullptr;
+  }
+  if (twist != nullptr) {
+    held_ = *twist;
+  }
+  constexpr double kLongest = 0.05;  // [s] of a step
+  Means means;
+  double now = until_;
+  std::size_t next = commands.count_until(now);
+  while (now < until) {
+    const double change = next < commands.size() ? commands.time(next) : until;
+    const double end = std::min({until, std::max(change, now), now + kLongest});
+    if (end > now) {
+      step(next > 0 ? commands.sample(next - 1) : BodyTwist{}, end - now, held_, means);
+      now = end;
+    }
+    next += next < commands.size() && change <= now ? 1 : 0;
+  }
+  until_ = until;
+  if (twist != nullptr) {
+    learn(means, *twist);
+  }
+}
+
+void CarCurveFilter::learn(const Means& means, const BodyTwist& twist) {
+  Eigen::MatrixXd speed(std::ssize(kLags), kThrottleRamps + 1);
+  speed << means.ramps.transpose(), -means.drags;
+  speed_.learn(speed / means.seconds, twist.v);
+  Eigen::MatrixXd turn(std::ssize(kSteeringLags), kSteeringRamps + 2);
+  turn.col(0).setConstant(twist.v);
+  turn.middleCols(1, kSteeringRamps) = twist.v / means.seconds * means.steering.transpose();
+  turn.col(kSteeringRamps + 1).setConstant(-twist.v * twist.v * twist.omega);
+  turn_.learn(turn, twist.omega);
+  for (std::size_t i = 0; i < observers_.size(); ++i) {
+    const double error = twist.v - means.distance[i] / means.seconds;
+    observer_score_[i] += huber_square(error / kSpeedNoise);
+    observers_[i].speed += kGains[i] * error;
+  }
+  gain_.learn(means.told.v / means.seconds, twist.v);
+  turn_gain_.learn(means.told.omega / means.seconds, twist.omega);
+  const CarState now{.speed = twist.v, .steering = observers_.front().steering};
+  turn_rest_.learn(until_, twist.omega - car_twist(curves_, now).omega, kTurnNoise);
+  sideways_.learn(until_, twist.vy, kSpeedNoise);
+  if (++learned_ % kSolveEvery == 0) {
+    set_curves();
+  }
+}
+
+void CarCurveFilter::set_curves() {
+  speed_.solve();
+  turn_.solve();
+  const Eigen::MatrixXd of_turn = turn_.covariance();
+  curves_ = {.speed = curve_of(kThrottle, speed_.weights(), speed_.covariance(), false),
+             .curvature = curve_of(kSteering, turn_.weights(), of_turn, true),
+             .lag = kLags[speed_.best()],
+             .steering_lag = kSteeringLags[turn_.best()],
+             .cornering_drag = speed_.weights()[kThrottleRamps],
+             .understeer = turn_.weights()[kSteeringRamps + 1]};
+}
+
+CarCurves CarCurveFilter::straight() const {
+  const double speed = gain_.value(), curvature = speed > 0.0 ? turn_gain_.value() / speed : 0.0;
+  return {.speed = {.at = {-1.0, 1.0}, .value = {-speed, speed}, .std = {0.0, 0.0}},
+          .curvature = {.at = {-1.0, 1.0}, .value = {-curvature, curvature}, .std = {0.0, 0.0}}};
+}
+
+KnownMotion CarCurveFilter::motion() const {
+  const auto best = std::ranges::min_element(observer_score_) - observer_score_.begin();
+  return {.t = until_,
+          .speed = observers_[static_cast<std::size_t>(best)].speed,
+          .turn = turn_rest_.rest(),
+          .turn_lag = turn_rest_.lag(),
+          .sideways = sideways_.rest(),
+          .sideways_lag = sideways_.lag()};
+}
+
+}  // namespace slipwise

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// Twists between poses teach the curves; segments take those that were known before them.
+#include "slipwise/online/car_stream.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "slipwise/online/learner_times.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kInterval = 0.2;   // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kLongest = 1.0;    // [s] of a twist; over longer ones a car does too much
+constexpr double kRounding = 1e-6;  // [s] of stamps
+constexpr double kBefore = 5.0;     // [s] of twists before a segment, which delays and lags behind the curves ask for
+constexpr double kLongAgo = 1e5;    // [s] the first of them was held for
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
+  return {.v = std::abs(a.v) > std::abs(b.v) ? a.v : b.v,
+          .vy = 0.0,
+          .omega = std::abs(a.omega) > std::abs(b.omega) ? a.omega : b.omega};
+}
+
+}  // namespace
+
+CarStream::CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after)
+    : sensor_(sensor), given_(unknown_after), filter_(prior) {
+  known_.push_back({.until = -kNever, .curves = filter_.curves(), .straight = filter_.straight()});
+}
+
+void CarStream::start_run() {
+  given_.clear();
+  since_.reset();
+  last_.reset();
+  now_ = {};
+  motions_.clear();
+  known_.erase(known_.begin(), known_.end() - 1);
+  known_.front().until = -kNever;  // all is known by then, and stamps may begin again
+}
+
+const CarStream::KnownCurves& CarStream::known_at(double t) const {
+  for (auto known = known_.rbegin(); known != known_.rend(); ++known) {
+    if (known->until <= t + kRounding) {
+      return *known;
+    }
+  }
+  return known_.front();
+}
+
+CarState CarStream::state_at(double t, double latency) const {
+  return last_ && t > last_->t ? advanced(known_at(last_->t - latency).curves, now_, last_->twist, t - last_->t) : now_;
+}
+
+BodyTwist CarStream::expected(const InputSample& command, double latency) const {
+  if (!std::isfinite(command.t) || !std::isfinite(command.twist.v) || !std::isfinite(command.twist.omega)) {
+    return command.twist;
+  }
+  const CarCurves& car = known_at(command.t - latency).curves;
+  const CarState goal{.speed = car.speed(command.twist.v), .steering = command.twist.omega};
+  return faster(car_twist(car, state_at(command.t, latency)), car_twist(car, goal));
+}
+
+void CarStream::push_command(const InputSample& command, double latency) {
+  now_ = state_at(command.t, latency);
+  last_ = command;
+  given_.push(command);
+}
+
+void CarStream::push_pose(const MeasuredPose& pose) {
+  if (!since_) {
+    filter_.start_run(given_.empty() ? pose.t : std::min(pose.t, given_.first()));
+  }
+  const double seconds = since_ ? pose.t - since_->t : 0.0;
+  const bool joined = since_ && pose.frame == since_->frame && seconds <= kLongest;
+  if (joined && seconds < kInterval - kRounding) {
+    return;
+  }
+  const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
+  const InputHistory commands = given_.slice(filter_.until(), pose.t, SliceKind::Commands);
+  if (joined && given) {
+    const Pose2 moved = between({since_->x, since_->y, since_->yaw}, {pose.x, pose.y, pose.yaw});
+    const Eigen::Vector3d twist = adjoint(sensor_) * log(moved) / seconds;
+    const BodyTwist measured{.v = twist.x(), .vy = twist.y(), .omega = twist.z()};
+    filter_.follow(commands, pose.t, &measured);
+    motions_.push_back(filter_.motion());
+    known_.push_back({.until = pose.t, .curves = filter_.curves(), .straight = filter_.straight()});
+  } else {
+    filter_.follow(commands, pose.t, nullptr);
+  }
+  since_ = pose;
+}
+
+void CarStream::drop_before(double t) {
+  given_.drop_before(t);
+  while (known_.size() > 1 && known_[1].until < t) {
+    known_.pop_front();
+  }
+  while (motions_.size() > 1 && motions_[1].t < t) {
+    motions_.pop_front();
+  }
+}
+
+InputHistory CarStream::inputs(double start, double end, double known, const std::vector<InputSample>& future) const {
+  CarSpan span{.start = start - kBefore, .end = end};
+  for (const KnownMotion& motion : motions_) {
+    if (motion.t <= start + kRounding) {
+      span.measured = motion;
+    }
+  }
+  const InputHistory commands = given_.slice(start - kLookBack, end, SliceKind::Commands, future);
+  const InputHistory twists = car_twists(known_at(known).curves, commands, span);
+  std::vector<double> t;
+  std::vector<BodyTwist> twist;
+  for (std::size_t i = 0; i < twists.size(); ++i) {
+    t.push_back(i == 0 ? twists.time(0) - kLongAgo : twists.time(i));
+    twist.push_back(twists.sample(i));
+  }
+  return {std::move(t), std::move(twist)};
+}
+
+InputHistory CarStream::baseline(double start, double end, double known) const {
+  return car_twists(known_at(known).straight, given_.slice(start, end, SliceKind::Commands),
+                    {.start = start, .end = end});
+}
+
+}  // namespace slipwise

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Throttle and steering without units: kept as they are, beside what a car is known to make of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from slipwise import _core
+from slipwise.errors import LogError
+from slipwise.logs.log import CarCommands, Inputs, Log, Run
+from slipwise.logs.options import LogOptions
+
+_LARGEST = 1.001  # of a command, with rounding
+
+
+def with_car_commands(log: Log, options: LogOptions) -> Log:
+    """Return the log of a car that is told throttle and steering, with about what it makes of them.
+
+    Each command is taken by curves that were known half a second before it; a learner learns them again.
+
+    Raises:
+        LogError: a command is beyond 1.
+    """
+    car = options.car
+    if car is None or not any(run.commands is not None for run in log.runs):
+        return log
+    where = log.sources[0].path if log.sources else ""
+    settings = _core.StreamSettings()
+    settings.car = _core.CarPrior(car.top_speed, car.curvature)
+    settings.unknown_after, settings.horizons = options.unknown_after, []
+    found = _core.expected_commands(settings, [_recording(run, where) for run in log.runs])
+    runs = []
+    for run, rows in zip(log.runs, found, strict=True):
+        given = run.commands
+        if given is None:
+            runs.append(run)
+            continue
+        told = CarCommands(given.v, given.omega, car.top_speed, car.curvature)
+        v, vy, omega = (np.ascontiguousarray(rows[:, k]) for k in (1, 2, 3))
+        runs.append(replace(run, commands=Inputs(given.t, v, vy, omega, told)))
+    note = f"commands are throttle and steering of {options.vehicle}, whose curves are learned"
+    return replace(log, runs=tuple(runs), notes=(*log.notes, note))
+
+
+def _recording(run: Run, where: str) -> _core.Recording:
+    none = np.empty((0, 4))
+    given, poses = run.commands, run.poses
+    if given is None:
+        commands = none
+    else:
+        for name, values in (("throttle", given.v), ("steering", given.omega)):
+            if np.abs(values).max() > _LARGEST:
+                what = f"{name} reaches {np.abs(values).max():.3g}"
+                advice = "it must be in [-1, 1]; --command-scale divides it"
+                raise LogError(what, where=where, advice=advice)
+        commands = np.column_stack((given.t, given.v, given.vy, given.omega))
+    measured = np.column_stack((poses.t, poses.x, poses.y, poses.yaw, poses.frame.astype(np.float64)))
+    return _core.Recording(commands, none, np.empty((0, 3)), measured)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A car that is told throttle and steering, learned from a table, live, and beside a kinematic bicycle."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from sample_cars import write_car_log
+
+import slipwise as sw
+from slipwise.calibration import make_settings
+from slipwise.calibration.core_settings import core_settings
+from slipwise.errors import SettingsError
+from slipwise.live.build import build_node
+from slipwise.live.replay import Replay
+from slipwise.logs import Log, LogOptions
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Log:
+    path = write_car_log(tmp_path_factory.mktemp("car") / "car.csv", 120.0)
+    return sw.open_log(path, options=LogOptions(vehicle="dart"))
+
+
+def test_the_curves_predict_several_times_better_than_the_best_bicycle(log: Log) -> None:
+    held_out = sw.calibrate(log).model.content.verdict.held_out
+    assert held_out is not None
+    assert held_out.position < 0.4 * held_out.baseline_position
+    assert held_out.heading < 0.5 * held_out.baseline_heading
+
+
+@pytest.mark.slow
+def test_live_it_is_what_calibrate_writes_to_the_byte(log: Log) -> None:
+    settings = make_settings({"log": {"vehicle": "dart"}})
+    built = build_node(Replay(log, "command", rate=0.0), "command", settings)
+    built.node.run()
+    model, _ = built.learning.learner.judged_model(log=log)
+    assert model.to_yaml() == sw.calibrate(log, settings=settings).model.to_yaml()
+
+
+def test_a_saved_learner_of_a_car_goes_on_to_the_same_model(log: Log) -> None:
+    settings = make_settings({"log": {"vehicle": "dart"}})
+    (run,) = log.runs
+    assert run.commands is not None
+    car = run.commands.car
+    assert car is not None
+    learners = [sw.MotionLearner("command", settings)]
+    learners[0].start_run("car")
+    poses = run.poses
+    for k, t in enumerate(run.commands.t.tolist()):
+        if k == len(poses) // 2:
+            learners.append(sw.MotionLearner.load(learners[0].save()))
+        for learner in learners:
+            learner.push_command(t, float(car.throttle[k]), float(car.steering[k]))
+            learner.push_pose(t, float(poses.x[k]), float(poses.y[k]), float(poses.yaw[k]))
+    one, two = (learner.judged_model(limits=False)[0].content for learner in learners)
+    assert one == two
+
+
+def test_the_kinematic_baseline_of_a_car_is_a_bicycle_and_not_its_curves(log: Log) -> None:
+    scores = {
+        score.method: score
+        for score in sw.evaluate(
+            log, options=sw.EvaluationOptions(horizons=(1.0,), methods=("none", "auto"))
+        ).scores
+    }
+    assert scores["auto"].position.mean < 0.4 * scores["none"].position.mean
+
+
+def test_behind_curves_little_else_is_looked_for(log: Log) -> None:
+    (run,) = log.runs
+    assert run.commands is not None
+    assert run.commands.car is not None
+    core = core_settings(make_settings({}), "command", (1.0,), car=run.commands.car.prior())
+    assert [basis.name for basis in core.hypotheses.bases] == ["none", "edd-2"]
+    assert core.stream.car is not None
+    wheels = core_settings(make_settings({}), "wheel", (1.0,), car=run.commands.car.prior())
+    assert wheels.stream.car is None
+
+
+def test_other_estimators_refuse_throttle_and_steering(log: Log) -> None:
+    with pytest.raises(SettingsError, match="average of bases"):
+        sw.calibrate(log, settings=make_settings({"estimator": "iekf", "basis": "edd-2"}))
+
+
+def test_a_path_of_the_vehicle_is_said_where_it_is_wrong(tmp_path: Path) -> None:
+    file = tmp_path / "car.yaml"
+    file.write_text(
+        "vehicle:\n  tracks: {radius: 0.1, separation: 0.3}\n"
+        "  throttle_steering: {top_speed: 3, curvature: 2}\n"
+    )
+    with pytest.raises(SettingsError, match="wheelbase"):
+        LogOptions(vehicle=str(file))
+
+
+def test_a_model_of_throttle_is_not_judged_as_it_is(log: Log) -> None:
+    options = sw.EvaluationOptions(horizons=(1.0,), methods=("model",), model=sw.calibrate(log).model)
+    with pytest.raises(SettingsError, match="throttle and steering"):
+        sw.evaluate(log, options=options)
