@@ -2,9 +2,10 @@
 """Slip of each track and side-slip angle from a table of steady states, cross-validated.
 
 The table is that of a tracked robot indoors (github.com/mfocchi/tracked_robot_simulator, Apache-2.0; Focchi
-et al., arXiv 2409.18641): commanded speeds `wheel_l`, `wheel_r`, slip `beta_l`, `beta_r` of each side, and the
-angle `alpha` [rad] from the robot's x axis to its velocity. Slip is Bayesian linear regression on terms of V and
-w; the angle is that of a robot whose centre of rotation lies off its middle: tan(alpha) = b w / V, one number.
+et al., arXiv 2409.18641): commanded speeds `wheel_l`, `wheel_r`, slip `beta_l`, `beta_r` of each side, and
+the angle `alpha` [rad] from the robot's x axis to its velocity. Slip is Bayesian linear regression on terms
+of V and w; the angle is that of a robot whose centre of rotation lies off its middle: tan(alpha) = b w / V,
+one number.
 """
 
 from __future__ import annotations
