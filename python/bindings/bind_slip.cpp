@@ -29,8 +29,9 @@ std::vector<std::string> texts(const Basis& basis, Channel channel) {
 
 void bind_slip(nb::module_& m) {
   using Texts = std::vector<std::string>;
-  nb::class_<SlipState>(m, "SlipState", "What slip depends on: v [m/s], omega [rad/s], gx, gy [m/s^2].")
-      .def(nb::init<double, double, double, double>(), "v"_a, "omega"_a, "gx"_a, "gy"_a);
+  nb::class_<SlipState>(m, "SlipState", "What slip depends on: v [m/s], omega [rad/s], gx, gy [m/s^2], vy [m/s].")
+      .def(nb::init<double, double, double, double>(), "v"_a, "omega"_a, "gx"_a, "gy"_a)
+      .def(nb::init<double, double, double, double, double>(), "v"_a, "omega"_a, "gx"_a, "gy"_a, "vy"_a);
   nb::class_<Basis>(m, "Basis", "Terms of the forward, sideways and angular slip rates.")
       .def(
           "__init__",
@@ -40,6 +41,7 @@ void bind_slip(nb::module_& m) {
           "name"_a, "lon"_a, "lat"_a, "ang"_a)
       .def_prop_ro("name", &Basis::name)
       .def_prop_ro("size", &Basis::size)
+      .def_prop_ro("sideways", &Basis::sideways)
       .def_prop_ro("lon", [](const Basis& b) { return texts(b, Channel::Lon); })
       .def_prop_ro("lat", [](const Basis& b) { return texts(b, Channel::Lat); })
       .def_prop_ro("ang", [](const Basis& b) { return texts(b, Channel::Ang); })

@@ -2,6 +2,8 @@
 // Percentiles of speed and yaw rate over the moving time.
 #include "slipwise/filter/driven_speeds.hpp"
 
+#include <cmath>
+
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/linear/tuning.hpp"
 
@@ -16,7 +18,7 @@ SLIPWISE_TUNING(kLeastSpeed, 0.05);        // [m/s] and [rad/s]; slower referenc
 void DrivenSpeeds::see(const InputHistory& inputs, const Segment& segment) {
   for (const ActuatorStep& step : actuator_steps(inputs, {}, {.start = segment.start, .end = segment.end}).steps) {
     if (step.duration > 0.0) {
-      speeds_.add(step.forward / step.duration, step.duration);
+      speeds_.add(std::hypot(step.forward, step.left) / step.duration, step.duration);
       yaw_rates_.add(step.turn / step.duration, step.duration);
     }
   }

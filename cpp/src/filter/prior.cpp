@@ -18,7 +18,10 @@ constexpr double kLeastFeature = 1e-9;
 
 Eigen::VectorXd slip_prior_std(const Basis& basis, const ReferenceSpeeds& speeds, double fraction) {
   const Eigen::VectorXd features =
-      basis.linearize_features({.v = speeds.v, .omega = speeds.omega, .gx = kSteepSlope, .gy = kSteepSlope}).value;
+      basis
+          .linearize_features(
+              {.v = speeds.v, .omega = speeds.omega, .gx = kSteepSlope, .gy = kSteepSlope, .vy = speeds.v})
+          .value;
   Eigen::VectorXd std(features.size());
   for (Eigen::Index i = 0; i < std.size(); ++i) {
     const double channel = basis.channel(static_cast<std::size_t>(i)) == Channel::Ang ? speeds.omega : speeds.v;

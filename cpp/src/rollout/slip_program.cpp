@@ -20,6 +20,9 @@ class Compiler {
   }
 
   void add(const Term& term, std::size_t channel, double alpha, const std::optional<std::array<double, 2>>& gravity) {
+    if (term.sideways()) {
+      return;  // a rollout never drives sideways
+    }
     double fraction = alpha * term.coefficient();
     std::vector<SlipFactor> factors;
     for (const Quantity quantity : term.factors()) {

@@ -180,7 +180,7 @@ Eigen::Matrix3d above_by_place(const GroundStepLinearization& ground, const Actu
 Eigen::Matrix<double, 3, 2> slip_rate_by_gravity(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                                  const SlipState& state) {
   const SlipQuantities quantities(state);
-  const double moving = state.v != 0.0 || state.omega != 0.0 ? 1.0 : 0.0;
+  const double moving = state.v != 0.0 || state.omega != 0.0 || state.vy != 0.0 ? 1.0 : 0.0;
   Eigen::Matrix<double, 3, 2> derivative = Eigen::Matrix<double, 3, 2>::Zero();
   for (std::size_t i = 0; i < basis.size(); ++i) {
     double value = basis.terms()[i].coefficient();

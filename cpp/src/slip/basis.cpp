@@ -24,6 +24,7 @@ const std::vector<NamedTerms>& shipped() {
       {"inertial-5", {"V"}, {"abs(V)*V*w/g"}, {"abs(V)*V*w/g", "V", "w"}},
       {"full-linear-6", {"V", "w"}, {"V", "w"}, {"V", "w"}},
       {"ipem-9", {"V", "abs(w)", "V*abs(w)"}, {"V", "w", "V*w"}, {"V", "w", "V*w"}},
+      {"omni-8", {"V", "Vy"}, {"V", "Vy"}, {"V", "Vy", "V3", "w"}},
       {"drive-9", {"V", "gx*abs(V)", "gx*abs(w)"}, {"V*w", "gy*abs(V)", "gy*abs(w)"}, {"V*w", "V", "w"}},
       {"odd-even-10", {"V", "V*abs(w)", "sgn(V)*w^2"}, {"w", "V*w", "w*abs(w)"}, {"w", "V*w", "w*abs(w)", "V"}},
       {"odd-even-13",
@@ -64,6 +65,7 @@ Basis::Basis(std::string name, std::span<const std::string> lon, std::span<const
   }
   begin_[kChannels] = terms_.size();
   for (const Term& term : terms_) {
+    sideways_ = sideways_ || term.sideways();
     coefficients_.push_back(term.coefficient());
     factors_.insert(factors_.end(), term.factors().begin(), term.factors().end());
     factor_end_.push_back(factors_.size());

@@ -40,6 +40,17 @@ Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::
   return derivatives;
 }
 
+Eigen::Vector3d slip_rate_by_sideways(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                      const SlipState& state) {
+  const SlipQuantities quantities(state);
+  Eigen::Vector3d derivative = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    derivative[static_cast<Eigen::Index>(basis.channel(i))] +=
+        alpha[static_cast<Eigen::Index>(i)] * basis.terms()[i].linearize(quantities).by_vy;
+  }
+  return derivative;
+}
+
 SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                           const SlipState& state) {
   std::vector<double> features(basis.size());

@@ -26,7 +26,10 @@ constexpr std::array<Spelling, kQuantities> kSpellings{{{"V", Quantity::V},
                                                         {"sgn(V)", Quantity::SignV},
                                                         {"kappa", Quantity::Curvature},
                                                         {"gx", Quantity::GravityX},
-                                                        {"gy", Quantity::GravityY}}};
+                                                        {"gy", Quantity::GravityY},
+                                                        {"Vy", Quantity::SideV},
+                                                        {"abs(Vy)", Quantity::AbsSideV},
+                                                        {"V3", Quantity::ThirdHarmonic}}};
 constexpr int kHighestPower = 8;
 
 [[noreturn]] void refuse(std::string_view text, const std::string& why) {
@@ -124,6 +127,22 @@ Term Term::parse(std::string_view text) {
   return {coefficient, std::move(factors), std::move(canonical)};
 }
 
+bool Term::sideways() const { return std::ranges::any_of(factors_, is_sideways); }
+
+void SlipQuantities::see_sideways(double v, double vy) {
+  const auto side = static_cast<std::size_t>(Quantity::SideV), size = static_cast<std::size_t>(Quantity::AbsSideV),
+             third = static_cast<std::size_t>(Quantity::ThirdHarmonic);
+  value[side] = vy;
+  by_vy[side] = 1.0;
+  value[size] = std::abs(vy);
+  by_vy[size] = vy > 0.0 ? 1.0 : -1.0;
+  // r sin(3 theta) = (3 v^2 vy - vy^3) / r^2, smooth where the robot stands as the curvature is
+  const double over = 3.0 * v * v * vy - vy * vy * vy, under = v * v + vy * vy + kCurvatureSpeed * kCurvatureSpeed;
+  value[third] = over / under;
+  by_v[third] = (6.0 * v * vy - value[third] * 2.0 * v) / under;
+  by_vy[third] = (3.0 * v * v - 3.0 * vy * vy - value[third] * 2.0 * vy) / under;
+}
+
 double Term::value(const SlipQuantities& q) const {
   double product = coefficient_;
   for (const Quantity factor : factors_) {
@@ -133,11 +152,12 @@ double Term::value(const SlipQuantities& q) const {
 }
 
 TermValue Term::linearize(const SlipQuantities& q) const {
-  TermValue result{coefficient_, 0.0, 0.0};
+  TermValue result{coefficient_, 0.0, 0.0, 0.0};
   for (const Quantity factor : factors_) {
     const auto i = static_cast<std::size_t>(factor);
     result.by_v = result.by_v * q.value[i] + result.value * q.by_v[i];
     result.by_omega = result.by_omega * q.value[i] + result.value * q.by_omega[i];
+    result.by_vy = result.by_vy * q.value[i] + result.value * q.by_vy[i];
     result.value *= q.value[i];
   }
   return result;

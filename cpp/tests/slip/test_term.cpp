@@ -113,5 +113,27 @@ TEST_CASE("derivatives of terms are their derivatives by speed and yaw rate") {
   }
 }
 
+TEST_CASE("terms of sideways speed have their values and exact derivatives, and vanish without it") {
+  const SlipState aside{.v = 0.3, .omega = 0.0, .gx = 0.0, .gy = 0.0, .vy = -0.4};
+  CHECK(value("Vy", aside) == -0.4);
+  CHECK(value("abs(Vy)*V", aside) == doctest::Approx(0.12));
+  CHECK(value("V3", aside) == doctest::Approx(0.5 * std::sin(3.0 * std::atan2(-0.4, 0.3))).epsilon(1e-3));
+  for (const std::string text : {"Vy", "abs(Vy)", "V3", "V*Vy", "V3*w"}) {
+    CAPTURE(text);
+    const Term term = Term::parse(text);
+    CHECK(term.sideways());
+    CHECK(value(text, {.v = 0.7, .omega = 0.2}) == 0.0);
+    for (const Eigen::Vector3d& drive : {Eigen::Vector3d(0.9, 0.6, 0.5), {-0.4, 0.3, -0.8}, {0.0, 0.1, 0.7}}) {
+      const auto at = [&](const Eigen::VectorXd& d) -> Eigen::VectorXd {
+        return Eigen::VectorXd::Constant(1, term.value(SlipQuantities({.v = d[0], .omega = d[1], .vy = d[2]})));
+      };
+      const auto found = term.linearize(SlipQuantities({.v = drive[0], .omega = drive[1], .vy = drive[2]}));
+      const Eigen::RowVector3d analytic(found.by_v, found.by_omega, found.by_vy);
+      CHECK(tests::jacobian_error(analytic, tests::finite_difference(at, drive, 0.01)) < tests::kDerivativeTolerance);
+    }
+  }
+  CHECK_FALSE(Term::parse("V*w").sideways());
+}
+
 }  // namespace
 }  // namespace slipwise

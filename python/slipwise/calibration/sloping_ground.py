@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a log holds an attitude, and the settings with which slip by gravity is then tried."""
+"""What a log holds beside planar driving ahead, and the settings with which its slip is then tried."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -10,6 +12,8 @@ from slipwise.logs.log import Log
 
 #: Bases with terms of gravity that `auto` averages too where roll and pitch were measured.
 SLOPE_BASES = ("odd-even-13", "drive-9")
+#: The same where the vehicle drives sideways.
+SIDEWAYS_BASES = ("omni-8",)
 _TINY = 1e-12  # rad; what is smaller everywhere was never measured
 
 
@@ -28,16 +32,23 @@ def has_attitude(log: Log) -> bool:
 
 
 def for_the_ground_of(log: Log, settings: Settings) -> Settings:
-    """Return the settings with which a log is learned: with terms of gravity where it has an attitude.
+    """Return the settings with which a log is learned.
+
+    With terms of gravity where it has an attitude, of sideways speed where the vehicle is known to drive so.
 
     Only the default list of `auto` is extended; bases that were chosen stay as they are.
     """
-    return with_gravity(settings) if has_attitude(log) else settings
+    slopes = SLOPE_BASES if has_attitude(log) else ()
+    return _with(settings, (*slopes, *(SIDEWAYS_BASES if log.sideways else ())))
 
 
 def with_gravity(settings: Settings) -> Settings:
     """Return the settings with terms of gravity in the default list of `auto`; other lists stay."""
-    if settings.basis != "auto" or tuple(settings.auto.bases) != AUTO_BASES:
+    return _with(settings, SLOPE_BASES)
+
+
+def _with(settings: Settings, more: Sequence[str]) -> Settings:
+    if settings.basis != "auto" or tuple(settings.auto.bases) != AUTO_BASES or not more:
         return settings
-    bases = [*AUTO_BASES, *SLOPE_BASES]
+    bases = [*AUTO_BASES, *more]
     return settings.model_copy(update={"auto": settings.auto.model_copy(update={"bases": bases})})

@@ -14,7 +14,7 @@ from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predict_all
 from slipwise.calibration.prepared_run import WindowSet
 from slipwise.calibration.settings import AVERAGE, Settings
-from slipwise.calibration.sloping_ground import SLOPE_BASES
+from slipwise.calibration.sloping_ground import SIDEWAYS_BASES, SLOPE_BASES
 from slipwise.errors import SettingsError
 from slipwise.evaluation.neural import neural, neural_residual
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
@@ -49,7 +49,10 @@ def method_names(contest: Contest) -> tuple[str, ...]:
     names = ["none"]
     if contest.vendor_wheel_separation_multiplier is not None:
         names.append("vendor")
-    left_out = set(SLOPE_BASES) - set(contest.settings.auto.bases)  # where the ground is level
+    more = {*SLOPE_BASES, *SIDEWAYS_BASES}
+    left_out = more - set(
+        contest.settings.auto.bases
+    )  # where the ground is level, or nothing drives sideways
     names += [*(name for name in _core.basis_names() if name not in left_out), "batch"]
     names += contest.models
     if contest.settings.basis == "custom":

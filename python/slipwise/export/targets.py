@@ -100,6 +100,7 @@ def export_model(
     """
     made = find_target(target)
     model.refuse_throttle("exported files")
+    model.refuse_sideways("exported files")
     if not force:
         refuse_bad_verdict(model)
     return made.make(model, options or ExportOptions(), origin_lines(model, name))

@@ -167,6 +167,7 @@ class Log:
     left_out: tuple[LeftOut, ...] = ()
     notes: tuple[str, ...] = ()
     advice: Mapping[str, str] = field(default_factory=dict)
+    sideways: bool = False  # the vehicle is known to drive sideways too
 
     def __repr__(self) -> str:
         seconds = sum(_duration(run.poses.t) for run in self.runs)

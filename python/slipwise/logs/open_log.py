@@ -118,6 +118,7 @@ def _completed(log: Log, options: LogOptions) -> Log:
 
         log = with_poses(log, options.poses, options)
     log = cut_to_span(turned_poses(log, options), options.start, options.end)
+    log = replace(log, sideways=options.sideways) if options.sideways else log
     if options.car is None:
         return log
     from slipwise.logs.car_commands import with_car_commands
@@ -147,6 +148,7 @@ def joined(logs: list[Log]) -> Log:
         left_out=tuple(entry for log in logs for entry in log.left_out),
         notes=tuple(note for log in logs for note in log.notes),
         advice={name: text for log in reversed(logs) for name, text in log.advice.items()},
+        sideways=any(log.sideways for log in logs),
     )
 
 

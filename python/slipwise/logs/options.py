@@ -89,6 +89,17 @@ class LogOptions:
         return described if described is not None and described.wheels else None
 
     @property
+    def sideways(self) -> bool:
+        """Whether the vehicle drives sideways, as omni and mecanum wheels do."""
+        wheels = self.wheels
+        return (
+            wheels is not None
+            and any(wheel.roller is not None for wheel in wheels.wheels)
+            and wheels.layout is not None
+            and wheels.layout.tells_sideways
+        )
+
+    @property
     def car(self) -> ThrottleSteering | None:
         """What is taken of a car that is told throttle and steering, where the vehicle is one."""
         described = self._described()

@@ -41,6 +41,7 @@ from slipwise.logs.tidy_columns import (
     command_columns,
     missing_input,
     require_columns,
+    told_by_direction,
     wheel_columns,
 )
 
@@ -106,6 +107,9 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
     names = table.names
     wanted = ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS) if options.poses is None else ()
     pose = {name: table.numbers(name, tally) for name in wanted if name in names}
+    if "yaw" in pose and "yaw_body" in names and told_by_direction(table, options):
+        pose["yaw"] = table.numbers("yaw_body", tally)  # where yaw is the direction of travel
+        notes.append(f"{table.path.name}: headings are yaw_body")
     if pose and "frame" in names:
         pose["frame"] = table.codes("frame")[0].astype(np.float64)
     if pose and "yaw" not in pose:

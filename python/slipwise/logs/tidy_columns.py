@@ -22,7 +22,18 @@ TEXT = ("run", "frame", "terrain")
 CAR = ("throttle", "steering")  # commands without units of a car
 NUMERIC = (
     *CAR,
-    *("t", "cmd_v", "cmd_vx", "cmd_vy", "cmd_omega", "cmd_curvature", "cmd_steer", "odo_v", "odo_vy"),
+    *(
+        "t",
+        "cmd_v",
+        "cmd_vx",
+        "cmd_vy",
+        "cmd_omega",
+        "cmd_curvature",
+        "cmd_steer",
+        "cmd_dir",
+        "odo_v",
+        "odo_vy",
+    ),
     *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
 )
 USED = frozenset(
@@ -87,6 +98,11 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     if options.car is not None and {*CAR} <= set(names):
         throttle, steering = (table.numbers(name, tally) for name in CAR)
         return InputColumns(throttle, None, steering)
+    if told_by_direction(table, options):
+        notes.append(f"{table.path.name}: cmd_vx and cmd_vy from cmd_v along cmd_dir")
+        speed, along = table.numbers("cmd_v", tally), table.numbers("cmd_dir", tally)
+        turn = table.numbers("cmd_omega", tally) if "cmd_omega" in names else np.zeros(len(table))
+        return InputColumns(speed * np.cos(along), speed * np.sin(along), turn)
     if forward not in names:
         if "cmd_curvature" in names:
             notes.append(f"{table.path.name}: cmd_curvature has no cmd_v beside it and is not used")
@@ -110,12 +126,21 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     return InputColumns(v, vy, omega)
 
 
+def told_by_direction(table: Table, options: LogOptions) -> bool:
+    """Whether a vehicle that drives sideways is told a speed and the direction of travel to its x axis."""
+    return options.sideways and {"cmd_v", "cmd_dir"} <= set(table.names)
+
+
 def wheel_columns(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> InputColumns | None:
     """Return the twist measured at the wheels per row, or None where the table has none."""
     names = table.names
     if "odo_v" in names and "odo_omega" in names:
         vy = table.numbers("odo_vy", tally) if "odo_vy" in names else None
         return InputColumns(table.numbers("odo_v", tally), vy, table.numbers("odo_omega", tally))
+    commanded = {"cmd_v", "cmd_vx"} & set(names)
+    if options.wheels is not None and commanded and not any(name.startswith("wheel_") for name in names):
+        notes.append(f"{table.path.name}: there are no speeds of the wheels of {options.vehicle}")
+        return None
     if options.wheels is not None:
         return _layout_columns(table, options, options.wheels, tally, notes)
     if "wheel_left" in names and "wheel_right" in names:

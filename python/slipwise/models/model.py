@@ -184,6 +184,18 @@ class Model:
         section = self.content.car
         return None if section is None else core_car(section)
 
+    def refuse_sideways(self, what: str) -> None:
+        """Refuse a use that knows no sideways speed where the model's slip depends on it.
+
+        Raises:
+            ModelError: it does.
+        """
+        if self.motion.basis.sideways:
+            raise ModelError(
+                f"{what} know no sideways speed, and the slip of this model depends on it",
+                advice="calibrate with --basis full-linear-6 or another without Vy",
+            )
+
     def refuse_throttle(self, what: str) -> None:
         """Refuse a use that takes speeds and yaw rates where the model takes throttle and steering.
 

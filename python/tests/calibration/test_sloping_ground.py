@@ -13,7 +13,13 @@ from sample_slopes import Hills, hilly_log
 from slipwise.calibration import calibrate
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.calibration.settings import AUTO_BASES, Settings, make_settings
-from slipwise.calibration.sloping_ground import SLOPE_BASES, for_the_ground_of, has_attitude, with_gravity
+from slipwise.calibration.sloping_ground import (
+    SIDEWAYS_BASES,
+    SLOPE_BASES,
+    for_the_ground_of,
+    has_attitude,
+    with_gravity,
+)
 from slipwise.logs.log import Log
 
 GRAVITY_TERMS = ("lon.gx", "lat.gy", "ang.gy")
@@ -88,3 +94,10 @@ def test_a_learner_tries_terms_of_gravity_where_an_attitude_is_announced() -> No
     assert set(SLOPE_BASES) < set(remembering.settings.auto.bases)
     chosen = Settings().choosing("edd-2", None)
     assert MotionLearner("command", chosen, attitude=True).settings == chosen == with_gravity(chosen)
+
+
+def test_terms_of_sideways_speed_are_tried_where_the_vehicle_drives_so() -> None:
+    level = Log(runs=(), sideways=True)
+    assert for_the_ground_of(level, Settings()).auto.bases == [*AUTO_BASES, *SIDEWAYS_BASES]
+    chosen = make_settings({"basis": "edd-2"})
+    assert for_the_ground_of(level, chosen) is chosen

@@ -249,3 +249,30 @@ def test_a_gap_of_a_minute_is_no_fault_of_the_file(tmp_path: Path) -> None:
 def test_a_negative_radius_is_refused() -> None:
     with pytest.raises(SettingsError, match="--wheel-radius must be a positive number"):
         LogOptions(wheel_radius=-0.1)
+
+
+def direction_table(tmp_path: Path) -> Path:
+    header = "t,cmd_v,cmd_dir,x,y,yaw,yaw_body,pose_new"
+    rows = [f"{0.1 * k:.1f},0.2,1.570796327,0,{0.02 * k:.3f},1.5708,0,1" for k in range(30)]
+    return table(tmp_path, *rows, header=header)
+
+
+def test_a_vehicle_that_drives_sideways_takes_a_speed_along_a_direction(tmp_path: Path) -> None:
+    log = open_log(direction_table(tmp_path), options=LogOptions(vehicle="robotino"))
+    (run,) = log.runs
+    assert run.commands is not None
+    assert np.allclose(run.commands.v, 0.0, atol=1e-6)
+    assert np.allclose(run.commands.vy, 0.2)
+    assert not run.commands.omega.any()
+    assert not run.poses.yaw.any()  # of the body, not of the travel
+    assert log.sideways
+    assert run.wheels is None
+    assert any("no speeds of the wheels of robotino" in note for note in log.notes)
+
+
+def test_other_vehicles_do_not_know_a_direction(tmp_path: Path) -> None:
+    with pytest.raises(LogError, match="cmd_omega"):
+        open_log(direction_table(tmp_path), options=LogOptions(vehicle="husky"))
+    assert not LogOptions(vehicle="husky").sideways
+    assert not LogOptions().sideways
+    assert LogOptions(vehicle="dingo-omni").sideways

@@ -27,7 +27,8 @@ struct PathSlip {
 /// The mean drive over a step, which its slip depends on.
 inline SlipState slip_state(const ActuatorStep& step, const BodyGravity& gravity) {
   const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
-  return {.v = step.forward * rate, .omega = step.turn * rate, .gx = gravity.gx, .gy = gravity.gy};
+  return {
+      .v = step.forward * rate, .omega = step.turn * rate, .gx = gravity.gx, .gy = gravity.gy, .vy = step.left * rate};
 }
 
 /// The same for a step that has no duration yet gains some with the parameters: its integrals grow with its twist.
@@ -39,7 +40,8 @@ SlipState slip_state_gained(const Jacobian& jacobian, const BodyGravity& gravity
   return {.v = jacobian.row(1).dot(jacobian.row(0)) * per_duration,
           .omega = jacobian.row(3).dot(jacobian.row(0)) * per_duration,
           .gx = gravity.gx,
-          .gy = gravity.gy};
+          .gy = gravity.gy,
+          .vy = jacobian.row(2).dot(jacobian.row(0)) * per_duration};
 }
 
 /// (u_body + du) dt of derivations/model.md.
@@ -66,6 +68,9 @@ TangentColumns<Jacobian> tangent_by(const ActuatorStep& step, const Jacobian& ja
   result += slip * jacobian.row(0);
   result += by_drive.col(0) * (jacobian.row(1) - state.v * jacobian.row(0));
   result += by_drive.col(1) * (jacobian.row(3) - state.omega * jacobian.row(0));
+  if (at.basis.sideways()) {
+    result += slip_rate_by_sideways(at.basis, at.alpha, state) * (jacobian.row(2) - state.vy * jacobian.row(0));
+  }
   return result;
 }
 

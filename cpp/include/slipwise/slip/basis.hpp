@@ -38,6 +38,8 @@ class Basis {
   Channel channel(std::size_t parameter) const;
   std::size_t begin(Channel channel) const { return begin_[static_cast<std::size_t>(channel)]; }
   std::size_t end(Channel channel) const { return begin_[static_cast<std::size_t>(channel) + 1]; }
+  /// Whether a term depends on the sideways speed.
+  bool sideways() const { return sideways_; }
   /// `lon.V`, `ang.V*w`, ...: the parameter's name in files and tables.
   std::string parameter_name(std::size_t parameter) const;
 
@@ -57,6 +59,7 @@ class Basis {
   std::vector<double> coefficients_;
   std::vector<std::size_t> factor_end_;
   std::vector<Quantity> factors_;
+  bool sideways_ = false;
 };
 
 /// A basis by its published name. \throws std::invalid_argument naming the known bases.

@@ -13,8 +13,23 @@
 namespace slipwise {
 
 /// What a slip term may be made of; the body-frame gravity (gx, gy) [m/s^2] is zero on flat terrain.
-enum class Quantity : std::uint8_t { V, Omega, AbsV, AbsOmega, SignV, Curvature, GravityX, GravityY };
-inline constexpr std::size_t kQuantities = 8;
+/// Vy is the speed to the left. V3 is sqrt(V^2 + Vy^2) sin(3 theta) with theta the direction of travel to the x axis:
+/// what three omni wheels at equal angles make of the direction.
+enum class Quantity : std::uint8_t {
+  V,
+  Omega,
+  AbsV,
+  AbsOmega,
+  SignV,
+  Curvature,
+  GravityX,
+  GravityY,
+  SideV,
+  AbsSideV,
+  ThirdHarmonic
+};
+inline constexpr std::size_t kQuantities = 11;
+inline bool is_sideways(Quantity quantity) { return quantity >= Quantity::SideV; }
 
 /// The state that slip depends on.
 struct SlipState {
@@ -22,6 +37,7 @@ struct SlipState {
   double omega = 0.0;  ///< [rad/s]
   double gx = 0.0;     ///< gravity along the robot's x axis, positive when it points downhill [m/s^2]
   double gy = 0.0;     ///< gravity along the robot's y axis [m/s^2]
+  double vy = 0.0;     ///< [m/s], of a robot that drives sideways
 };
 
 /// The quantities of one state, computed once for all terms, with their derivatives by v and omega.
@@ -29,8 +45,12 @@ struct SlipQuantities {
   std::array<double, kQuantities> value;
   std::array<double, kQuantities> by_v;
   std::array<double, kQuantities> by_omega;
+  std::array<double, kQuantities> by_vy{};
 
   explicit SlipQuantities(const SlipState& state);
+
+ private:
+  void see_sideways(double v, double vy);
 };
 
 /// Curvature omega / V is regularised below this speed [m/s]: omega V / (V^2 + kCurvatureSpeed^2).
@@ -40,19 +60,24 @@ inline constexpr double kStandardGravity = 9.80665;  ///< [m/s^2]
 inline SlipQuantities::SlipQuantities(const SlipState& state) {
   const auto sign = [](double x) { return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : 0.0); };
   const double v = state.v, w = state.omega;
-  const double moving = v != 0.0 || w != 0.0 ? 1.0 : 0.0;  // a robot parked on a derivative does not drift
+  const double moving =
+      v != 0.0 || w != 0.0 || state.vy != 0.0 ? 1.0 : 0.0;  // a robot parked on a derivative does not drift
   const double norm = v * v + kCurvatureSpeed * kCurvatureSpeed;
   const double per_w = v / norm;
-  value = {v, w, std::abs(v), std::abs(w), sign(v), w * per_w, state.gx * moving, state.gy * moving};
-  by_v = {1.0, 0.0, sign(v), 0.0, 0.0, w * (1.0 - 2.0 * v * per_w) / norm, 0.0, 0.0};
-  by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0};
+  value = {v, w, std::abs(v), std::abs(w), sign(v), w * per_w, state.gx * moving, state.gy * moving, 0.0, 0.0, 0.0};
+  by_v = {1.0, 0.0, sign(v), 0.0, 0.0, w * (1.0 - 2.0 * v * per_w) / norm, 0.0, 0.0, 0.0, 0.0, 0.0};
+  by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0, 0.0, 0.0, 0.0};
+  if (state.vy != 0.0) {
+    see_sideways(v, state.vy);
+  }
 }
 
-/// A term with its derivatives by speed and yaw rate.
+/// A term with its derivatives by speed, yaw rate and sideways speed.
 struct TermValue {
   double value;
   double by_v;
   double by_omega;
+  double by_vy = 0.0;
 };
 
 /// coefficient * product of quantities. Written as text: `V*abs(w)`, `sgn(V)*w^2`, `abs(V)*V*w/g`, `kappa*V`, `gx`.
@@ -68,6 +93,9 @@ class Term {
   double coefficient() const { return coefficient_; }
   /// The quantities that are multiplied, each as often as its power says.
   const std::vector<Quantity>& factors() const { return factors_; }
+
+  /// Whether a quantity of driving sideways is among the factors.
+  bool sideways() const;
 
   double value(const SlipQuantities& q) const;
   TermValue linearize(const SlipQuantities& q) const;
