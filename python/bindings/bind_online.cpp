@@ -389,6 +389,10 @@ void bind_online(nb::module_& m) {
             return learner.on_surface(surface, structure_of(structure));
           },
           "surface"_a, "structure"_a, "Slip on one of them in the terms of a structure; None where it has no memory.")
+      .def(
+          "slip_now",
+          [](const MotionLearner& learner, std::size_t structure) { return learner.slip_now(structure_of(structure)); },
+          "structure"_a, "The same of the surface that is driven on, whether surfaces are remembered or not.")
       .def("begin_with", &MotionLearner::begin_with, "known"_a, "law"_a, "wheels"_a,
            "Begins with what another learner knew, before anything was learned.")
       .def("add_surfaces", &MotionLearner::add_surfaces, "other"_a,

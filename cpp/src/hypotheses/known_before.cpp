@@ -222,4 +222,15 @@ std::optional<SlipOnSurface> MotionHypotheses::on_surface(const Surface& surface
   return found;
 }
 
+std::optional<SlipOnSurface> MotionHypotheses::slip_now(Structure structure) const {
+  Surface here;
+  const auto averages = averages_of(*this);
+  for (std::size_t i = 0; i < kAverages; ++i) {
+    if (averages[i] != nullptr) {
+      here.memories[i] = averages[i]->remember();
+    }
+  }
+  return on_surface(here, structure);
+}
+
 }  // namespace slipwise

@@ -34,6 +34,27 @@ MotionLearner visited(const std::vector<double>& slips) {
   return learner;
 }
 
+TEST_CASE("what is known of the slip now is said without a memory of surfaces, too, and another begins with it") {
+  MotionLearner other(surface_settings(false));
+  push(other, drive_on(0.5, 11, kVisit, 0.0));
+  other.end_run();
+  CHECK(other.surfaces().surfaces().empty());
+  const auto now = other.slip_now(Structure::Joint);
+  REQUIRE(now);
+  CHECK(now->memory.bases.size() == now->memory.memory.slips.size());
+  const MotionPosterior known = *other.model().known.slip;
+  CHECK((now->state.estimate.mean - known.estimate.mean).norm() < 1e-9);
+  MotionLearner begins(surface_settings(false));
+  begins.begin_with({.model = known, .surfaces = {{.facts = {.name = "fleet"}, .memory = now->memory}}, .labels = {}},
+                    other.model().known.disturbance->law(), false);
+  MotionLearner forgets(surface_settings(false));
+  for (MotionLearner* learner : {&begins, &forgets}) {
+    push(*learner, drive_on(0.5, 77, kVisit, 9000.0));
+    learner->end_run();
+  }
+  CHECK(mean_yaw_error(begins, 0, 10) < 0.5 * mean_yaw_error(forgets, 0, 10));
+}
+
 TEST_CASE("a learner that begins with surfaces of another predicts their first segments as that one would") {
   const MotionLearner other = visited({0.1, 0.5, 0.1});
   MotionLearner goes_on = other;

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -63,13 +64,33 @@ def calibrate(
         SettingsError: a basis or a term is unknown.
     """
     settings = for_the_ground_of(log, settings or Settings())
-    input_name = input or choose_input(log)
-    drive = prepare_run(log, input_name)
-    windows = learning_windows(drive, input_name, settings)
+    learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
+    return calibrate_by(
+        lambda windows: learn(settings, windows, progress),
+        log,
+        input or choose_input(log),
+        settings,
+        smooth=smooth,
+    )
+
+
+def calibrate_by(
+    learn: Callable[[WindowSet], Learned],
+    log: Log,
+    input_name: str,
+    settings: Settings,
+    *,
+    smooth: bool = False,
+) -> Calibration:
+    """Learn a log by whatever learns its windows, and judge it; `settings` are those for the log's ground.
+
+    Raises:
+        LogError: the log has no such input, no poses or no window to learn from, or no model holds it.
+    """
+    windows = learning_windows(prepare_run(log, input_name), input_name, settings)
     refuse_empty(windows, log)
     found = found_contradictions(log, input_name, settings)
-    learn = _by_learner if settings.estimator == AVERAGE else _by_estimator
-    learned = learn(settings, windows, progress)
+    learned = learn(windows)
     judged, content = judged_content(learned, windows, (log, input_name, settings), found)
     return Calibration(
         model_of(content, log, found),

@@ -69,10 +69,33 @@ def learn_log(
     Raises:
         SettingsError: a basis or a term is unknown.
     """
+    return learn_with(new_learner(drive, settings, horizons), drive, horizons, keep=keep, progress=progress)
+
+
+def new_learner(
+    drive: tuple[PreparedRun, ...], settings: Settings, horizons: Sequence[float]
+) -> _core.MotionLearner:
+    """Return a learner that knows nothing of what drives there but its sort.
+
+    Raises:
+        SettingsError: a basis or a term is unknown.
+    """
     positions = has_course(run.run for run in drive)
     car = car_prior([run.run for run in drive])
     core = core_settings(settings, drive[0].input_name, horizons, positions=positions, car=car)
-    learner, events = _core.MotionLearner(core), []
+    return _core.MotionLearner(core)
+
+
+def learn_with(
+    learner: _core.MotionLearner,
+    drive: tuple[PreparedRun, ...],
+    horizons: Sequence[float],
+    *,
+    keep: Keep | None = None,
+    progress: Progress | None = None,
+) -> LearnedLog:
+    """Push runs through a learner that is there already; else as `learn_log`."""
+    events: list[_core.LearnerEvent] = []
     for done in pushed(learner, drive):
         events += [event for event in learner.events() if keep is not None and event.kind == LEARNED]
         if progress is not None:

@@ -58,6 +58,10 @@ def calibrate(
         ),
     ] = False,
     terrain: Labels = None,
+    prior: Annotated[
+        Path | None,
+        optional("FLEET.yaml", "Begin with what a fleet knows of this type of robot (`slipwise fleet`)."),
+    ] = None,
     report: Report = None,
     no_report: Annotated[bool, typer.Option("--no-report", help="Write no HTML report.")] = False,
     runs: Runs = Path("runs"),
@@ -75,6 +79,7 @@ def calibrate(
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
       slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
+      slipwise calibrate two_minutes.mcap --prior fleet/fleet.yaml
       slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
       slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --terrain sand
       slipwise calibrate --memory sand.csv asphalt.csv --terrain labels.csv -o monday.yaml
@@ -94,10 +99,17 @@ def calibrate(
     out = Output(json)
     named = settings or basis or estimator
     chosen = chosen_settings(settings, basis, estimator) if named or not memory else None
-    read = (*logs, *log_options.files, settings, *label_files(terrain))
+    read = (*logs, *log_options.files, settings, prior, *label_files(terrain))
     refuse_unwritable(output, report, out.written_file, inputs=read)
     asked = Asked(
-        logs, log_options, input_name and input_name.value, chosen, smooth, memory, tuple(terrain or ())
+        logs,
+        log_options,
+        input_name and input_name.value,
+        chosen,
+        smooth,
+        memory,
+        tuple(terrain or ()),
+        prior,
     )
     with progress_bar("reading") as update:
         given = opened(asked)

@@ -26,6 +26,9 @@ def fleet(
     vehicle: Annotated[
         str, typer.Option(metavar="NAME", help="Of all logs; by default the folder a log lies in.")
     ] = "",
+    vehicle_type: Annotated[
+        str, typer.Option("--type", metavar="NAME", help="Of all vehicles; stands in the prior.")
+    ] = "",
     settings: SettingsFile = None,
     workers: Annotated[int | None, optional("N", "Processes; by default one per processor.")] = None,
     scheduler: Annotated[
@@ -36,8 +39,9 @@ def fleet(
     """Learn every log, keep a row per log and parameter, and say what the fleet knows and what stands out.
 
     DIR/rows is a Parquet data set by vehicle and month; DIR/fleet.html shows vehicles side by side, drift and
-    odd ones; DIR/fleet.yaml says what is known of the next robot. A second run learns only what is new: other
-    bytes or other settings. Ctrl-C loses the logs at work, no more. Exit code 1: no log was usable.
+    odd ones; DIR/fleet.yaml says what is known of the next robot, for `slipwise calibrate --prior`. A second
+    run learns only what is new: other bytes or other settings. Ctrl-C loses the logs at work, no more. Exit
+    code 1: no log was usable.
 
     \b
     Examples:
@@ -70,7 +74,7 @@ def fleet(
     table, unusable = store.table(), store.unusable()
     findings = findings_of(table)
     _write(files["page"], fleet_page(table, findings, unusable))
-    write_prior(files["prior"], findings)
+    write_prior(files["prior"], findings, store.knowledge(), vehicle_type=vehicle_type)
     code = 0 if table else 1
     out.document(_document(count, findings, unusable, files) | {"exit_code": code})
     for sentence in summary(table, findings, unusable):

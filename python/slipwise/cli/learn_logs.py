@@ -25,6 +25,7 @@ class Asked:
     smooth: bool
     memory: bool  # of surfaces
     labels: Sequence[str]
+    prior: Path | None = None  # what a fleet knows
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,12 @@ def opened(asked: Asked) -> Opened:
     from slipwise.logs import open_log
     from slipwise.logs.open_log import joined
 
+    if asked.prior is not None and (asked.memory or asked.smooth):
+        raise SettingsError(
+            "a fleet's prior is of one log on one surface",
+            where="--prior",
+            advice=f"leave {'--memory' if asked.memory else '--smooth'} or --prior away",
+        )
     if not asked.memory:
         refuse_labels(asked.labels)
         return Opened(asked, (), (), open_log(*asked.paths, options=asked.log_options), None)
@@ -87,6 +94,14 @@ def learn_logs(given: Opened, progress: Callable[[float], None]) -> LearnedLogs:
     asked = given.asked
     if given.begin is None:
         settings = asked.settings or Settings()
+        if asked.prior is not None:
+            from slipwise.calibration.from_prior import KnownFleet, calibrate_from
+
+            known = KnownFleet.load(asked.prior)
+            calibration, _ = calibrate_from(
+                given.log, known, input=asked.input, settings=settings, progress=progress
+            )
+            return LearnedLogs(calibration, settings, None)
         calibration = calibrate(
             given.log, input=asked.input, settings=settings, smooth=asked.smooth, progress=progress
         )

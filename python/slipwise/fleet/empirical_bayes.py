@@ -14,6 +14,7 @@ Floats = NDArray[np.float64]
 
 ITERATIONS = 1000
 TOLERANCE = 1e-4  # change of the between-robot variance, in units of it and of the smallest measured one
+GUESSED = 2.0  # robots that a guess of their variances counts as
 LEAST = 1e-12  # of the between-robot variance, in units of the smallest measured one
 
 
@@ -35,7 +36,12 @@ class FleetPrior:
 
 
 def fleet_prior(
-    estimates: Floats, covariances: Floats, *, dof: float | None = None, start: Floats | None = None
+    estimates: Floats,
+    covariances: Floats,
+    *,
+    dof: float | None = None,
+    start: Floats | None = None,
+    guess: Floats | None = None,
 ) -> FleetPrior:
     """Fit mean and covariance of robots by expectation maximisation of the marginal likelihood.
 
@@ -44,6 +50,8 @@ def fleet_prior(
         covariances: [N, P, P] of the estimates.
         dof: degrees of freedom of a Student t of the robots, against one odd robot; None: they are normal.
         start: [P, P] where the search for the robots' covariance begins; by default at that of the estimates.
+        guess: [P] of the robots' variances, which counts as `GUESSED` robots; then these have one variance
+            per parameter and no covariance, since few robots tell no more.
 
     Raises:
         SettingsError: there are fewer than two robots, or shapes do not fit.
@@ -53,13 +61,18 @@ def fleet_prior(
         raise SettingsError("a fleet needs two robots at least, with a covariance each")
     scale = np.sqrt(np.einsum("nii->ni", covariances).min(axis=0) + 1e-300)
     y, s = estimates / scale, covariances / np.outer(scale, scale)
+    guessed = None if guess is None else guess / scale**2
     first = np.atleast_2d(np.cov(y.T)) if start is None else start / np.outer(scale, scale)
+    if guessed is not None:
+        first = np.diag(guessed)
     between = first + LEAST * np.eye(size)
     weight = np.ones(count)
     for _ in range(ITERATIONS):
         before = between
         mean, _ = _mean(y, s, between, weight)
         between, weight = _step(y - mean, s, between, dof)
+        if guessed is not None:
+            between = np.diag((count * np.diag(between) + GUESSED * guessed) / (count + GUESSED))
         if np.abs(between - before).max() <= TOLERANCE * (1.0 + np.abs(before).max()):
             break
     mean, mean_covariance = _mean(y, s, between, weight)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
+from slipwise.fleet.random_walk import Walk, random_walk
 
 Floats = NDArray[np.float64]
 
@@ -30,8 +31,11 @@ class Finding:
     kind: str  # "odd" or "drift"
     size: float  # off the fleet's mean, or per 30 days; in the parameter's unit
     std: float
-    chance: float  # p-value
+    chance: float  # p-value; of a drift, of its trend and its random walk together
     alarm: bool = False
+    walk: float = math.nan  # standard deviation of a random walk after a kilometre, of a drift
+    now: float = math.nan  # the parameter after the last log by that walk, of a drift
+    now_std: float = math.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +89,7 @@ def _parameter(table: Mapping[str, NDArray[Any]], name: str) -> ParameterFinding
         if len(mine) >= FEWEST_LOGS:
             drift = _drift(table["start"][mine].astype(float) / DAY, value, sigma)
             if drift is not None:
-                drifts.append(Finding(vehicle, name, "drift", *drift))
+                drifts.append(_with_walk(Finding(vehicle, name, "drift", *drift), _walk(table, mine)))
     prior = (
         fleet_prior(estimate[:, None], std[:, None, None] ** 2, dof=STUDENT_DOF)
         if len(vehicles) > 1
@@ -124,9 +128,10 @@ def _odd(
 
 
 def _drift(days: Floats, values: Floats, stds: Floats) -> tuple[float, float, float] | None:
-    """Return the trend per 30 days, its standard deviation and its p-value; None without time between logs.
+    """Return the trend per 30 days, its deviation and its p-value; None without time between logs.
 
-    The scatter of the logs about the line counts where it is larger than the logs say themselves.
+    The scatter of the logs about the line counts where it is larger than the logs say themselves; only then
+    is the test Student's, since only then is a variance estimated.
     """
     weight = stds**-2.0
     centre = np.average(days, weights=weight)
@@ -137,9 +142,40 @@ def _drift(days: Floats, values: Floats, stds: Floats) -> tuple[float, float, fl
     slope = float(np.sum(weight * (days - centre) * (values - level))) / moment
     left = values - level - slope * (days - centre)
     freedom = len(days) - 2
-    excess = max(1.0, float(np.sum(weight * left**2)) / freedom)
-    std = math.sqrt(excess / moment)
-    return 30.0 * slope, 30.0 * std, _two_sided(slope / std, float(freedom))
+    excess = float(np.sum(weight * left**2)) / freedom
+    std = math.sqrt(max(1.0, excess) / moment)
+    z = slope / std
+    chance = _two_sided(z, float(freedom)) if excess > 1.0 else math.erfc(abs(z) / math.sqrt(2.0))
+    return 30.0 * slope, 30.0 * std, chance
+
+
+def _with_walk(finding: Finding, walk: Walk | None) -> Finding:
+    if walk is None:
+        return finding
+    return replace(
+        finding,
+        chance=_combined((finding.chance, walk.chance)),
+        walk=math.sqrt(1000.0 * walk.rate),
+        now=walk.level,
+        now_std=walk.level_std,
+    )
+
+
+def _walk(table: Mapping[str, NDArray[Any]], mine: NDArray[Any]) -> Walk | None:
+    """Return the random walk of a parameter in the distance driven; None where the logs tell none."""
+    order = mine[np.argsort(table["start"][mine], kind="stable")]
+    driven = table["distance"][order].astype(float)
+    middle = np.cumsum(driven) - 0.5 * driven
+    return random_walk(middle, table["value"][order].astype(float), table["std"][order].astype(float))
+
+
+def _combined(chances: Sequence[float]) -> float:
+    """Return the chance of tests that may depend on each other, taken together (Liu and Xie 2020).
+
+    A chance above 0.9 counts as 0.9: at the edge of what is possible it is 1 too often.
+    """
+    angle = float(np.mean([math.tan((0.5 - min(chance, 0.9)) * math.pi) for chance in chances]))
+    return max(0.5 - math.atan(angle) / math.pi, 0.0)
 
 
 def _two_sided(z: float, dof: float) -> float:

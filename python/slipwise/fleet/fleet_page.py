@@ -89,7 +89,7 @@ def _alarms(findings: Sequence[ParameterFindings]) -> str:
         return missing("Nothing stands out.")
     alarms.sort(key=lambda finding: finding.chance)
     return table(
-        ("vehicle", "parameter", "what", "by", "standard deviation", "chance"),
+        ("vehicle", "parameter", "what", "by", "standard deviation", "chance", "walk in a km", "now"),
         [_alarm_row(finding, units[finding.parameter]) for finding in alarms],
     )
 
@@ -97,7 +97,8 @@ def _alarms(findings: Sequence[ParameterFindings]) -> str:
 def _alarm_row(finding: Finding, unit: str) -> tuple[str, ...]:
     what = "unlike the others" if finding.kind == "odd" else "drifts, per 30 days"
     size, std = f"{number(finding.size)} {unit}", f"{number(finding.std)} {unit}"
-    return finding.vehicle, finding.parameter, what, size, std, number(finding.chance)
+    walk, now = number(finding.walk), number(finding.now)
+    return finding.vehicle, finding.parameter, what, size, std, number(finding.chance), walk, now
 
 
 def _side_by_side(columns: Columns, found: ParameterFindings) -> Figure:

@@ -12,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from slipwise.calibration import Settings, calibrate, load_settings
+from slipwise.calibration import Settings, load_settings
+from slipwise.calibration.from_prior import calibrate_from
 from slipwise.errors import SlipwiseError
 from slipwise.files import sha256_of
 from slipwise.fleet.find_logs import LogTask
+from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.logs import Log, open_log
 from slipwise.models.model import Model
 
@@ -53,6 +55,7 @@ class LogRows:
     verdict: str = ""
     rows: tuple[Row, ...] = ()
     failure: str = ""  # why there are no rows
+    knowledge: str = ""  # JSON of what the log says in the terms of every basis
 
 
 def learn_task(task: LogTask) -> LogRows:
@@ -62,7 +65,7 @@ def learn_task(task: LogTask) -> LogRows:
     head = _head(task, settings_hash(settings))
     try:
         log = open_log(path, options=settings.log_options())
-        calibration = calibrate(log, settings=settings)
+        calibration, known = calibrate_from(log, None, settings=settings)
     except SlipwiseError as problem:
         return replace(head, failure=str(problem))
     content = calibration.model.content
@@ -77,6 +80,7 @@ def learn_task(task: LogTask) -> LogRows:
         good=calibration.verdict.good,
         verdict=calibration.verdict.sentence,
         rows=_rows(calibration.model),
+        knowledge="" if known is None else knowledge_text(known),
     )
 
 

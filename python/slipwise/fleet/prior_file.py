@@ -6,24 +6,31 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import yaml
 
 from slipwise.files import write_text_whole
 from slipwise.fleet.findings import ParameterFindings
+from slipwise.fleet.start_prior import KnownLog, start_prior
+from slipwise.models.fleet_prior import PRIOR_SCHEMA, FleetPriorFile, ParameterPrior
 
-SCHEMA = 1
 
-
-def write_prior(path: Path, findings: Sequence[ParameterFindings]) -> Path:
-    """Write mean and standard deviation of a robot of this fleet, parameter by parameter; return the path.
+def write_prior(
+    path: Path,
+    findings: Sequence[ParameterFindings],
+    knowledge: Sequence[KnownLog] = (),
+    *,
+    vehicle_type: str = "",
+) -> Path:
+    """Write what is known of a robot of this fleet, and what its learning begins with; return the path.
 
     Parameters of a single vehicle are left out: one robot says nothing of the next.
 
     Raises:
         OutputError: the file cannot be written.
     """
-    parameters = {
+    parameters: dict[str, dict[str, Any]] = {
         each.parameter: {
             "unit": each.unit,
             "mean": float(each.prior.mean[0]),
@@ -35,6 +42,15 @@ def write_prior(path: Path, findings: Sequence[ParameterFindings]) -> Path:
         if each.prior is not None
     }
     head = "# What is known of a robot of this fleet before its first log; units as in model files.\n"
-    content = {"slipwise_fleet_prior": SCHEMA, "parameters": parameters}
-    write_text_whole(path, head + yaml.safe_dump(content, sort_keys=False))
+    start = start_prior(knowledge)
+    content = FleetPriorFile(
+        slipwise_fleet_prior=PRIOR_SCHEMA,
+        type=vehicle_type,
+        robots=len({vehicle for vehicle, _ in knowledge}),
+        logs=len(knowledge),
+        parameters={name: ParameterPrior(**each) for name, each in parameters.items()},
+        start=start,
+    ).model_dump()
+    text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=120)
+    write_text_whole(path, head + text)
     return path

@@ -3,23 +3,38 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from dataclasses import asdict
 from pathlib import Path
 from sys import intern
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise.calibration.log_knowledge import LogKnowledge
 from slipwise.files import write_text_whole, write_whole
+from slipwise.fleet.knowledge_file import knowledge_from
 from slipwise.fleet.learned_rows import LogRows, Row
 
-ROWS, UNUSABLE = "rows", "unusable"
+ROWS, UNUSABLE, KNOWLEDGE = "rows", "unusable", "knowledge"
 #: Of the rows that a fleet is looked at by.
-COLUMNS = ("vehicle", "month", "key", "start", "seconds", "good", "parameter", "unit", "value", "std")
+COLUMNS = (
+    "vehicle",
+    "month",
+    "key",
+    "start",
+    "seconds",
+    "distance",
+    "good",
+    "parameter",
+    "unit",
+    "value",
+    "std",
+)
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
 AT_ONCE = 500  # files
 _KEY = re.compile(r"[0-9a-f]{16}-[0-9a-f]{16}")
@@ -30,7 +45,7 @@ __all__ = ["Row", "Store"]
 
 
 class Store:
-    """A folder of results: `rows/vehicle=X/month=Y/KEY.parquet`, and `unusable/KEY.json` of other logs."""
+    """A folder of results: `rows/vehicle=X/month=Y/KEY.parquet`, `knowledge`, and `unusable/KEY.json`."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -53,6 +68,10 @@ class Store:
             write_text_whole(path, json.dumps(content, indent=1) + "\n")
             return path
         vehicle, month = (quote(text, safe="") for text in (learned.vehicle, learned.month))
+        if learned.knowledge:
+            known = self.folder / KNOWLEDGE / f"vehicle={vehicle}" / f"{learned.key}.json"
+            known.parent.mkdir(parents=True, exist_ok=True)
+            write_text_whole(known, learned.knowledge)
         path = self.folder / ROWS / f"vehicle={vehicle}" / f"month={month}" / f"{learned.key}.parquet"
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, lambda temporary: _write(temporary, learned))
@@ -72,6 +91,15 @@ class Store:
             return {}
         order = np.lexsort((columns["parameter"], columns["start"], columns["vehicle"]))
         return {name: _column(values)[order] for name, values in columns.items()}
+
+    def knowledge(self) -> list[tuple[str, LogKnowledge]]:
+        """Return what each log says in the terms of every basis, with its vehicle; passes damaged files."""
+        found = []
+        for path in sorted((self.folder / KNOWLEDGE).glob("vehicle=*/*.json")):
+            with contextlib.suppress(ValueError, OSError):
+                text = path.read_text(encoding="utf-8")
+                found.append((unquote(path.parent.name.removeprefix("vehicle=")), knowledge_from(text)))
+        return found
 
     def unusable(self) -> list[dict[str, Any]]:
         """Return log, vehicle and failure of every log that could not be used, in order of the log."""

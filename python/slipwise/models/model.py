@@ -296,6 +296,8 @@ class Model:
         for surface in content.get("surfaces", ()):
             if not surface["classes"]:
                 del surface["classes"]
+        if content["provenance"]["prior"] is None:
+            del content["provenance"]["prior"]
         body = yaml.dump(content, Dumper=_DUMPER, sort_keys=False, width=120, default_flow_style=None)
         return head + body
 

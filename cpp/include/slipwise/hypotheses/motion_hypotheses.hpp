@@ -107,6 +107,8 @@ class MotionHypotheses {
   std::vector<SurfaceProbability> probable_surfaces() const;
   /// What is known of a surface in the terms of a structure; nothing where it has no memory.
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const;
+  /// The same of the surface that is driven on, whether surfaces are remembered or not.
+  std::optional<SlipOnSurface> slip_now(Structure structure) const;
   /// Begins with what another learner knew, before anything is learned. `wheels_known` says whether wheel speeds come
   /// beside the commands.
   /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.

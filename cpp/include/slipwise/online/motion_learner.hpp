@@ -160,6 +160,8 @@ class MotionLearner {
   std::optional<SlipOnSurface> on_surface(const Surface& surface, Structure structure) const {
     return hypotheses_.on_surface(surface, structure);
   }
+  /// The same of the surface that is driven on, whether surfaces are remembered or not.
+  std::optional<SlipOnSurface> slip_now(Structure structure) const { return hypotheses_.slip_now(structure); }
   /// Begins with what another learner knew: its robot, its slip disturbance `law` and the surfaces it remembers. How
   /// large errors are is learned again. `wheels` says whether wheel speeds will come beside the commands.
   /// \throws std::invalid_argument when something was learned already, or the terms are not those that are learned.
