@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate, calibrate_by, learned_by
-from slipwise.calibration.core_settings import core_settings
-from slipwise.calibration.learned_log import Keep, learn_with
+from slipwise.calibration.learned_log import Keep, learn_with, new_learner
 from slipwise.calibration.learner import STRUCTURES, Progress
 from slipwise.calibration.log_knowledge import LogKnowledge, knowledge_of, robot_model
 from slipwise.calibration.model_content import Learned
@@ -105,7 +104,7 @@ def _learned(
     progress: Progress | None = None,
 ) -> tuple[Calibration, LogKnowledge | None]:
     """Learn a log, from a prior (with its file) where one is given."""
-    learner = _core.MotionLearner(core_settings(settings, input_name, JUDGING_HORIZONS))
+    learner = new_learner(log.runs, input_name, settings, JUDGING_HORIZONS)
 
     def learn(windows: WindowSet) -> Learned:
         if begin is not None:

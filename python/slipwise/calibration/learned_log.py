@@ -17,7 +17,7 @@ from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
 from slipwise.calibration.surface_course import course_of
-from slipwise.logs.log import has_course
+from slipwise.logs.log import Run, has_course
 from slipwise.segments import car_prior, recording_of
 
 Floats = NDArray[np.float64]
@@ -69,20 +69,20 @@ def learn_log(
     Raises:
         SettingsError: a basis or a term is unknown.
     """
-    return learn_with(new_learner(drive, settings, horizons), drive, horizons, keep=keep, progress=progress)
+    learner = new_learner([run.run for run in drive], drive[0].input_name, settings, horizons)
+    return learn_with(learner, drive, horizons, keep=keep, progress=progress)
 
 
 def new_learner(
-    drive: tuple[PreparedRun, ...], settings: Settings, horizons: Sequence[float]
+    runs: Sequence[Run], input_name: str, settings: Settings, horizons: Sequence[float]
 ) -> _core.MotionLearner:
-    """Return a learner that knows nothing of what drives there but its sort.
+    """Return a learner that knows nothing yet but what sort of vehicle and of poses the runs are of.
 
     Raises:
         SettingsError: a basis or a term is unknown.
     """
-    positions = has_course(run.run for run in drive)
-    car = car_prior([run.run for run in drive])
-    core = core_settings(settings, drive[0].input_name, horizons, positions=positions, car=car)
+    positions, car = has_course(runs), car_prior(runs)
+    core = core_settings(settings, input_name, horizons, positions=positions, car=car)
     return _core.MotionLearner(core)
 
 

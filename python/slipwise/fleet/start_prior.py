@@ -41,7 +41,8 @@ def start_prior(logs: Sequence[KnownLog]) -> StartPrior | None:
     """Return the prior of a new robot; None where fewer than two robots say something in the same terms.
 
     Of the inputs, and of the ways to explain motion, the one is taken that most logs have, of those that two
-    robots have; logs of the other input say nothing. The variance between robots is one per parameter, since robots are few.
+    robots have; logs of the other input say nothing. The variance between robots is one per parameter, since
+    robots are few.
     """
     if not logs:
         return None
