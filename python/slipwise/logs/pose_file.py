@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads files that hold poses alone: TUM, CSV, Parquet, and the solutions of RTKLIB (PPK)."""
+"""Reads files that hold poses alone: TUM, KITTI, CSV, Parquet, GPX, NMEA, and RTKLIB (PPK)."""
 
 from __future__ import annotations
 
@@ -11,19 +11,26 @@ from pathlib import Path
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.gpx import is_gpx, read_gpx
+from slipwise.logs.kitti import read_kitti
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
+from slipwise.logs.nmea import is_nmea, read_nmea
 from slipwise.logs.piped import LARGEST, regular_file
 from slipwise.logs.ppk import is_ppk, read_ppk
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.table import Table, read_csv, read_parquet
 
-_KNOWN = "give TUM (t x y z qx qy qz qw), a CSV or Parquet table with t, x, y, yaw, or an RTKLIB .pos file"
+_KNOWN = (
+    "give TUM (t x y z qx qy qz qw), KITTI with times.txt, a CSV or Parquet table with t, x, y, yaw, GPX, "
+    "NMEA or an RTKLIB .pos file"
+)
 _ALIASES = {"timestamp": "t", "time": "t", "tx": "x", "ty": "y", "tz": "z"}
 _QUATERNION = ("qx", "qy", "qz", "qw")
 _TUM, _KITTI = 8, 12  # numbers in a line
 _NANOSECONDS = 1e16  # stamps beyond this count nanoseconds, not seconds
+_RECEIVERS = (("ppk", is_ppk, read_ppk), ("gpx", is_gpx, read_gpx), ("nmea", is_nmea, read_nmea))
 _BAGS = (b"\x89MCAP", b"SQLit", b"#ROSB")
 
 
@@ -83,16 +90,17 @@ def _read(path: Path, file: Path, content: bytes, columns: Mapping[str, str], ta
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise LogError("not a file of poses", where=str(path), advice=_KNOWN) from error
-    if is_ppk(text):
-        stream, notes = read_ppk(path, text, tally)
-        return stream, "ppk", notes
+    for kind, is_kind, read_kind in _RECEIVERS:
+        if is_kind(text):
+            stream, notes = read_kind(path, text, tally)
+            return stream, kind, notes
     first = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     count = _numbers_in(first)
     if count == _TUM:
         return _tum_poses(path, text, tally), "tum", ()
     if count == _KITTI:
-        advice = "give the TUM file that kiss-icp and evo write beside it (..._tum.txt)"
-        raise LogError("poses of the KITTI format have no times", where=str(path), advice=advice)
+        stream, notes = read_kitti(path, text)
+        return stream, "kitti", notes
     if count:
         raise LogError(f"{count} numbers in a line are no pose", where=str(path), advice=_KNOWN)
     return _table_poses(path, _csv(file, tally), columns, tally), "csv", ()

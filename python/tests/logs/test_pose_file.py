@@ -73,11 +73,15 @@ def test_broken_lines_and_bad_quaternions_are_counted_with_their_line(tmp_path: 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("1 0 0 0 0 1 0 0 0 0 1 0\n", "poses of the KITTI format have no times.*_tum.txt"),
+        (
+            "1 0 0 0 0 1 0 0 0 0 1 0\n",
+            "poses of the KITTI format have no times.*put times.txt or a_times.txt.*_tum.txt",
+        ),
         ("1 2 3\n", "3 numbers in a line are no pose .*: give TUM"),
         ("a,b\n1,2\n", "missing columns: t; x; y"),
         ("t,x,y,yaw\n", "holds no poses"),
         ("0 1 2 3 0 0 0 0\n", "holds no poses"),
+        ("1 0 0 0 0 1 0 0 0 0 1\n", "11 numbers in a line are no pose"),
     ],
 )
 def test_other_files_are_refused_with_what_would_do(tmp_path: Path, content: str, message: str) -> None:

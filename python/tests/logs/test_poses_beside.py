@@ -105,6 +105,19 @@ def test_positions_of_ppk_get_their_heading_from_the_track(tmp_path: Path, run: 
     assert poses.course
 
 
+def test_a_gpx_track_gives_positions_that_are_learned_from(tmp_path: Path, run: Run) -> None:
+    points = [
+        f'<trkpt lat="{48.0 + y / 111_200:.9f}" lon="{9.0 + x / 74_600:.9f}">'
+        f"<time>1970-01-01T00:{int(t // 60):02d}:{t % 60:06.3f}Z</time></trkpt>"
+        for t, x, y in zip(run.poses.t[::4], run.poses.x[::4], run.poses.y[::4], strict=True)
+    ]
+    (tmp_path / "a.gpx").write_text(f"<gpx><trk><trkseg>{''.join(points)}</trkseg></trk></gpx>")
+    log = open_log(table(tmp_path / "a.csv", run), options=options(tmp_path / "a.gpx"))
+    assert log.runs[0].poses.course
+    assert log.sources[1].format == "gpx"
+    assert any(note.startswith("poses are those of a.gpx (gpx)") for note in log.notes)
+
+
 def test_inputs_that_are_all_faulty_are_named(tmp_path: Path, run: Run) -> None:
     (tmp_path / "a.csv").write_text("stamp,odo_v,turn\n0,nan,1\n1,nan,1\n")
     poses = tum(tmp_path / "p.txt", run)
