@@ -148,7 +148,7 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 
 $(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev docs thesis fleet foxglove live mavlink px4 ros2 terrain viz zenoh > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev docs thesis fleet foxglove live mavlink px4 remote ros2 terrain viz zenoh > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from slipwise.logs.options import LogOptions
+from slipwise.logs.remote import MOST_FETCHED
 from slipwise.logs.unpacking import MOST_UNPACKED
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
@@ -38,6 +39,7 @@ class LogTable(BaseModel):
     wheel_scale: Factors = [1.0, 1.0]  # of the wheels'
     pose_yaw_offset: Radians = 0.0  # rad
     most_unpacked: Positive = MOST_UNPACKED  # MiB that a compressed table, or a chunk of a bag, may unpack to
+    most_fetched: Positive = MOST_FETCHED  # MiB that a log on a server may have
     poses: str | None = None  # a file beside the log
     pose_clock_offset: Seconds | Literal["auto"] | None = None  # s
     start: Seconds | None = None  # s

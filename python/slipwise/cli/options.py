@@ -127,6 +127,7 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
         "Added to the heading of every pose: 3.1416 if the pose sensor looks backwards.",
     ),
     "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
+    "most_fetched": (float, "MIB", "What a log on a server may have; default 4096."),
     "poses": (Path, "FILE", "Measured poses in a file beside the log: TUM, KITTI, a table, GPX, NMEA, .pos."),
     "pose_clock_offset": (
         str,

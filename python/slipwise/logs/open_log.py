@@ -13,8 +13,8 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.logs.corrections import scaled_inputs, turned_poses
 from slipwise.logs.log import Log
 from slipwise.logs.options import LogOptions
-from slipwise.logs.piped import regular_file
 from slipwise.logs.quality import checked
+from slipwise.logs.remote import MOST_FETCHED, local_file, shown
 from slipwise.logs.run_name import run_name
 from slipwise.logs.time_span import cut_to_span
 from slipwise.logs.unpacking import unpacking_at_most
@@ -32,7 +32,7 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
 
     Args:
         paths: tidy tables (CSV, CSV.gz, Parquet), bags (rosbag1, rosbag2 folder or .db3, MCAP), and logs of
-            autopilots (ArduPilot .bin and .tlog, PX4 .ulg).
+            autopilots (ArduPilot .bin and .tlog, PX4 .ulg); or addresses (https://, s3://, gs://).
         options: what cannot be guessed.
 
     Raises:
@@ -46,36 +46,39 @@ def open_log(*paths: str | Path, options: LogOptions = _GUESS) -> Log:
     return joined([_open_one(Path(path), options) for path in paths])
 
 
-def readable(path: Path) -> tuple[Path, bool]:
-    """Return the file to read, which is a copy where the log comes through a pipe, and whether it is a bag.
+def readable(path: Path, most_fetched: float = MOST_FETCHED) -> tuple[Path, bool]:
+    """Return the file to read, a copy of what comes through a pipe or a net, and whether it is a bag.
+
+    Args:
+        path: the file, or an address on a server.
+        most_fetched: MiB that a file on a server may have.
 
     Raises:
         LogError: there is no such file, or it is of an unknown kind.
     """
     from slipwise.logs.bag_file import is_bag
 
-    if "\0" in str(path) or not path.exists():
-        raise LogError("no such file", where=str(path), advice="check the path")
     try:
-        file = regular_file(path)
+        file = local_file(path, "check the path", most_fetched)
         if file.is_dir() or is_bag(file):
             return file, True
         with file.open("rb") as stream:
             start = stream.read(4)
     except PermissionError as error:
-        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+        raise LogError("no permission to read", where=shown(path), advice="check the file's owner") from error
+    path = Path(shown(path))
     if not start:
-        raise LogError("the file is empty", where=str(path), advice="record or copy it again")
+        raise LogError("the file is empty", where=shown(path), advice="record or copy it again")
     if path.suffix in (".mcap", ".db3", ".bag"):
         advice = f"a {path.suffix} file starts otherwise; copy it again from the robot"
-        raise LogError("not a bag: wrong magic bytes", where=str(path), advice=advice)
+        raise LogError("not a bag: wrong magic bytes", where=shown(path), advice=advice)
     if path.suffix == ".parquet" and start != b"PAR1":
-        raise LogError("not a Parquet file: wrong magic bytes", where=str(path), advice="write it again")
+        raise LogError("not a Parquet file: wrong magic bytes", where=shown(path), advice="write it again")
     return file, False
 
 
 def _open_one(path: Path, options: LogOptions) -> Log:
-    file, bag = readable(path)
+    file, bag = readable(path, options.most_fetched)
     with named_in_errors(path, file), unpacking_at_most(options.most_unpacked):
         log = _completed(_read(file, options, bag=bag), options)
         return _named(checked(log, options.unknown_after), file, path)
@@ -87,11 +90,11 @@ def named_in_errors(path: Path, file: Path) -> Iterator[None]:
     try:
         yield
     except PermissionError as error:
-        raise LogError("no permission to read", where=str(path), advice="check the file's owner") from error
+        raise LogError("no permission to read", where=shown(path), advice="check the file's owner") from error
     except LogError as error:
         if file == path:
             raise
-        where = error.where.replace(str(file), str(path))
+        where = error.where.replace(str(file), shown(path))
         raise LogError(error.what, where=where, advice=error.advice) from error
 
 
@@ -130,7 +133,7 @@ def _named(log: Log, file: Path, path: Path) -> Log:
     """Name the path that was given, not the copy of what came through it."""
     if file == path:
         return log
-    return replace(log, sources=tuple(replace(source, path=str(path)) for source in log.sources))
+    return replace(log, sources=tuple(replace(source, path=shown(path)) for source in log.sources))
 
 
 def joined(logs: list[Log]) -> Log:

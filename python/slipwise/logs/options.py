@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from slipwise.errors import SettingsError
 from slipwise.logs.held import UNKNOWN_AFTER
+from slipwise.logs.remote import MOST_FETCHED
 from slipwise.logs.unpacking import LARGEST_UNPACKED, MOST_UNPACKED
 
 if TYPE_CHECKING:
@@ -43,6 +44,7 @@ class LogOptions:
     wheel_scale: tuple[float, float] = (1.0, 1.0)  # the same of the wheels'; such as their radius, or -1
     pose_yaw_offset: float = 0.0  # [rad] added to the heading of every pose
     most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
+    most_fetched: float = MOST_FETCHED  # [MiB] that a log on a server may have
     poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
     pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
     start: float | None = None  # [s] from the log's start; what is before is not used
@@ -60,11 +62,13 @@ class LogOptions:
                     advice="measure it on the robot",
                 )
         self._check_corrections()
-        if not 0.0 < self.most_unpacked <= LARGEST_UNPACKED:
-            raise SettingsError(
-                f"most_unpacked must be a positive number of MiB, not {self.most_unpacked}",
-                advice=f"the default is {MOST_UNPACKED:g}, the most {LARGEST_UNPACKED:g}",
-            )
+        for name, usual in (("most_unpacked", MOST_UNPACKED), ("most_fetched", MOST_FETCHED)):
+            size: float = getattr(self, name)
+            if not 0.0 < size <= LARGEST_UNPACKED:
+                raise SettingsError(
+                    f"{name} must be a positive number of MiB, not {size}",
+                    advice=f"the default is {usual:g}, the most {LARGEST_UNPACKED:g}",
+                )
         for name in ("start", "end", "pose_clock_offset"):
             given = getattr(self, name)
             automatic = name == "pose_clock_offset"

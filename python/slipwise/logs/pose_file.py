@@ -16,8 +16,9 @@ from slipwise.logs.kitti import read_kitti
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
 from slipwise.logs.nmea import is_nmea, read_nmea
-from slipwise.logs.piped import LARGEST, regular_file
+from slipwise.logs.piped import LARGEST
 from slipwise.logs.ppk import is_ppk, read_ppk
+from slipwise.logs.remote import local_file, shown
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.table import Table, read_csv, read_parquet
@@ -60,9 +61,8 @@ def read_pose_file(path: Path, columns: Mapping[str, str], tally: Tally) -> Pose
     Raises:
         LogError: the file is missing, of an unknown kind or holds no poses.
     """
-    if not path.exists():
-        raise LogError("no such file", where=str(path), advice="check the path after --poses")
-    file = regular_file(path)
+    file = local_file(path, "check the path after --poses", LARGEST / (1 << 20))
+    path = Path(shown(path))
     if file.is_dir():
         raise LogError("a folder is no file of poses", where=str(path), advice=_KNOWN)
     if file.stat().st_size > LARGEST:

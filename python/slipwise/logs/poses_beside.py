@@ -16,6 +16,7 @@ from slipwise.logs.navsat import with_course
 from slipwise.logs.options import AUTO, LogOptions
 from slipwise.logs.pose_clock import agreement_at, find_clock_offset, pose_motion
 from slipwise.logs.pose_file import read_pose_file
+from slipwise.logs.remote import shown
 from slipwise.logs.streams import RawStream, clean_stream, to_poses
 
 _LOW_AGREEMENT = 0.3  # agreement of motions below which clocks may be apart
@@ -30,10 +31,11 @@ def with_poses(log: Log, path: Path, options: LogOptions) -> Log:
     """
     tally = Tally()
     file = read_pose_file(path, options.columns, tally)
+    path = Path(shown(path))
     spans = _spans(log, path)
     poses = clean_stream(file.stream, tally)
     if not len(poses.t):
-        raise LogError("the file holds no usable poses", where=str(path), advice="see how it was written")
+        raise LogError("the file holds no usable poses", where=shown(path), advice="see how it was written")
     offset, found = _offset(log, poses, path, options)
     poses = replace(poses, t=poses.t + offset)
     runs = []
@@ -42,9 +44,9 @@ def with_poses(log: Log, path: Path, options: LogOptions) -> Log:
         runs.append(_with_stream(run, inside, tally, headed=file.has_heading))
     used = sum(len(run.poses) for run in runs)
     if used == 0:
-        raise LogError(_apart(poses, spans), where=str(path), advice=_CLOCKS)
+        raise LogError(_apart(poses, spans), where=shown(path), advice=_CLOCKS)
     note = f"poses are those of {path.name} ({file.format}): {used} of {len(poses.t)} lie in the log"
-    source = Source(str(path), file.sha256, file.format, len(file.stream.t))
+    source = Source(shown(path), file.sha256, file.format, len(file.stream.t))
     return replace(
         log,
         runs=tuple(runs),
@@ -71,11 +73,11 @@ def _offset(log: Log, poses: RawStream, path: Path, options: LogOptions) -> tupl
         )
     if not len(motion.start):
         advice = "give the seconds to add with --pose-clock-offset"
-        raise LogError("too few poses to find an offset of clocks", where=str(path), advice=advice)
+        raise LogError("too few poses to find an offset of clocks", where=shown(path), advice=advice)
     try:
         match = find_clock_offset(inputs, motion, options.unknown_after, lagging=not wheels)
     except LogError as unclear:
-        raise LogError(unclear.what, where=str(path), advice=unclear.advice) from unclear
+        raise LogError(unclear.what, where=shown(path), advice=unclear.advice) from unclear
     note = (
         f"{match.offset:+.3f} s are added to the stamps of {path.name}: its motion then agrees best with "
         f"the {'wheels' if wheels else 'commands'} ({match.agreement:.2f}, next best {match.next_best:.2f})"
@@ -109,7 +111,7 @@ def _spans(log: Log, path: Path) -> list[tuple[float, float]]:
         if later < earlier:
             raise LogError(
                 "several runs of the log have the same times, so it is not clear whose the poses are",
-                where=str(path),
+                where=shown(path),
                 advice="give a log with one run",
             )
     return spans

@@ -11,6 +11,7 @@ from slipwise.errors import LogError
 from slipwise.logs.left_out import Tally
 from slipwise.logs.messages import TF
 from slipwise.logs.options import LogOptions
+from slipwise.logs.remote import shown
 
 if TYPE_CHECKING:
     from slipwise.logs.role_choice import Topic
@@ -51,7 +52,7 @@ def survey_log(path: str | Path, options: LogOptions) -> Survey:
     from slipwise.logs.open_log import named_in_errors, readable
 
     path = Path(path)
-    file, bag = readable(path)
+    file, bag = readable(path, options.most_fetched)
     with named_in_errors(path, file):
         if not bag and (kind := flight_format(file)) is not None:
             return _survey_flight(path, file, kind, options)
@@ -68,11 +69,13 @@ def _survey_bag(path: Path, file: Path, options: LogOptions) -> Survey:
     with open_bag(file, bag_files(file), tally) as bag:
         topics = sorted(bag.topics, key=lambda topic: topic.name)
         if not any(topic.count for topic in topics) and any(e.kind == DAMAGED for e in tally.result()):
-            raise LogError("the bag is cut off: no message is left", where=str(path), advice="copy it again")
+            raise LogError(
+                "the bag is cut off: no message is left", where=shown(path), advice="copy it again"
+            )
         source = transform_source(bag, collect_transforms(bag, options), options)
         found = weigh_topics(topics, options, source)
         parts = tuple(_part(topic, found) for topic in topics)
-        return Survey(str(path), bag.format, parts)
+        return Survey(shown(path), bag.format, parts)
 
 
 def _part(topic: Topic, found: TopicRoles) -> Part:
@@ -107,7 +110,7 @@ def _survey_flight(path: Path, file: Path, kind: str, options: LogOptions) -> Su
         rate = (len(t) - 1) / span if span > 0.0 else float("nan")
         why = "; ".join(note for note in chosen.notes if name in note) or "not needed beside the others"
         parts.append(Part(name, "message", len(t), rate, ", ".join(used), why))
-    return Survey(str(path), kind, tuple(parts))
+    return Survey(shown(path), kind, tuple(parts))
 
 
 def _survey_table(path: Path, file: Path, options: LogOptions) -> Survey:
@@ -122,4 +125,4 @@ def _survey_table(path: Path, file: Path, options: LogOptions) -> Survey:
         own = options.columns.get(name, name)
         why = why if own == name else f"{name} by --columns" + (f"; {why}" if why else "")
         parts.append(Part(own, "column", len(column) - column.null_count, float("nan"), used_as, why))
-    return Survey(str(path), table.format, tuple(parts))
+    return Survey(shown(path), table.format, tuple(parts))

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs on servers (https, s3, gs, az): copied into a temporary file, up to a size and no further."""
+
+from __future__ import annotations
+
+import functools
+import re
+import shutil
+import tempfile
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Any
+
+from slipwise.errors import LogError
+from slipwise.logs.piped import regular_file
+
+if TYPE_CHECKING:
+    from fsspec import AbstractFileSystem
+
+MOST_FETCHED = 4096.0  # [MiB]
+_BLOCK = 1 << 20
+_NOT_FOUND = 404  # of HTTP
+_PATIENCE = 60.0  # [s] without a byte
+_REMOTE = re.compile(r"(?P<scheme>https?|s3|gs|az):/{1,2}(?P<rest>[^/].*)", re.DOTALL)
+_AGAIN = "try again, or copy the file yourself"
+_PACKAGES = {"s3": "s3fs", "gs": "gcsfs", "az": "adlfs"}
+
+
+def remote_url(path: str | Path) -> str | None:
+    """Return the address that a path is; None where it names a file on this machine.
+
+    A `Path` makes one slash of two; the two after the scheme are put back.
+    """
+    match = _REMOTE.fullmatch(str(path))
+    return f"{match['scheme']}://{match['rest']}" if match else None
+
+
+def shown(path: str | Path) -> str:
+    """Return a path as it may be shown: an address without user, password and signature."""
+    url = remote_url(path)
+    return str(path) if url is None else _public(url)
+
+
+def staged(url: str, most_fetched: float = MOST_FETCHED) -> Path:
+    """Return a copy on this machine, which is removed when the program ends; each address is fetched once.
+
+    Args:
+        url: the address, of a scheme that `remote_url` knows.
+        most_fetched: MiB that the file may have.
+
+    Raises:
+        LogError: a package is missing, the file cannot be fetched, is too large or comes cut off.
+    """
+    return _staged(url, int(most_fetched * 1024 * 1024))
+
+
+def local_file(path: Path, advice: str, most_fetched: float = MOST_FETCHED) -> Path:
+    """Return the file to read: itself, or a copy of what comes through a pipe or from a server.
+
+    Args:
+        path: a file, a folder, a pipe or an address.
+        advice: what to do where there is none.
+        most_fetched: MiB that a file on a server may have.
+
+    Raises:
+        LogError: there is no such file, it cannot be fetched, or is no regular file.
+    """
+    url = remote_url(path)
+    if "\0" not in str(path) and path.exists():
+        return regular_file(path)
+    if url is None:
+        raise LogError("no such file", where=str(path), advice=advice)
+    return staged(url, most_fetched)
+
+
+_folders: list[tempfile.TemporaryDirectory[str]] = []  # removed when the program ends
+
+
+@functools.cache
+def _staged(url: str, most: int) -> Path:
+    where = _public(url)
+    system = _file_system(url.partition(":")[0], where)
+    folder = tempfile.TemporaryDirectory(prefix="slipwise-")
+    copy = Path(folder.name) / _name(where)
+    try:
+        size = _known_size(system, url, where, most)
+        copied = _copy(system, url, copy, most)
+        if size not in (None, copied):
+            raise LogError(f"cut off: {copied} of {size} bytes came", where=where, advice=_AGAIN)
+    except LogError:
+        folder.cleanup()
+        raise
+    except Exception as error:  # the clients of servers have errors of their own
+        folder.cleanup()
+        raise _failure(error, url, where) from error
+    _folders.append(folder)
+    return copy
+
+
+def _file_system(scheme: str, where: str) -> AbstractFileSystem:
+    try:
+        import fsspec
+
+        options: dict[str, Any] = {"skip_instance_cache": True}
+        if scheme in ("http", "https"):
+            import aiohttp
+
+            patience = aiohttp.ClientTimeout(total=None, sock_connect=_PATIENCE, sock_read=_PATIENCE)
+            options["client_kwargs"] = {"trust_env": True, "timeout": patience}
+        return fsspec.filesystem(scheme, **options)
+    except ImportError as error:
+        other = _PACKAGES.get(scheme)
+        advice = (
+            "pip install 'slipwise[remote]'" + (f" {other}" if other else "") + ", or copy the file yourself"
+        )
+        raise LogError(f"reading {scheme}:// needs another package", where=where, advice=advice) from error
+
+
+def _known_size(system: AbstractFileSystem, url: str, where: str, most: int) -> int | None:
+    """Return the bytes that the server says the file has, None where it does not say.
+
+    Raises:
+        LogError: it is a folder, more than is allowed, or more than there is room for.
+    """
+    about = system.info(url)
+    if about.get("type") == "directory":
+        raise LogError("a folder on a server", where=where, advice="name the files in it one by one")
+    size = about.get("size")
+    if size is None:
+        return None
+    if size > most:
+        raise _too_large(where, most)
+    if size > shutil.disk_usage(tempfile.gettempdir()).free:
+        advice = "set TMPDIR to a folder with room, or copy the file yourself"
+        raise LogError(f"no room for {size >> 20} MiB", where=where, advice=advice)
+    return int(size)
+
+
+def _copy(system: AbstractFileSystem, url: str, copy: Path, most: int) -> int:
+    """Copy in pieces, whatever the server said of the size; return the bytes that came.
+
+    Raises:
+        LogError: more comes than is allowed.
+    """
+    in_one_answer = {"block_size": 0} if url.startswith("http") else {}
+    copied = 0
+    with system.open(url, "rb", **in_one_answer) as source, copy.open("wb") as file:
+        while block := source.read(_BLOCK):
+            copied += len(block)
+            if copied > most:
+                raise _too_large(_public(url), most)
+            file.write(block)
+    return copied
+
+
+def _too_large(where: str, most: int) -> LogError:
+    advice = "if this is right, allow more: most_fetched in MiB, or --most-fetched"
+    return LogError(f"more than {most / 1024 / 1024:g} MiB", where=where, advice=advice)
+
+
+def _failure(error: Exception, url: str, where: str) -> LogError:
+    """Say in one line what went wrong, without what the address keeps secret."""
+    while isinstance(error, FileNotFoundError) and isinstance(error.__cause__, Exception):
+        error = error.__cause__  # fsspec says of all that fails on the web that there is no such file
+    if isinstance(error, FileNotFoundError) or getattr(error, "status", None) == _NOT_FOUND:
+        return LogError("no such file on the server", where=where, advice="check the address")
+    if isinstance(error, PermissionError):
+        return LogError("no permission to read", where=where, advice="log in as the store's own tools do")
+    said = " ".join(str(error).replace(url, where).split())
+    user = url.partition("://")[2].partition("/")[0].rpartition("@")[0]
+    for secret in (url.partition("?")[2], f"{user}@" if user else ""):
+        said = said.replace(secret, "...") if secret else said
+    what = f"cannot be fetched: {type(error).__name__}{f': {said[:200]}' if said else ''}"
+    return LogError(what, where=where, advice=_AGAIN)
+
+
+def _public(url: str) -> str:
+    scheme, _, rest = url.partition("://")
+    place = re.split(r"[?#]", rest, maxsplit=1)[0]
+    server, slash, path = place.partition("/")
+    return f"{scheme}://{server.rpartition('@')[2]}{slash}{path}"
+
+
+def _name(where: str) -> str:
+    """Return a name for the copy that is safe on this machine, with the endings of the file."""
+    name = re.sub(r"[^A-Za-z0-9._-]", "_", PurePosixPath(where).name)[-100:].lstrip(".")
+    return name or "log"

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Logs on a server are copied within a limit, and errors are one line that gives no secret away."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
+
+import pytest
+
+from slipwise.errors import LogError, SettingsError
+from slipwise.logs import LogOptions, open_log
+from slipwise.logs.left_out import Tally
+from slipwise.logs.pose_file import read_pose_file
+from slipwise.logs.remote import remote_url, shown, staged
+from slipwise.logs.survey import survey_log
+
+fsspec = pytest.importorskip("fsspec")
+pytest.importorskip("aiohttp")
+
+ROWS = "".join(f"{0.1 * k:.1f},0.5,0.1,{0.05 * k:.3f},0,0\n" for k in range(50))
+DRIVE = ("t,odo_v,odo_omega,x,y,yaw\n" + ROWS).encode()
+
+
+@dataclass
+class Server:
+    """Files by their path, and what was asked for."""
+
+    address: str
+    files: dict[str, bytes] = field(default_factory=dict)
+    asked: list[str] = field(default_factory=list)
+    silent: bool = False  # about how long a file is
+    cut: bool = False  # before the end
+
+
+@pytest.fixture
+def server() -> Iterator[Server]:
+    class Handler(BaseHTTPRequestHandler):
+        def do_HEAD(self) -> None:
+            self._answer(body=False)
+
+        def do_GET(self) -> None:
+            self._answer(body=True)
+
+        def _answer(self, *, body: bool) -> None:
+            content = shared.files.get(self.path.partition("?")[0])
+            if body:
+                shared.asked.append(self.path)
+            if content is None:
+                self.send_error(403 if "locked" in self.path else 404)
+                return
+            self.send_response(200)
+            if not shared.silent:
+                self.send_header("Content-Length", str(len(content)))
+            self.end_headers()
+            if body:
+                self.wfile.write(content[: len(content) // 2] if shared.cut else content)
+
+        def log_message(self, *_: object) -> None:
+            """Say nothing."""
+
+    http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
+    shared = Server(f"http://127.0.0.1:{http.server_port}")
+    thread = threading.Thread(target=http.serve_forever, daemon=True)
+    thread.start()
+    yield shared
+    http.shutdown()
+    http.server_close()
+    thread.join()
+
+
+@pytest.mark.parametrize("silent", [False, True])
+def test_a_log_on_a_server_is_read_as_one_on_this_machine(
+    server: Server, tmp_path: Path, *, silent: bool
+) -> None:
+    server.files["/drives/a.csv"], server.silent = DRIVE, silent
+    (tmp_path / "a.csv").write_bytes(DRIVE)
+    here, there = open_log(tmp_path / "a.csv"), open_log(f"{server.address}/drives/a.csv")
+    assert there.sources[0].sha256 == here.sources[0].sha256
+    assert there.sources[0].path == f"{server.address}/drives/a.csv"
+    assert [run.name for run in there.runs] == [run.name for run in here.runs]
+
+
+def test_a_file_is_fetched_once_for_all_that_read_it(server: Server) -> None:
+    server.files["/a.csv"] = DRIVE
+    path = Path(f"{server.address}/a.csv")  # as the command line gives it, with one slash
+    assert survey_log(path, LogOptions()).path == f"{server.address}/a.csv"
+    open_log(path)
+    assert server.asked == ["/a.csv"]
+
+
+def test_poses_beside_a_log_may_lie_on_a_server(server: Server) -> None:
+    server.files["/p.txt"] = b"0.5 1 2 3 0 0 0 1\n"
+    assert read_pose_file(Path(f"{server.address}/p.txt"), {}, Tally()).stream.t.tolist() == [0.5]
+
+
+@pytest.mark.parametrize("silent", [False, True])
+def test_more_than_is_allowed_is_not_fetched(server: Server, *, silent: bool) -> None:
+    server.files["/a.csv"], server.silent = DRIVE + bytes(4 << 20), silent
+    with pytest.raises(LogError, match=r"more than 1 MiB .*a\.csv.*--most-fetched"):
+        open_log(f"{server.address}/a.csv", options=LogOptions(most_fetched=1.0))
+    assert silent or not server.asked
+
+
+def test_a_file_that_comes_cut_off_is_refused_and_fetched_anew(server: Server) -> None:
+    server.files["/a.csv"], server.cut = DRIVE, True
+    with pytest.raises(LogError, match=r"cannot be fetched|cut off"):
+        open_log(f"{server.address}/a.csv")
+    server.cut = False
+    assert len(open_log(f"{server.address}/a.csv").runs[0].poses) == 50
+
+
+@pytest.mark.parametrize(
+    ("place", "message"),
+    [
+        ("/none.csv?key=secret", "no such file on the server .*check the address"),
+        ("/locked.csv?key=secret", "cannot be fetched: .*403"),
+        ("/empty.csv?key=secret", "the file is empty"),
+        ("/a.mcap?key=secret", "not a bag: wrong magic bytes"),
+    ],
+)
+def test_what_cannot_be_read_is_said_in_a_line_without_the_key(
+    server: Server, place: str, message: str
+) -> None:
+    server.files |= {"/empty.csv": b"", "/a.mcap": DRIVE}
+    with pytest.raises(LogError, match=message) as caught:
+        open_log(f"{server.address}{place}".replace("http://", "http://me:secret@"))
+    assert "secret" not in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_server_that_is_not_there_is_an_error_of_one_line() -> None:
+    with pytest.raises(
+        LogError, match=r"cannot be fetched: ClientConnector.*\(http://127\.0\.0\.1:1/a\.csv\)"
+    ):
+        open_log("http://127.0.0.1:1/a.csv")
+
+
+def test_keys_in_an_address_do_not_reach_the_log(server: Server) -> None:
+    server.files["/a.csv"] = DRIVE
+    log = open_log(f"{server.address}/a.csv?X-Amz-Signature=secret")
+    assert log.sources[0].path == f"{server.address}/a.csv"
+    assert "secret" not in repr(log.sources) + repr(log.notes) + repr([run.name for run in log.runs])
+    assert server.asked == ["/a.csv?X-Amz-Signature=secret"]
+
+
+def test_object_stores_are_read_through_their_own_file_system(monkeypatch: pytest.MonkeyPatch) -> None:
+    from fsspec.implementations.memory import MemoryFileSystem
+
+    class Store(MemoryFileSystem):  # type: ignore[misc]
+        @classmethod
+        def _strip_protocol(cls, path: str) -> str:
+            return str(super()._strip_protocol(path.replace("gs://", "memory://")))
+
+    monkeypatch.setattr(fsspec, "filesystem", lambda scheme, **_: {"gs": Store}[scheme]())
+    Store().pipe("/bucket/drives/a.csv", DRIVE)
+    log = open_log(Path("gs://bucket/drives/a.csv"))
+    assert (len(log.runs[0].poses), log.sources[0].path) == (50, "gs://bucket/drives/a.csv")
+    with pytest.raises(LogError, match=r"a folder on a server .*name the files"):
+        open_log("gs://bucket/drives")
+
+
+def test_a_store_whose_package_is_missing_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: object, **__: object) -> None:
+        raise ImportError("Install s3fs to access S3")
+
+    monkeypatch.setattr(fsspec, "filesystem", missing)
+    with pytest.raises(LogError, match=r"s3:// needs another package .*slipwise\[remote\].* s3fs"):
+        staged("s3://bucket/none.csv")
+
+
+@pytest.mark.parametrize(
+    ("path", "url"),
+    [
+        ("https:/host/a.csv", "https://host/a.csv"),
+        ("s3://bucket/a.csv", "s3://bucket/a.csv"),
+        ("file:///etc/passwd", None),
+        ("simplecache::https://host/a", None),
+        ("runs/https:/host", None),
+        ("/https://host", None),
+        ("https:", None),
+    ],
+)
+def test_an_address_is_told_from_a_file(path: str, url: str | None) -> None:
+    assert remote_url(path) == url
+    assert remote_url(Path(path)) == url
+
+
+def test_a_folder_of_this_machine_goes_before_an_address(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "https:/host").mkdir(parents=True)
+    (tmp_path / "https:/host/a.csv").write_bytes(DRIVE)
+    assert len(open_log("https://host/a.csv").runs[0].poses) == 50
+
+
+def test_names_of_files_are_shown_as_they_are() -> None:
+    assert shown(Path("a?b@c.csv")) == "a?b@c.csv"
+
+
+def test_a_limit_is_positive() -> None:
+    with pytest.raises(SettingsError, match="most_fetched must be a positive number of MiB"):
+        LogOptions(most_fetched=0.0)
