@@ -12,7 +12,7 @@ import numpy as np
 from slipwise.errors import LogError
 from slipwise.files import write_whole
 from slipwise.logs.bag import RUN_TOPIC, RUN_TYPE
-from slipwise.logs.log import Floats, Log, Run
+from slipwise.logs.log import Floats, Log, Run, has_course
 from slipwise.logs.messages import ODOMETRY, POSE_WITH_COVARIANCE, TWIST_STAMPED
 from slipwise.logs.rotation import quaternions_of
 
@@ -57,6 +57,9 @@ def write_mcap(log: Log, path: Path) -> None:
         end = stop + shift
     if not log.runs:
         raise LogError("there is no run to write")
+    if has_course(log.runs):  # a pose in a bag has a heading, which nobody measured
+        advice = "write a table: .csv or .parquet"
+        raise LogError("positions without headings are not written as a bag", where=str(path), advice=advice)
     entries.sort(key=lambda entry: entry[0])
     write_whole(path, lambda temporary: _write(entries, temporary, store))
 

@@ -61,6 +61,14 @@ def test_runs_at_the_same_time_are_laid_one_after_the_other_in_a_bag(
     np.testing.assert_allclose(two.poses.t - two.poses.t[0], log.runs[1].poses.t, atol=1e-9)
 
 
+def test_positions_without_headings_are_not_written_as_poses(run: Run, tmp_path: Path) -> None:
+    log = Log(runs=(replace(run, poses=replace(run.poses, course=True)),))
+    with pytest.raises(LogError, match=r"positions without headings.*\.csv or \.parquet"):
+        save_log(log, tmp_path / "a.mcap")
+    save_log(log, tmp_path / "a.csv")
+    assert open_log(tmp_path / "a.csv").runs[0].poses.course
+
+
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_frames_and_attitude_survive(run: Run, tmp_path: Path, ending: str) -> None:
     count = len(run.poses)
