@@ -43,15 +43,17 @@ void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_sp
     seen_until_ = t;
     return;
   }
-  for (; seen_until_ + kStillTime + kCalm <= t; seen_until_ += kStillTime) {
+  while (seen_until_ + kStillTime + kCalm <= t) {
+    const double begin = seen_until_;
+    seen_until_ = begin + kStillTime;
     variance_ += squared(kDrift) * kStillTime;
-    const double from = seen_until_ - kCalm;
-    const double until = seen_until_ + kStillTime + kCalm;
+    const double from = begin - kCalm;
+    const double until = begin + kStillTime + kCalm;
     if (inputs.empty() || inputs.unknown_since(from, until)) {
       continue;
     }
     const BodyTwist fastest = inputs.fastest(from, until);
-    const auto turned = angle(seen_until_, seen_until_ + kStillTime);
+    const auto turned = angle(begin, begin + kStillTime);
     if (turned && std::max(fastest.v, fastest.omega) <= still_speed) {
       learn_bias(*turned / kStillTime, squared(kStillStd));
     }
