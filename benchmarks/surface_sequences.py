@@ -104,7 +104,8 @@ def visits_of(drives: Sequence[tuple[str, tuple[PreparedRun, ...]]], learned: Le
             )
             rate = np.abs(made.measured[:, 2]) / HORIZON
             turning = int(((rate > TURNING) & (place(made.run - made.run.min(), made.t_end) <= last)).sum())
-            turning = None if wrong and wrong[-1] == len(likeliest) - 1 else turning
+            never = meant[log.surface] != floor or (wrong and wrong[-1] == len(likeliest) - 1)
+            turning = None if never else turning
         taken = sum(change.what in ("new", "recalled") for change in log.changes)
         visits.append(Visit(floor, log.surface, turning, max(taken - 1, 0), minutes))
     return visits
