@@ -61,16 +61,17 @@ class Drive {
     double now = from;
     while (to - now > kRounding) {
       double next = std::min(to, now + kLongest);
-      const bool measured = span_.measured && !set_ && span_.measured->t < next;
+      const KnownMotion* motion = span_.measured && !set_ ? &*span_.measured : nullptr;
+      const bool measured = motion != nullptr && motion->t < next;
       if (measured) {
-        next = std::max(span_.measured->t, now);
+        next = std::max(motion->t, now);
       } else if (now < span_.start && span_.start < next) {
         next = span_.start;
       }
       const CarState before = state_;
       state_ = advanced(car_, state_, command, next - now);
       if (measured) {
-        state_.speed = span_.measured->speed;
+        state_.speed = motion->speed;
         set_ = true;
       }
       if (now >= span_.start - kRounding && next - now > kRounding) {

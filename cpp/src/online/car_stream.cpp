@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 #include "slipwise/online/learner_times.hpp"
@@ -44,9 +45,9 @@ void CarStream::start_run() {
 }
 
 const CarStream::KnownCurves& CarStream::known_at(double t) const {
-  for (auto known = known_.rbegin(); known != known_.rend(); ++known) {
-    if (known->until <= t + kRounding) {
-      return *known;
+  for (const KnownCurves& known : known_ | std::views::reverse) {
+    if (known.until <= t + kRounding) {
+      return known;
     }
   }
   return known_.front();
