@@ -86,7 +86,7 @@ class Drive {
 
  private:
   BodyTwist with_rest(BodyTwist twist, double t) const {
-    if (set_) {
+    if (set_ && span_.measured) {
       const KnownMotion& measured = *span_.measured;
       twist.omega += lag_output(measured.turn, 0.0, measured.turn_lag, t - measured.t);
       twist.vy += lag_output(measured.sideways, 0.0, measured.sideways_lag, t - measured.t);
