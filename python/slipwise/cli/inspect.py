@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,14 +15,17 @@ from slipwise.cli.options import (
     Logs,
     SettingsFile,
     chosen_settings,
+    optional,
     takes_log_options,
 )
 from slipwise.number_text import number_text
 
 if TYPE_CHECKING:
+    from slipwise.calibration import Settings
     from slipwise.cli.output import Output
+    from slipwise.excitation import Excitation
     from slipwise.inspection import Inspection, Learnability, Stream, Timing
-    from slipwise.logs import LogOptions, Survey
+    from slipwise.logs import Log, LogOptions, Survey
 
 
 @takes_log_options
@@ -34,6 +37,13 @@ def inspect(
     strict: Annotated[
         bool, typer.Option("--strict", help="Check that a shared log keeps to the standard format.")
     ] = False,
+    excite: Annotated[
+        Path | None,
+        optional("FILE.csv", "Write the drive that teaches most after this log, in place of advice."),
+    ] = None,
+    excite_area: Annotated[
+        str, typer.Option("--excite-area", metavar="WxD", help="Its free ground: metres along, and across.")
+    ] = "8x8",
     json: Json = None,
 ) -> int:
     """Say what is in one or several logs and what could be learned from them.
@@ -42,13 +52,15 @@ def inspect(
     how late the poses are, which speeds and yaw rates were driven, and which parameters the log determines. A
     log that can be read is never an error here: what is missing or unclear is said, with the option to add.
     With --strict, one Parquet file is checked against the format of shared logs, with its schema file and
-    data card; the exit code is 1 where something departs from it.
+    data card; the exit code is 1 where something departs from it. With --excite, held commands go into a
+    file: what teaches most of what this log leaves open, no faster than it was driven (see `slipwise excite`).
 
     \b
     Examples:
       slipwise inspect drive.mcap
       slipwise inspect drive.bag --pose-topic /rtk/odom --wheel-topic /husky/odom
       slipwise inspect drive.csv --json - | jq .streams
+      slipwise inspect drive.csv --excite next.csv --excite-area 10x6
       slipwise inspect shared.parquet --strict
     """  # noqa: D301
     from slipwise.cli.output import Output
@@ -58,14 +70,44 @@ def inspect(
 
     out = Output(json)
     chosen = chosen_settings(settings, basis)
-    refuse_unwritable(out.written_file, inputs=(*logs, *log_options.files, settings))
+    refuse_unwritable(out.written_file, excite, inputs=(*logs, *log_options.files, settings))
     if strict:
         return _check_strictly(out, logs)
     with progress_bar("reading") as update:
         inspection = inspect_files(logs, log_options, chosen, progress=update)
-    out.document(_document(inspection))
-    _show(out, inspection)
+        drive = None
+        if excite is not None and not inspection.problem:
+            from slipwise.cli.excite import area_of
+
+            drive = _write_drive(
+                excite, inspection.log, area_of(excite_area, "--excite-area"), chosen, update
+            )
+    document = _document(inspection)
+    if drive is not None:
+        document |= {"excite": {"file": excite, "seconds": drive.seconds, "start": drive.start}}
+    out.document(document)
+    _show(out, inspection, advise=drive is None)
+    if drive is not None:
+        out.line(
+            f"{excite}: {drive.seconds:.0f} s of held commands that teach most of what is open, no faster"
+        )
+        out.line(
+            f"  than this log, inside {excite_area} m; a person plays them, with the stop button in hand"
+        )
     return 0
+
+
+def _write_drive(
+    path: Path, log: Log, area: tuple[float, float], settings: Settings, update: Callable[[str, float], None]
+) -> Excitation:
+    from slipwise.excitation import ExcitationOptions, write_commands
+    from slipwise.inspection import next_drive
+
+    drive = next_drive(
+        log, ExcitationOptions(area=area), settings, progress=lambda part: update("searching a drive", part)
+    )
+    write_commands(path, drive)
+    return drive
 
 
 def _check_strictly(out: Output, logs: Sequence[Path]) -> int:
@@ -113,7 +155,7 @@ def _document(inspection: Inspection) -> dict[str, object]:
     )
 
 
-def _show(out: Output, inspection: Inspection) -> None:
+def _show(out: Output, inspection: Inspection, *, advise: bool) -> None:
     from slipwise.cli.tables import show_left_out, show_notes
 
     log = inspection.log
@@ -133,7 +175,7 @@ def _show(out: Output, inspection: Inspection) -> None:
             out.line(f"  {line}")
         out.line()
     for item in inspection.learned:
-        _show_learnability(out, item)
+        _show_learnability(out, item, advise=advise)
 
 
 def _show_survey(out: Output, survey: Survey) -> None:
@@ -201,7 +243,7 @@ def _show_timing(out: Output, timing: Sequence[Timing]) -> None:
     out.table("Clock offset, delay and lag between inputs and poses", columns, rows)
 
 
-def _show_learnability(out: Output, item: Learnability) -> None:
+def _show_learnability(out: Output, item: Learnability, *, advise: bool) -> None:
     from slipwise.models.parameter_table import physical_name
 
     for contradiction in item.contradictions:
@@ -219,5 +261,5 @@ def _show_learnability(out: Output, item: Learnability) -> None:
         out.line(f"  not identifiable: {', '.join(unknown)}")
     for entry in item.left_out:
         out.line(f"  left out: {entry.count} x {entry.reason}, first at {entry.where}")
-    for advice in item.advice:
+    for advice in item.advice if advise else ():
         out.line(f"  {advice}")

@@ -91,3 +91,13 @@ def test_what_cannot_be_read_is_an_error(slipwise: Slipwise, folder: Path) -> No
     (folder / "b.mcap").write_bytes(b"\x89MCAP0\r\n")
     for name in ("a.csv", "b.mcap", "none.bag"):
         assert slipwise("inspect", name).code == 2
+
+
+@pytest.mark.slow
+def test_the_drive_that_teaches_most_stands_in_place_of_advice(slipwise: Slipwise, drive_csv: Path) -> None:
+    result = slipwise("inspect", drive_csv, "--excite", "next.csv")
+    assert (result.code, result.err) == (0, "")
+    assert "next.csv: " in result.out
+    assert Path("next.csv").read_text(encoding="utf-8").startswith("t,")
+    wrong = slipwise("inspect", drive_csv, "--excite", "next.csv", "--excite-area", "big")
+    assert wrong.line.startswith("'big' is no area (--excite-area)")

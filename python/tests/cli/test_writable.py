@@ -33,7 +33,7 @@ READ = {
     "data",
     "prior",
 }
-WRITTEN = {"output", "report", "json", "predictions", "runs", "record", "results", "cache"}
+WRITTEN = {"output", "report", "json", "predictions", "runs", "record", "results", "cache", "excite"}
 
 
 def by_symlink(path: Path) -> Path:
@@ -116,6 +116,7 @@ DESTROYING = (
     "fleet drive.csv --settings s.toml --json s.toml",
     "inspect drive.csv --json drive.csv",
     "inspect drive.csv --settings s.toml --json s.toml",
+    "inspect drive.csv --excite drive.csv",
     "convert drive.csv -o drive.csv",
     "convert drive.csv -o new.csv --json drive.csv",
     "export m.yaml --to amcl -o m.yaml",
@@ -144,6 +145,7 @@ TWICE = (
     "evaluate drive.csv --predictions x --report x",
     "live --replay drive.csv -o x --record x",
     "convert drive.csv -o x.csv --json x.csv",
+    "inspect drive.csv --excite x --json x",
     "convert drive.csv -o x.parquet --card --json x.card.yaml",
     "simulate -o x.csv --json x.csv",
     "export m.yaml --to amcl -o x --json x",

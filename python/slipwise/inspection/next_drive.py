@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drive that a log calls for: what would teach most after it, within the speeds that it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from slipwise.calibration import Settings, calibrate
+from slipwise.errors import SettingsError
+from slipwise.excitation import (
+    CommandSpace,
+    Excitation,
+    ExcitationOptions,
+    design_drive,
+    knowledge_of,
+    prior_knowledge,
+)
+from slipwise.logs import Log
+from slipwise.planning import limits_of
+
+
+def next_drive(
+    log: Log,
+    options: ExcitationOptions,
+    settings: Settings | None = None,
+    *,
+    progress: Callable[[float], None] | None = None,
+) -> Excitation:
+    """Return the drive after which the worst prediction is surest, given what this log has taught.
+
+    No command is faster than the log's fastest, nor turns faster: what the robot did it can do again.
+
+    Args:
+        log: what `open_log` returned.
+        options: the area, the time and the robot's size.
+        settings: what is learned and how.
+        progress: called with the fraction done, 0 to 1.
+
+    Raises:
+        LogError: nothing can be learned from the log.
+        SettingsError: the robot never drove or turned, so that its limits are not known; or no drive fits.
+    """
+    model = calibrate(log, settings=settings).model
+    try:
+        limits = limits_of(model)
+    except SettingsError as problem:
+        raise SettingsError(
+            problem.what,
+            where="--excite",
+            advice="give limits: `slipwise excite --speed M/S --yaw-rate RAD/S`",
+        ) from problem
+    space = CommandSpace(limits.speed, limits.yaw_rate)
+    known = knowledge_of(model) if model.content.parameters else prior_knowledge(space)
+    return design_drive(known, space, options, progress=progress)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The drive that a log calls for stays within its speeds, and is refused where these are not known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from sample_logs import Drive, simulated_log
+
+from slipwise import _core
+from slipwise.errors import SettingsError
+from slipwise.excitation import ExcitationOptions, command_inputs
+from slipwise.inspection import next_drive
+
+FEW = ExcitationOptions(minutes=0.5, levels=3, robots=25, checked=200)
+SLIP = {"basis": _core.named_basis("edd-2"), "alpha": (-0.1, -0.3)}
+
+
+@pytest.mark.slow
+def test_the_drive_is_no_faster_than_the_log() -> None:
+    log = simulated_log(Drive(seconds=40.0, speeds=(0.2, 0.8), yaw_rates=(-0.4, 0.4), **SLIP))  # type: ignore[arg-type]
+    done: list[float] = []
+    drive = next_drive(log, FEW, progress=done.append)
+    inputs, driven = command_inputs(drive), log.runs[0].commands
+    assert driven is not None
+    assert np.abs(inputs.v).max() <= np.abs(driven.v).max() + 1e-9
+    assert np.abs(inputs.omega).max() <= np.abs(driven.omega).max() + 1e-9
+    assert np.abs(inputs.v).max() > 0.1
+    assert done
+
+
+@pytest.mark.slow
+def test_a_log_that_never_turns_shows_no_limit() -> None:
+    log = simulated_log(Drive(seconds=40.0, yaw_rates=(0.0, 0.0), **SLIP))  # type: ignore[arg-type]
+    with pytest.raises(SettingsError, match=r"without turning .*--excite.*slipwise excite --speed"):
+        next_drive(log, FEW)
