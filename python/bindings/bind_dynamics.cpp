@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bindings of cpp/include/slipwise/dynamics, and dynamics that are written in Python.
 #include <nanobind/eigen/dense.h>
-#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
@@ -32,8 +31,11 @@ Eigen::MatrixXd matrix_of(const nb::object& returned, const char* what, Eigen::I
 /// Dynamics whose functions are Python's: rates of several states at once, and their derivatives or None.
 class PythonDynamics final : public DynamicsModel {
  public:
-  PythonDynamics(nb::callable rates, std::optional<nb::callable> jacobians)
-      : rates_(std::move(rates)), jacobians_(std::move(jacobians)) {}
+  PythonDynamics(nb::object rates, nb::object jacobians) : rates_(std::move(rates)), jacobians_(std::move(jacobians)) {
+    if (PyCallable_Check(rates_.ptr()) == 0 || (!jacobians_.is_none() && PyCallable_Check(jacobians_.ptr()) == 0)) {
+      throw std::invalid_argument("rates and jacobians must be functions");
+    }
+  }
 
   Eigen::VectorXd derivative(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                              const Eigen::VectorXd& parameters) const override {
@@ -47,23 +49,23 @@ class PythonDynamics final : public DynamicsModel {
 
   DynamicsJacobians jacobians(const Eigen::VectorXd& state, const Eigen::VectorXd& input,
                               const Eigen::VectorXd& parameters) const override {
-    if (!jacobians_) {
+    if (jacobians_.is_none()) {
       return DynamicsModel::jacobians(state, input, parameters);
     }
-    const auto both = nb::cast<nb::tuple>((*jacobians_)(state, input, parameters));
+    const auto both = nb::cast<nb::tuple>(jacobians_(state, input, parameters));
     return {.by_state = matrix_of(both[0], "the Jacobian by the state", state.size(), state.size()),
             .by_parameter = matrix_of(both[1], "the Jacobian by the parameters", state.size(), parameters.size())};
   }
 
  private:
-  nb::callable rates_;
-  std::optional<nb::callable> jacobians_;
+  nb::object rates_;
+  nb::object jacobians_;  ///< or None
 };
 
 void bind_settings(nb::module_& m) {
   nb::class_<DynamicsModel>(m, "DynamicsModel", "A user's own dynamics: x' = f(x, u, p).");
   nb::class_<PythonDynamics, DynamicsModel>(m, "PythonDynamics", "Dynamics whose functions are Python's.")
-      .def(nb::init<nb::callable, std::optional<nb::callable>>(), "rates"_a, "jacobians"_a.none(),
+      .def(nb::init<nb::object, nb::object>(), "rates"_a, "jacobians"_a.none(),
            "Rates [states, N] of states [states, N], an input [inputs] and parameters [parameters, N]; Jacobians by "
            "state and by parameters of one state, or None for central differences.");
   nb::class_<DynamicsNoise>(m, "DynamicsNoise", "What is measured of a state, and what disturbs it.")

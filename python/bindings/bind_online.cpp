@@ -11,7 +11,6 @@
 #include <cmath>
 
 #include "bindings.hpp"
-#include "checked_shapes.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
 #include "slipwise/online/student_t.hpp"
@@ -21,51 +20,6 @@ using namespace nb::literals;
 
 namespace slipwise::bindings {
 namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-void check_columns(const Rows& rows, Eigen::Index columns, const char* what) {
-  if (rows.rows() > 0 && rows.cols() != columns) {
-    throw std::invalid_argument(std::string(what) + " need rows of " + std::to_string(columns) + " numbers, got " +
-                                std::to_string(rows.cols()));
-  }
-}
-
-std::vector<InputSample> samples(const Rows& rows, const char* what) {
-  check_columns(rows, 4, what);
-  std::vector<InputSample> all;
-  all.reserve(static_cast<std::size_t>(rows.rows()));
-  for (const auto& row : rows.rowwise()) {
-    all.push_back({row[0], {.v = row[1], .vy = row[2], .omega = row[3]}});
-  }
-  return all;
-}
-
-Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-                    const Rows& gyro) {
-  check_columns(gyro, 2, "gyro");
-  check_columns(attitudes, 3, "attitudes");
-  const bool with_std = poses.cols() != 5;
-  check_columns(poses, with_std ? 7 : 5, "poses");
-  Recording run{
-      .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
-  for (const auto& row : attitudes.rowwise()) {
-    run.attitudes.push_back({row[0], row[1], row[2]});
-  }
-  for (const auto& row : poses.rowwise()) {
-    run.poses.push_back({.t = row[0],
-                         .x = row[1],
-                         .y = row[2],
-                         .yaw = std::isnan(row[3]) ? 0.0 : row[3],
-                         .frame = static_cast<long>(row[4]),
-                         .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
-                         .position = std::isnan(row[3])});
-  }
-  for (const auto& row : gyro.rowwise()) {
-    run.gyro.push_back({row[0], row[1]});
-  }
-  return run;
-}
 
 void bind_settings(nb::module_& m) {
   nb::class_<SegmentRules>(m, "SegmentRules", "When two poses and the inputs between them make a segment.")
@@ -103,69 +57,6 @@ void bind_settings(nb::module_& m) {
       .def_rw("hypotheses", &LearnerSettings::hypotheses)
       .def_rw("disturbance", &LearnerSettings::disturbance)
       .def_rw("learn_disturbance", &LearnerSettings::learn_disturbance);
-}
-
-Rows pose_rows(const std::vector<MeasuredPose>& poses) {
-  Rows rows(std::ssize(poses), 5);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const MeasuredPose& pose = poses[static_cast<std::size_t>(i)];
-    rows.row(i) << pose.t, pose.x, pose.y, pose.yaw, static_cast<double>(pose.frame);
-  }
-  return rows;
-}
-
-void bind_recordings(nb::module_& m) {
-  nb::class_<Recording>(m, "Recording", "One recorded run, each stream in the order of its stamps.")
-      .def(
-          "__init__",
-          [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-             const Rows& gyro) { new (self) Recording(recording(commands, wheels, attitudes, poses, gyro)); },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = Rows(0, 2),
-          "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
-          "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
-          "unknown, or "
-          "both left away. A yaw of NaN says that only the position was measured. Of a gyro rows of (t, yaw rate) [s, "
-          "rad/s].");
-  nb::class_<Rejected>(m, "Rejected", "Something rejected.")
-      .def_ro("stream", &Rejected::stream)
-      .def_ro("t", &Rejected::t)
-      .def_prop_ro("reason", [](const Rejected& rejected) { return reason_name(rejected.reason); })
-      .def_prop_ro("reason_text", [](const Rejected& rejected) { return reason_text(rejected.reason); });
-  nb::class_<DrivenSegment>(m, "DrivenSegment", "A segment together with the inputs that drove it.")
-      .def_ro("inputs", &DrivenSegment::inputs)
-      .def_ro("segment", &DrivenSegment::segment)
-      .def_ro("known_at", &DrivenSegment::known_at);
-  nb::class_<CutRuns>(m, "CutRuns", "Recorded runs as segments.")
-      .def_ro("segments", &CutRuns::segments)
-      .def_ro("run", &CutRuns::run)
-      .def_ro("rejected", &CutRuns::rejected)
-      .def_ro("rejected_run", &CutRuns::rejected_run);
-  m.def(
-      "cut_segments",
-      [](const StreamSettings& settings, const std::vector<Recording>& runs) { return cut_segments(settings, runs); },
-      "settings"_a, "runs"_a, "The segments that a learner with these settings learns.");
-  m.def(
-      "expected_commands",
-      [](const StreamSettings& settings, const std::vector<Recording>& runs) {
-        std::vector<Rows> all;
-        for (const auto& run : expected_commands(settings, runs)) {
-          Rows rows(std::ssize(run), 4);
-          for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-            const InputSample& sample = run[static_cast<std::size_t>(i)];
-            rows.row(i) << sample.t, sample.twist.v, sample.twist.vy, sample.twist.omega;
-          }
-          all.push_back(std::move(rows));
-        }
-        return all;
-      },
-      "settings"_a, "runs"_a,
-      "About what a car makes of each command: rows of (t, v, vy, omega), a table for each run.");
-  nb::class_<GatedPoses>(m, "GatedPoses", "What the gate makes of the poses; rows of (t, x, y, yaw, frame).")
-      .def_prop_ro("accepted", [](const GatedPoses& gated) { return pose_rows(gated.accepted); })
-      .def_prop_ro("outliers", [](const GatedPoses& gated) { return pose_rows(gated.outliers); })
-      .def_prop_ro("jumps", [](const GatedPoses& gated) { return pose_rows(gated.jumps); });
-  m.def("gate_poses", &gate_poses, "run"_a, "unknown_after"_a,
-        "The poses of a recorded run as a learner uses them: outliers rejected, frames numbered again at jumps.");
 }
 
 void bind_results(nb::module_& m) {

@@ -72,6 +72,7 @@ struct ToExpected {
   void wheels(const InputSample& sample) const { stream.push_wheels(sample); }
   void attitude(const Attitude& tilt) const { stream.push_attitude(tilt.t, tilt.roll, tilt.pitch); }
   void pose(const MeasuredPose& measured) const { stream.push_pose(measured); }
+  void gyro(const YawRate& sample) const { stream.push_gyro(sample); }
 };
 
 struct ToGate {

@@ -82,3 +82,9 @@ def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> 
     prior.time_constant, prior.delay = _CAR_LAG, _CAR_DELAY
     causal.prior = prior
     hypotheses.filter = causal
+
+
+def car_of(settings: Settings) -> _core.CarPrior | None:
+    """Return what is taken of a car that is told throttle and steering, where the settings name one."""
+    car = settings.log_options().car
+    return None if car is None else _core.CarPrior(car.top_speed, car.curvature)

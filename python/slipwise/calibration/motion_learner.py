@@ -12,10 +12,9 @@ from numpy.typing import ArrayLike
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
-from slipwise.calibration.core_settings import core_settings
+from slipwise.calibration.core_settings import car_of, core_settings
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import kept_posterior, predictions_of
-from slipwise.calibration.learned_sequence import SurfaceChange, SurfaceSummary, change_of, summary_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.limit_words import advice_on_limits
@@ -29,9 +28,10 @@ from slipwise.calibration.model_content import (
 )
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
+from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.sloping_ground import with_gravity
-from slipwise.calibration.surface_sections import begin_with, with_memory
+from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
@@ -39,12 +39,12 @@ from slipwise.models import Model, parse_model
 from slipwise.models.schema import ModelFile, Range
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
 
-class MotionLearner:
+class MotionLearner(RememberedSurfaces):
     """Takes measurements as they come; each stream in the order of its stamps.
 
     Streams may be late relative to each other by up to half a second. What is wrong is rejected, counted
@@ -84,7 +84,7 @@ class MotionLearner:
                 JUDGING_HORIZONS,
                 remember=remember,
                 positions=positions,
-                car=_car(self._settings),
+                car=car_of(self._settings),
             )
         )
         self._positions = positions
@@ -255,73 +255,6 @@ class MotionLearner:
         self._name_run(name)
         self._core.start_drive(label, date)
 
-    def begin_with(self, model: Model, *, wheels: bool = False) -> None:
-        """Begin with a robot and its surfaces as a model file has them, before anything is pushed.
-
-        Args:
-            model: of the same input, learned with a memory of surfaces.
-            wheels: whether wheel speeds will come beside the commands.
-
-        Raises:
-            ModelError: the model has another input, or no memory of surfaces.
-            SettingsError: something was pushed already, or the model was learned with other bases.
-        """
-        begin_with(self._core, model, self._input, wheels=wheels)
-        self._start = model
-
-    def cue_surface(self, label: str = "") -> None:
-        """Say that the surface changes now: to the one of this name, or to another where it is empty.
-
-        A learner that remembers no surfaces makes nothing of a name; without one it gives slip a tenth of its
-        prior variance back, as where it suspects a change itself.
-        """
-        self._core.cue_surface(label)
-
-    def cue_terrain(self, probability: Mapping[str, float], *, unknown: float = 0.0) -> None:
-        """Take what a sensor says of the terrain under the robot now, such as `TerrainWatch.answers`.
-
-        Classes may have any names: on which surface each is said is learned. Where nothing remembers
-        surfaces, it says nothing.
-
-        Args:
-            probability: of each class that the sensor knows, were the terrain one of them; adds up to 1.
-            unknown: that it is none of them, were that as likely as not beforehand.
-
-        Raises:
-            SettingsError: these are no probabilities.
-        """
-        odds = np.array(list(probability.values()), dtype=np.float64)
-        try:
-            self._core.cue_terrain(_core.TerrainAnswer(list(probability), odds, unknown))
-        except (ValueError, TypeError) as problem:
-            raise SettingsError(str(problem).splitlines()[0], where="cue_terrain") from problem
-
-    def surfaces(self) -> tuple[SurfaceSummary, ...]:
-        """Return the surfaces that are remembered, the present one as it is known now."""
-        return tuple(summary_of(surface) for surface in self._core.surfaces().surfaces)
-
-    @property
-    def remembers(self) -> bool:
-        """Whether surfaces are remembered."""
-        return self._remember
-
-    def probable_surfaces(self) -> tuple[tuple[str, float], ...]:
-        """Return the surfaces that may be under the robot, each with its probability.
-
-        The name is empty where a surface has none yet: it gets one when it is left. Nothing is returned where
-        no surfaces are remembered.
-        """
-        return tuple((each.name, each.probability) for each in self._core.probable_surfaces())
-
-    def surface_changes(self) -> tuple[SurfaceChange, ...]:
-        """Return what happened to the surfaces since the last call; runs are counted as they were begun."""
-        return tuple(change_of(event, event.run) for event in self._core.surface_events())
-
-    def label_counts(self) -> tuple[float, float]:
-        """Return how many labels were judged by what was driven, and how many of them were right."""
-        judged, right = self._core.surfaces().labels
-        return judged, right
-
     def model(self, *, limits: bool = True) -> Model:
         """Return the model of all that was pushed, with its verdict, as `calibrate` writes it of a log.
 
@@ -460,9 +393,3 @@ class MotionLearner:
 
     def _run(self, index: int) -> str:
         return self._runs[index] if index < len(self._runs) else ""
-
-
-def _car(settings: Settings) -> _core.CarPrior | None:
-    """Return what is taken of a car that is told throttle and steering, where the settings name one."""
-    car = settings.log_options().car
-    return None if car is None else _core.CarPrior(car.top_speed, car.curvature)

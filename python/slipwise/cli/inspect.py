@@ -52,8 +52,8 @@ def inspect(
     how late the poses are, which speeds and yaw rates were driven, and which parameters the log determines. A
     log that can be read is never an error here: what is missing or unclear is said, with the option to add.
     With --strict, one Parquet file is checked against the format of shared logs, with its schema file and
-    data card; the exit code is 1 where something departs from it. With --excite, held commands go into a
-    file: what teaches most of what this log leaves open, no faster than it was driven (see `slipwise excite`).
+    data card; the exit code is 1 where something departs from it. With --excite, held commands go into
+    a file: what teaches most of what this log leaves open, no faster than it was driven.
 
     \b
     Examples:
