@@ -67,6 +67,9 @@ def towed_drive(seed: int, seconds: float = 120.0, correlated: float = 0.0) -> t
 
 
 # %%
+towed, pushed = (rates((0.0, 0.0, 0.0, 0.2), (v, 0.0), tuple(TRUTH.values()))[3] for v in (1.0, -1.0))
+assert towed < 0.0 < pushed  # what is towed straightens, what is pushed folds
+
 if __name__ == "__main__":
     learned = learn_dynamics(TRAILER, *towed_drive(seed=1))
     print(learned)
