@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
+# %% [markdown]
 """Learn a boat: drag, thrust and current of a differential-thrust boat from its poses, by its own equations.
 
 Nothing of it is about wheels: the same filter learns whatever has a state and a rate of change.
 """
 
+# %%
 from __future__ import annotations
 
 import numpy as np
@@ -68,12 +70,15 @@ def simulated_drive(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
     return np.column_stack((t, held)), np.column_stack((t, poses))
 
 
+# %%
+assert rates((0.0, 0.0, 0.0, 1.0, 0.0, 0.0), (0.0, 0.0), TRUTH)[3] < 0.0  # without thrust it slows down
+
 if __name__ == "__main__":
-    inputs, poses = simulated_drive()
-    learned = learn_dynamics(BOAT, inputs, poses)
+    learned = learn_dynamics(BOAT, *simulated_drive())
     print(learned)
+    for parameter, truth in zip(learned.parameters, TRUTH, strict=True):
+        assert abs(parameter.value - truth) < 3.0 * parameter.std, parameter.name
     ahead = learned.predict([[0.0, 1.0, 0.2]], [1.0, 2.0, 5.0])  # hard to starboard
     for t, state, spread in zip(ahead.t, ahead.states, ahead.covariance, strict=True):
         std = np.sqrt(np.diag(spread))
         print(f"in {t:g} s at x {state[0]:.2f} +- {std[0]:.2f} m, y {state[1]:.2f} +- {std[1]:.2f} m")
-    learned.save("boat.yaml")

@@ -28,6 +28,13 @@ inline std::vector<Basis> all_bases() {
   return bases;
 }
 
+/// The terms of all of them, but those of sideways speed: nothing that uses it drives sideways.
+inline Basis union_of_all() {
+  std::vector<Basis> bases = all_bases();
+  std::erase_if(bases, [](const Basis& basis) { return basis.name() == "omni-8"; });
+  return union_basis("union", bases);
+}
+
 /// Slip parameters of a plausible size: every term explains up to `fraction` of a twist near (1 m/s, 1 rad/s).
 inline Eigen::VectorXd sample_slip(const Basis& basis, unsigned seed, double fraction = 0.1) {
   std::mt19937_64 random(seed);

@@ -11,6 +11,8 @@
 #include <cmath>
 
 #include "bindings.hpp"
+#include "checked_shapes.hpp"
+#include "sample_rows.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
 #include "slipwise/online/student_t.hpp"

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "sample_rows.hpp"
 #include "slipwise/online/recording.hpp"
 
 namespace nb = nanobind;
@@ -19,25 +20,6 @@ using namespace nb::literals;
 
 namespace slipwise::bindings {
 namespace {
-
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-void check_columns(const Rows& rows, Eigen::Index columns, const char* what) {
-  if (rows.rows() > 0 && rows.cols() != columns) {
-    throw std::invalid_argument(std::string(what) + " need rows of " + std::to_string(columns) + " numbers, got " +
-                                std::to_string(rows.cols()));
-  }
-}
-
-std::vector<InputSample> samples(const Rows& rows, const char* what) {
-  check_columns(rows, 4, what);
-  std::vector<InputSample> all;
-  all.reserve(static_cast<std::size_t>(rows.rows()));
-  for (const auto& row : rows.rowwise()) {
-    all.push_back({row[0], {.v = row[1], .vy = row[2], .omega = row[3]}});
-  }
-  return all;
-}
 
 Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
                     const Rows& gyro) {

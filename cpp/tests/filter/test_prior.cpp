@@ -24,8 +24,8 @@ TEST_CASE("every term may explain the same fraction of the motion at the referen
       const auto place = static_cast<Eigen::Index>(i);
       alpha[place] = std[place];
       const auto channel = static_cast<Eigen::Index>(basis.channel(i));
-      const double slip =
-          slip_rate(basis, alpha, {.v = speeds.v, .omega = speeds.omega, .gx = kSteep, .gy = kSteep})[channel];
+      const SlipState state{.v = speeds.v, .omega = speeds.omega, .gx = kSteep, .gy = kSteep, .vy = speeds.v};
+      const double slip = slip_rate(basis, alpha, state)[channel];
       const double reference = basis.channel(i) == Channel::Ang ? speeds.omega : speeds.v;
       CHECK(std::abs(slip) == doctest::Approx(0.3 * reference).epsilon(1e-6));
     }

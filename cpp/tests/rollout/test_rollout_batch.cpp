@@ -45,7 +45,7 @@ double error(const MotionModel& model, const Eigen::VectorXd& parameters, const 
 
 std::vector<Basis> bases_and_their_union() {
   std::vector<Basis> bases = tests::all_bases();
-  bases.push_back(union_basis("union", bases));
+  bases.push_back(tests::union_of_all());
   return bases;
 }
 

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from bindings.sound_dynamics import DYNAMICS_ARGUMENTS, DYNAMICS_OBJECTS
 from bindings.sound_surfaces import SURFACE_ARGUMENTS, SURFACE_OBJECTS, remembering_learner
 from bindings.sound_terrain import TERRAIN_ARGUMENTS, TERRAIN_OBJECTS
 from bindings.sound_vehicles import VEHICLE_ARGUMENTS, VEHICLE_OBJECTS
@@ -181,6 +182,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     **SURFACE_OBJECTS,
     **TERRAIN_OBJECTS,
     **VEHICLE_OBJECTS,
+    **DYNAMICS_OBJECTS,
     "AverageState": lambda: _average().state(),
     "BayesianRegression": _regression,
     "Basis": lambda: _core.named_basis("edd-2"),
@@ -239,6 +241,8 @@ ARGUMENTS: dict[str, Callable[[], Any]] = {
     **SURFACE_ARGUMENTS,
     **TERRAIN_ARGUMENTS,
     **VEHICLE_ARGUMENTS,
+    **DYNAMICS_ARGUMENTS,
+    "Recording.__init__ gyro": lambda: np.zeros((3, 2)),
     "CostmapView.__init__ cells": lambda: np.zeros((4, 5), np.float32),
     "HeldOutColumns.__init__ predictions": list,
     "WheelRecord.__init__ wheels": lambda: np.column_stack([T, np.sin(T), np.cos(T)]),

@@ -24,7 +24,7 @@ def test_measured_states_are_named_in_their_order() -> None:
     [
         (lambda: State("x", measured=0.0), "measured without any error"),
         (lambda: State("x", noise=-1.0), "negative or not finite"),
-        (lambda: State("x", start=float("nan")), "negative or not finite"),
+        (lambda: State("x", start=float("nan")), "x has a number"),
         (lambda: Parameter("a", 1.0, 0.0), "a deviation of 0"),
         (lambda: Parameter("a", float("inf"), 1.0), "begins at inf"),
         (lambda: replace(CART, parameters=()), "need a parameter"),

@@ -21,7 +21,7 @@ def column_bytes(simulation: Simulation) -> bytes:
         assert series is not None
         columns = (getattr(series, field.name) for field in fields(series))
         parts += [column for column in columns if column is not None]
-    return b"".join(part.tobytes() for part in parts if part is not None)
+    return b"".join(part.tobytes() for part in parts if isinstance(part, np.ndarray))
 
 
 @pytest.fixture(scope="module")

@@ -56,7 +56,7 @@ TEST_CASE("rollouts of 5 s on a GPU are the processor's in every basis and with 
   const tests::SampleCommands<double> commands(37, 100, kPeriod);
   const tests::SampleCommands<float> in_float(37, 100, kPeriod);
   std::vector<Basis> bases = tests::all_bases();
-  bases.push_back(union_basis("union", tests::all_bases()));
+  bases.push_back(tests::union_of_all());
   for (const Basis& basis : bases) {
     CAPTURE(basis.name());
     for (const tests::SampleChain& actuator : tests::sample_chains()) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of samples as Python hands them over, a row each.
+#pragma once
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "slipwise/online/input_buffer.hpp"
+
+namespace slipwise::bindings {
+
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+inline void check_columns(const Rows& rows, Eigen::Index columns, const char* what) {
+  if (rows.rows() > 0 && rows.cols() != columns) {
+    throw std::invalid_argument(std::string(what) + " need rows of " + std::to_string(columns) + " numbers, got " +
+                                std::to_string(rows.cols()));
+  }
+}
+
+inline std::vector<InputSample> samples(const Rows& rows, const char* what) {
+  check_columns(rows, 4, what);
+  std::vector<InputSample> all;
+  all.reserve(static_cast<std::size_t>(rows.rows()));
+  for (const auto& row : rows.rowwise()) {
+    all.push_back({row[0], {.v = row[1], .vy = row[2], .omega = row[3]}});
+  }
+  return all;
+}
+
+}  // namespace slipwise::bindings
