@@ -205,7 +205,7 @@ def _known(
         )
     weights = np.array([basis.weight for basis in start.bases.values()])
     memory = _core.SurfaceMemory(list(start.bases), slips, weights / max(float(weights.sum()), 1e-300), 0)
-    surface = _core.KnownSurface("fleet", (BEGUN_SECONDS, v, omega), (1, 1), "", memory)
+    surface = _core.KnownSurface("fleet", (BEGUN_SECONDS, v, omega), (1, 1), "", memory, [])
     return _core.KnownBefore(posterior, structure, [surface], (0.0, 0.0))
 
 

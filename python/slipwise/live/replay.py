@@ -8,7 +8,6 @@ import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 
-from slipwise.calibration.learned_log import Cue
 from slipwise.calibration.prepared_run import PreparedRun, has_wheels, prepare_run
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.errors import SettingsError
@@ -73,7 +72,7 @@ class Replay(Feed):
 
 
 def with_labels(
-    samples: Iterator[Command | Wheels | Pose | Gyro], cues: Sequence[Cue]
+    samples: Iterator[Command | Wheels | Pose | Gyro], cues: Sequence[tuple[float, str]]
 ) -> Iterator[Command | Wheels | Pose | Gyro | SurfaceCue]:
     """Yield the samples, with each label before the first one that is not older."""
     waiting = deque(cues)
