@@ -64,7 +64,8 @@ def simulated_drive(seed: int = 0) -> tuple[np.ndarray, np.ndarray]:
         poses.append(state[:3] + rng.normal(0.0, (0.05, 0.05, 0.02)))
         for _ in range(fine):
             h = PERIOD / fine
-            state = state + h * np.array(rates(state, thrusts, truth))
+            middle = state + 0.5 * h * np.array(rates(state, thrusts, truth))
+            state = state + h * np.array(rates(middle, thrusts, truth))
             state[3:] += 0.03 * np.sqrt(h) * rng.normal(size=3)
     t = np.arange(count) * PERIOD
     return np.column_stack((t, held)), np.column_stack((t, poses))

@@ -14,8 +14,9 @@
 namespace slipwise {
 namespace {
 
-constexpr double kPoseRows = 3.0;  // measurements in a segment, for which gate and Huber's bound are given
-constexpr int kMostRejected = 5;   // in a row: then it is the state that is wrong
+constexpr double kPoseRows = 3.0;    // measurements in a segment, for which gate and Huber's bound are given
+constexpr double kLongest = 3600.0;  // [s] between two measurements, and to a prediction
+constexpr int kMostRejected = 5;     // in a row: then it is the state that is wrong
 
 void need(bool fine, const char* fault) {
   if (!fine) {
@@ -108,6 +109,7 @@ WindowModel DynamicsFilter::window(const Eigen::VectorXd& start, double end) con
 DynamicsUpdate DynamicsFilter::push_measurement(double t, const Eigen::VectorXd& measured) {
   need(std::isfinite(t) && measured.allFinite(), "a measurement or its stamp is not finite");
   need(t > t_, "measurements must be in the order of their stamps, each later than the last");
+  need(t - t_ <= kLongest, "a measurement comes more than an hour after the last; begin with another filter");
   need(measured.size() == static_cast<Eigen::Index>(settings_.noise.measured.size()),
        "a measurement has another size than what is measured");
   need(!inputs_.empty(), "there is no input yet; push one that begins no later than the first measurement");
@@ -200,6 +202,7 @@ std::vector<DynamicsPrediction> DynamicsFilter::predict(const std::vector<double
   Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(states_, states_);
   for (const double end : times) {
     need(std::isfinite(end) && end >= t, "times to predict must be in order, and not before the last measurement");
+    need(end - t_ <= kLongest, "a prediction reaches an hour at most");
     const DynamicsEnd moved = integrate_dynamics(
         *model_, inputs, {.start = t, .end = end, .longest_step = settings_.longest_step, .psd = settings_.noise.psd},
         state, known.mean.tail(parameters));

@@ -26,7 +26,7 @@ def cart_rates(state: Any, inputs: Any, parameters: Any) -> Any:
 CART = Dynamics(
     states=(State("place", "m", measured=MEASURED), State("speed", "m/s", noise=0.1, start_std=0.3)),
     inputs=("force",),
-    parameters=(Parameter("drag", 0.5, 0.3, "1/s"), Parameter("gain", 1.0, 0.3)),
+    parameters=(Parameter("drag", 0.8, 0.2, "1/s"), Parameter("gain", 1.0, 0.3)),
     rates=cart_rates,
 )
 
@@ -54,6 +54,7 @@ def ride(seed: int, *, seconds: float = 40.0, colour: float = 0.0, force: float 
         seen.append(state[0] + error)
         for _ in range(fine):
             h = PERIOD / fine
-            state = state + h * np.array(cart_rates(state, (each,), truth))
+            middle = state + 0.5 * h * np.array(cart_rates(state, (each,), truth))
+            state = state + h * np.array(cart_rates(middle, (each,), truth))
             state[1] += 0.1 * np.sqrt(h) * rng.normal()
     return Ride(np.column_stack((t, pushed)), np.column_stack((t, seen)), (truth[0], truth[1]))

@@ -159,7 +159,9 @@ def random_values(basis: _core.Basis, seed: int) -> dict[str, float]:
 OWN = _core.Basis(
     "own", ["V^3*2.5", "gx*0.1"], ["abs(V)*V*w/g", "gy*0.05"], ["sgn(V)*w^2", "kappa*V", "gx*V"]
 )
-BASES = [_core.Basis("none", [], [], []), OWN, *map(_core.named_basis, _core.basis_names())]
+# What slips by the sideways speed is refused: exported files know none.
+LEVEL_BASES = [name for name in _core.basis_names() if name != "omni-8"]
+BASES = [_core.Basis("none", [], [], []), OWN, *map(_core.named_basis, LEVEL_BASES)]
 
 
 @pytest.mark.parametrize("number", ["float", "double"])

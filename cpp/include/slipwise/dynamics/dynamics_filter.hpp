@@ -59,10 +59,12 @@ class DynamicsFilter {
   /// Held from `t` [s] on.
   void push_input(double t, const Eigen::VectorXd& input) { inputs_.push(t, input); }
   /// Learns what was measured at `t` [s]. Inputs of later stamps are not used.
-  /// \throws std::invalid_argument when it is no later than the last one, no input is known, or it is not finite.
+  /// \throws std::invalid_argument when it is no later than the last one or more than an hour later, no input is
+  /// known, or it is not finite.
   DynamicsUpdate push_measurement(double t, const Eigen::VectorXd& measured);
   /// Where the state will be at `times` [s], in order, under `future` inputs, or what is held now where there are none.
-  /// \throws std::invalid_argument when a time lies before the last measurement.
+  /// \throws std::invalid_argument when a time lies before the last measurement or more than an hour after
+  /// it.
   std::vector<DynamicsPrediction> predict(const std::vector<double>& times, const HeldInputs& future) const;
 
   double time() const { return t_; }  ///< of the last measurement [s]
