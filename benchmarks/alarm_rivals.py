@@ -10,7 +10,7 @@ import ruptures
 from alarm_scores import Alarms, Course, Floats
 from river.drift import ADWIN, PageHinkley
 
-REST = 8  # windows after an alarm in which none is raised
+REST = 8  # windows after an alarm in which none is raised: as long as slipwise's test looks back
 
 
 def own(course: Course, threshold: float) -> Alarms:
@@ -93,7 +93,7 @@ _CUSUM = [
     (k, h) for k in (0.1, 0.25, 0.5, 0.75, 1.0) for h in (2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 13.0, 17.0, 25.0)
 ]
 FINDERS: Mapping[str, tuple[Callable[..., Alarms], Sequence[object]]] = {
-    "slipwise": (own, [-2.0, -1.5, -1.0, -0.5, 0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 7.0]),
+    "slipwise": (own, [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.5, 11.0, 13.0, 16.0, 20.0]),
     "CUSUM of innovations": (cusum_signed, _CUSUM),
     "CUSUM of NIS": (cusum_nis, _CUSUM),
     "Page-Hinkley": (

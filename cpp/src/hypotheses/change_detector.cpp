@@ -1,32 +1,81 @@
 // SPDX-License-Identifier: Apache-2.0
-// The odds of Shiryaev (1963) and Roberts (1966) for the additive changes of Willsky and Jones (1976), with heavy
-// tails.
+// A Bayesian form of the generalised likelihood ratio of Willsky and Jones (1976), with heavy tails.
 #include "slipwise/hypotheses/change_detector.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "slipwise/filter/heavy_tails.hpp"
 #include "slipwise/linear/cholesky.hpp"
 #include "slipwise/linear/tuning.hpp"
 
 namespace slipwise {
 namespace {
 
-SLIPWISE_TUNING(kChangeTailDegrees, 12.0);    // of the Student-t that weighs residuals
-SLIPWISE_TUNING(kSizeSegments, 5.0);          // the size counts as if it had been predicted over this many segments
-SLIPWISE_TUNING(kCorrelationSegments, 20.0);  // and neighbours as if they had been unlike over this many
-SLIPWISE_TUNING(kLargestSquare, 9.0);         // a squared residual counts at most this many times its size
-SLIPWISE_TUNING(kLeastSize, 0.1);             // smaller residuals count as of this square size
-SLIPWISE_TUNING(kMostAlike, 0.95);            // the largest correlation of neighbours
-SLIPWISE_TUNING(kParked, 0.01);  // a segment that could tell less than this is not held against its neighbour
+constexpr int kIterations = 4;            // of iteratively reweighted least squares; more change nothing that matters
+constexpr double kStart = 1e-3;           // weight of the change's prior in the first iteration, which has to get far
+SLIPWISE_TUNING(kLargestRatio, 6.0);      // a gain counts at most this many times what is nominal
+SLIPWISE_TUNING(kNominalSegments, 20.0);  // whiteness counts as if it had been observed over this many segments
+SLIPWISE_TUNING(kSizeSegments, 5.0);      // and the size that was predicted over this many
+SLIPWISE_TUNING(kLargestSquare, 9.0);     // a squared residual counts at most this many times its size
+SLIPWISE_TUNING(kLeastSize, 0.1);         // smaller residuals count as of this square size
+
+/// The change that explains most, with the weights of the segments' residuals and of the change's prior there.
+struct Fitted {
+  Eigen::VectorXd change;
+  Eigen::VectorXd row_weight;
+  Eigen::VectorXd prior_weight;
+};
+
+Eigen::VectorXd squares_by_segment(const Eigen::VectorXd& residuals) {
+  return Eigen::Map<const Eigen::Matrix3Xd>(residuals.data(), 3, residuals.size() / 3).colwise().squaredNorm();
+}
+
+Eigen::MatrixXd normal_matrix(const Eigen::MatrixXd& by_change, const Fitted& at) {
+  Eigen::MatrixXd normal = by_change.transpose() * at.row_weight.asDiagonal() * by_change;
+  normal.diagonal() += at.prior_weight;
+  return normal;
+}
+
+void reweigh(Fitted& at, const Eigen::VectorXd& left) {
+  const Eigen::VectorXd squares = squares_by_segment(left);
+  for (Eigen::Index i = 0; i < at.row_weight.size(); ++i) {
+    at.row_weight[i] = (kTailDegrees + 3.0) / (kTailDegrees + squares[i / 3]);
+  }
+  at.prior_weight = (1.0 + at.change.array().square() / 2.0).inverse();
+}
+
+/// Starts from least squares: from no change, residuals that agree with each other would all look like outliers.
+Fitted fit(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change) {
+  const Eigen::Index changes = by_change.cols();
+  Fitted at{Eigen::VectorXd::Zero(changes), Eigen::VectorXd::Ones(residuals.size()),
+            Eigen::VectorXd::Constant(changes, kStart)};
+  for (int i = 0; i < kIterations; ++i) {
+    at.change =
+        Cholesky(normal_matrix(by_change, at)).solve(by_change.transpose() * at.row_weight.cwiseProduct(residuals));
+    reweigh(at, residuals - by_change * at.change);
+  }
+  return at;
+}
 
 }  // namespace
+
+ChangeFit fit_change(const Eigen::VectorXd& residuals, const Eigen::MatrixXd& by_change) {
+  const Fitted at = fit(residuals, by_change);
+  const Eigen::ArrayXd before = squares_by_segment(residuals);
+  const Eigen::ArrayXd after = squares_by_segment(residuals - by_change * at.change);
+  const double explained = 0.5 * (kTailDegrees + 3.0) * ((kTailDegrees + before) / (kTailDegrees + after)).log().sum();
+  const Cholesky normal(normal_matrix(by_change, at));
+  const Eigen::MatrixXd spread = normal.inverse();
+  const double gain = explained - (at.change.array().square() / 2.0).log1p().sum();
+  const double occam = normal.log_determinant() / 2.0;
+  const double determined = (1.0 - spread.diagonal().array() * at.prior_weight.array()).sum();
+  return {.log_odds = gain - occam, .gain = gain, .expected_gain = 0.5 * determined};
+}
 
 ChangeDetector::ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds)
     : settings_(settings), kinds_(std::move(kinds)) {
@@ -36,7 +85,8 @@ ChangeDetector::ChangeDetector(const ChangeSettings& settings, ChangeKinds kinds
   if (std::ranges::any_of(kinds_, &std::vector<Eigen::Index>::empty)) {
     throw std::invalid_argument("each kind of change needs at least one column");
   }
-  known_.emplace_back().squares.setConstant(kCorrelationSegments);
+  sizes_.emplace_back(Eigen::Vector3d::Ones());
+  nominal_ = Eigen::MatrixXd::Ones(settings.longest + 1, std::ssize(kinds_));
 }
 
 ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
@@ -45,123 +95,83 @@ ChangeTest ChangeDetector::see(const Eigen::Vector3d& innovation, const Eigen::M
     return {};
   }
   observed_ += 1.0;
-  const Whitened segment = whitened(innovation, covariance, by_change);
-  const Whitened fresh = apart_from_last(segment);
-  const double weight = std::min((kChangeTailDegrees + 3.0) / (kChangeTailDegrees + fresh.residual.squaredNorm()), 1.0);
-  recent_.push_back({.information = weight * fresh.by_change.transpose() * fresh.by_change,
-                     .score = weight * fresh.by_change.transpose() * fresh.residual});
+  recent_.push_back(whitened(innovation, covariance, by_change));
   if (std::ssize(recent_) > settings_.longest) {
     recent_.pop_front();
   }
-  learn_likeness(segment);
-  last_ = segment;
-  ChangeTest found = test();
+  ChangeTest best;
+  for (int n = settings_.shortest; n <= static_cast<int>(std::ssize(recent_)); ++n) {
+    const double log_odds = test_last(n);
+    if (log_odds > best.log_odds) {
+      best = {.log_odds = log_odds, .segments = n};
+    }
+  }
   const bool warm = observed_ > settings_.warm_up;
-  found.alarm = warm && found.log_odds > settings_.threshold;
-  found.suspicion = warm && found.log_odds > std::min(settings_.suspicion, settings_.threshold);
-  if (found.alarm) {
+  best.alarm = warm && best.log_odds > settings_.threshold;
+  best.suspicion = warm && best.log_odds > std::min(settings_.suspicion, settings_.threshold);
+  if (best.alarm) {
     restart();
   }
-  return found;
+  return best;
 }
 
-/// By S^-1/2 of eigenvectors: the one root that is symmetric keeps the directions (x, y, theta) apart.
+/// By the covariance, and by how large residuals were up to `longest` segments ago: a covariance that is still wide
+/// from the first segments would hide a change. A segment teaches the size as much as it could tell of a change: poses
+/// of a parked robot hardly err, and say nothing of those of a moving one.
 ChangeDetector::Whitened ChangeDetector::whitened(const Eigen::Vector3d& innovation, const Eigen::Matrix3d& covariance,
-                                                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) const {
+                                                  const Eigen::Matrix<double, 3, Eigen::Dynamic>& by_change) {
+  // S^-1/2 by eigenvectors: the one root that is symmetric keeps the directions (x, y, theta) apart.
   const Eigen::Matrix3d root = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).operatorInverseSqrt();
-  Whitened segment{.residual = root * innovation, .by_change = root.lazyProduct(by_change), .telling = 0.0};
-  segment.telling = 1.0 - 1.0 / (1.0 + segment.by_change.squaredNorm());
-  return segment;
-}
-
-/// In units of how large residuals were up to `longest` segments ago, since a covariance that is still wide from the
-/// first segments would hide a change, and less what the segment before lets expect of it. Both as they were known
-/// before a change that is tested, which would teach them to expect it.
-ChangeDetector::Whitened ChangeDetector::apart_from_last(const Whitened& segment) const {
-  const Likeness& known = known_.front();
-  Whitened fresh = segment;
-  Eigen::Vector3d unit = known.size.cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
-  if (last_ && std::min(last_->telling, segment.telling) > kParked) {
-    const Eigen::Vector3d correlation = known.correlation();
-    fresh.residual -= correlation.cwiseProduct(last_->residual);
-    fresh.by_change -= correlation.asDiagonal() * last_->by_change;
-    unit.array() /= (1.0 - correlation.array().square()).sqrt();
+  const Eigen::Vector3d residual = root * innovation;
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> derivative = root.lazyProduct(by_change);
+  const Eigen::Vector3d last = sizes_.back();
+  const double commanded = 1.0 - 1.0 / (1.0 + derivative.squaredNorm());
+  sized_ += commanded;
+  const double gain = commanded * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.forgetting_time);
+  sizes_.emplace_back(last + gain * (residual.cwiseAbs2().cwiseMin(kLargestSquare * last) - last));
+  const Eigen::Vector3d unit = sizes_.front().cwiseMax(kLeastSize).cwiseMin(1.0).cwiseSqrt().cwiseInverse();
+  if (std::ssize(sizes_) > settings_.longest) {
+    sizes_.pop_front();
   }
-  fresh.residual = unit.cwiseProduct(fresh.residual);
-  fresh.by_change = unit.asDiagonal() * fresh.by_change;
-  return fresh;
+  return {unit.cwiseProduct(residual), unit.asDiagonal() * derivative};
 }
 
-/// A segment teaches as much as it could tell of a change: poses of a parked robot hardly err, and say nothing of those
-/// of a moving one.
-void ChangeDetector::learn_likeness(const Whitened& segment) {
-  Likeness known = known_.back();
-  const Eigen::Vector3d most = (kLargestSquare * known.size).cwiseSqrt();
-  const Eigen::Vector3d bounded = segment.residual.cwiseMin(most).cwiseMax(-most);
-  sized_ += segment.telling;
-  const double gain = segment.telling * std::max(1.0 / (sized_ + kSizeSegments), 1.0 / settings_.forgetting_time);
-  if (last_) {
-    const double taught = std::min(segment.telling, last_->telling);
-    const double keep = 1.0 - taught / settings_.forgetting_time;
-    const Eigen::Vector3d before = last_->residual.cwiseMin(most).cwiseMax(-most);
-    known.products = keep * known.products + taught * bounded.cwiseProduct(before).cwiseQuotient(known.size);
-    known.squares = keep * known.squares + taught * before.cwiseAbs2().cwiseQuotient(known.size);
-  }
-  known.size += gain * (bounded.cwiseAbs2() - known.size);
-  known_.push_back(known);
-  if (std::ssize(known_) > settings_.longest) {
-    known_.pop_front();
-  }
-}
-
-Eigen::Vector3d ChangeDetector::Likeness::correlation() const {
-  return products.cwiseQuotient(squares).cwiseMax(0.0).cwiseMin(kMostAlike);
-}
-
-/// A change is as likely at any of the last `longest` segments. Sums over 1, 2, 3, 4, 6, 8, 12, ... segments stand for
-/// the starts between them, since neighbouring starts share most of what speaks for them.
-ChangeTest ChangeDetector::test() const {
-  const Eigen::Index changes = recent_.back().score.size();
-  Evidence sum{.information = Eigen::MatrixXd::Zero(changes, changes), .score = Eigen::VectorXd::Zero(changes)};
-  ChangeTest found{.log_odds = -std::numeric_limits<double>::infinity(), .segments = 0};
-  double most = found.log_odds;
-  int next = settings_.shortest;
-  int counted = 0;
-  for (int n = 1; n <= static_cast<int>(std::ssize(recent_)); ++n) {
-    const Evidence& one = recent_[recent_.size() - static_cast<std::size_t>(n)];
-    sum.information += one.information;
-    sum.score += one.score;
-    if (n < next) {
-      continue;
-    }
-    const double odds = log_odds(sum) + std::log(static_cast<double>(n - counted) / settings_.longest);
-    const double larger = std::max(found.log_odds, odds);
-    found.log_odds = larger + std::log1p(std::exp(std::min(found.log_odds, odds) - larger));
-    if (odds > most) {
-      most = odds;
-      found.segments = n;
-    }
-    counted = n;
-    next = std::min(n + std::max(static_cast<int>(std::bit_floor(static_cast<unsigned>(n))) / 2, 1),
-                    std::max(settings_.longest, n + 1));
-  }
-  return found.segments > 0 ? found : ChangeTest{};
-}
-
-/// Log of the mean odds of the kinds of change, in each of which d ~ N(0, 1). A kind with few changes pays for little
-/// freedom, and sees a change that is of its kind sooner than one with many; the mean costs at most the logarithm of
-/// their number.
-double ChangeDetector::log_odds(const Evidence& sum) const {
-  Eigen::ArrayXd each(std::ssize(kinds_));
+/// Log of the mean odds of the kinds of change. A kind with few changes pays for little freedom, and sees a change that
+/// is of its kind sooner than one with many; the mean costs at most the logarithm of their number.
+double ChangeDetector::test_last(int segments) {
+  Eigen::ArrayXd log_odds(std::ssize(kinds_));
   for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    Eigen::MatrixXd normal = sum.information(kinds_[k], kinds_[k]);
-    normal.diagonal().array() += 1.0;
-    const Eigen::VectorXd score = sum.score(kinds_[k]);
-    const Cholesky factor(normal);
-    each[static_cast<Eigen::Index>(k)] = (score.dot(factor.solve(score)) - factor.log_determinant()) / 2.0;
+    const auto column = static_cast<Eigen::Index>(k);
+    double& nominal = nominal_(segments, column);
+    const ChangeFit found = fit_last(segments, kinds_[k], nominal);
+    log_odds[column] = found.log_odds;
+    learn_nominal(nominal, found);
   }
-  const double most = each.maxCoeff();
-  return most + std::log((each - most).exp().mean());
+  const double most = log_odds.maxCoeff();
+  return most + std::log((log_odds - most).exp().mean());
+}
+
+/// The last segments, as if their residuals were `nominal` times as large in square.
+ChangeFit ChangeDetector::fit_last(int segments, const std::vector<Eigen::Index>& kind, double nominal) const {
+  const double unit = 1.0 / std::sqrt(std::max(nominal, 1.0));
+  const Eigen::Index rows = Eigen::Index{3} * segments;
+  Eigen::VectorXd residuals(rows);
+  Eigen::MatrixXd by_change(rows, std::ssize(kind));
+  for (int i = 0; i < segments; ++i) {
+    const Eigen::Index row = Eigen::Index{3} * i;
+    const Whitened& segment = recent_[recent_.size() - static_cast<std::size_t>(segments - i)];
+    residuals.segment<3>(row) = unit * segment.residual;
+    by_change.middleRows<3>(row) = unit * segment.by_change(Eigen::all, kind);
+  }
+  return fit_change(residuals, by_change);
+}
+
+void ChangeDetector::learn_nominal(double& nominal, const ChangeFit& fit) const {
+  if (fit.expected_gain <= 0.0) {
+    return;  // nothing could have been observed, as on a parked robot
+  }
+  const double ratio = std::clamp(fit.gain / fit.expected_gain, 0.0, kLargestRatio) * std::max(nominal, 1.0);
+  nominal += std::max(1.0 / (observed_ + kNominalSegments), 1.0 / settings_.forgetting_time) * (ratio - nominal);
 }
 
 }  // namespace slipwise

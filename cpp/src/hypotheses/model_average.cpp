@@ -165,12 +165,7 @@ void ModelAverage::look_for_change() {
   speeds_.see(now.inputs, now.segment);
   moved_ = false;
   note_recent();
-  change_ = trial_ ? ChangeTest{} : test_for_change(now.inputs, now.segment);
-  if (undecided_ > 0) {  // a change that is tried may still become sure enough to be said
-    change_.suspicion = false;
-    change_.alarm = change_.alarm && !announced_;
-    announced_ = announced_ || change_.alarm;
-  }
+  change_ = undecided_ > 0 || trial_ ? ChangeTest{} : test_for_change(now.inputs, now.segment);
   if (change_.suspicion) {
     const auto first = std::ssize(recent_) - std::min<std::ptrdiff_t>(change_.segments, std::ssize(recent_));
     suspected_since_ = recent_.empty() ? now.segment.start : recent_[static_cast<std::size_t>(first)].segment.start;
@@ -216,13 +211,18 @@ void ModelAverage::reweigh() {
   }
 }
 
-/// By what the average predicts of the segment before it learns it.
+/// By what the average predicted as it was before the segments that are tested together: the noise factors and the
+/// weights follow a change at once, and would hide it.
 ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
   const ChangeSettings& change = settings_.change;
   if (!change.detect) {
     return {};
   }
-  const AverageState known = state();
+  before_.push_back(state());
+  if (std::ssize(before_) > change.longest) {
+    before_.pop_front();
+  }
+  const AverageState& known = before_.front();
   const auto at = linearize_segment(model_, known.estimate.mean, inputs, segment);
   const Eigen::Matrix3d covariance =
       prediction_covariance(at, known.estimate.covariance, filters_.front().noise().shape, known.noise_scale);
@@ -235,6 +235,8 @@ ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segme
 /// Every model once as if the terrain had changed and once as it was: what follows decides between them, so that a
 /// passing disturbance costs little, and the old terrain is known at once where it comes back soon.
 void ModelAverage::branch() {
+  before_.clear();
+  detector_.restart();
   const std::vector<CausalFilter> as_before = filters_;
   for (CausalFilter& filter : filters_) {
     filter.forget(settings_.change.forget);
@@ -256,8 +258,7 @@ void ModelAverage::forget(double fraction) {
 void ModelAverage::resolve() {
   const auto bases = static_cast<std::ptrdiff_t>(places_.size());
   const bool changed = weights_.head(bases).sum() > weights_.tail(bases).sum();
-  change_.alarm = change_.alarm || (changed && !announced_);
-  detector_.restart();
+  change_.alarm = changed && !announced_;
   moved_ = changed;
   observed_ = changed ? 0 : observed_;  // of a new terrain, few data have spoken
   weights_ = basis_weights();

@@ -15,9 +15,11 @@ Averages MotionHypotheses::averages() {
 std::size_t MotionHypotheses::leader() const { return cascaded_ && tried(Structure::Cascaded) ? kCascaded : kJoint; }
 
 void MotionHypotheses::start_run() {
-  for (ModelAverage* average : averages()) {
-    if (average != nullptr) {
-      average->start_run();
+  if (settings_.average.surfaces.remember) {
+    for (ModelAverage* average : averages()) {
+      if (average != nullptr) {
+        average->start_run();
+      }
     }
   }
 }

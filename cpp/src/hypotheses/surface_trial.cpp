@@ -12,7 +12,6 @@
 namespace slipwise {
 namespace {
 
-constexpr std::size_t kReplayed = 8;    // segments, at most, that surfaces are judged by from before a suspicion
 constexpr std::size_t kProbes = 20;     // segments by which surfaces are compared
 constexpr std::size_t kProbeEvery = 4;  // segments from one to the next
 constexpr double kSameStamp = 1e-6;     // [s]
@@ -26,7 +25,7 @@ void ModelAverage::note_recent() {
   }
   const Learning& now = present(learning_);
   recent_.push_back({now.inputs, now.segment, remember(), state()});
-  if (recent_.size() > kReplayed) {
+  if (std::ssize(recent_) > settings_.change.longest) {
     recent_.pop_front();
   }
   if (observed_ % kProbeEvery == 0) {
@@ -184,6 +183,7 @@ void ModelAverage::open_trial(const std::vector<SurfaceCandidate>& candidates, s
   }
   filters_ = std::move(filters);
   trial_ = std::move(trial);
+  before_.clear();
   detector_.restart();
   recent_.clear();
   mix_trial();

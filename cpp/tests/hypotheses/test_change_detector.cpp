@@ -102,57 +102,17 @@ TEST_CASE("one outlier is no change of terrain, however large") {
   }
 }
 
-/// Suspicions in 4000 segments whose residuals follow each other as by `keep`, from the 200th on.
-int suspicions(double keep, const Eigen::Matrix3d& covariance) {
+TEST_CASE("residuals that are always alike are nominal on this terrain") {
   std::mt19937_64 random(153);
   ChangeDetector detector{ChangeSettings{}, kKinds};
-  int found = 0;
+  double first = 0.0, last = 0.0;
   Eigen::Vector3d slow = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 4000; ++i) {
-    slow = keep * slow + std::sqrt(1.0 - keep * keep) * noise(random);
-    const bool suspicion = detector.see(slow, covariance, turns(0, 1.0)).suspicion;
-    found += i >= 200 && suspicion ? 1 : 0;
+  for (int i = 0; i < 2000; ++i) {
+    slow = 0.8 * slow + 0.6 * noise(random);
+    const double odds = detector.see(slow, kUnit, turns(0, 4.0)).log_odds;
+    (i < 200 ? first : last) += odds / (i < 200 ? 200.0 : 1800.0);
   }
-  return found;
-}
-
-TEST_CASE("residuals that are always alike are nominal on this terrain") {
-  CHECK(suspicions(0.0, kUnit) <= 80);
-  CHECK(suspicions(0.8, kUnit) <= 160);
-}
-
-TEST_CASE("a change too small for eight segments is found over more") {
-  int found = 0;
-  for (unsigned seed = 0; seed < 50; ++seed) {
-    std::mt19937_64 random(1000 + seed);
-    ChangeDetector detector{ChangeSettings{}, kKinds};
-    for (int i = 0; i < 60; ++i) {
-      detector.see(noise(random), kUnit, turns(i, 1.0));
-    }
-    int segments = 0;
-    for (int i = 0; i < 40 && segments == 0; ++i) {
-      const ChangeTest test = detector.see(turns(i, 1.0).col(1) + noise(random), kUnit, turns(i, 1.0));
-      segments = test.alarm ? i + 1 : 0;
-    }
-    found += segments > 8 ? 1 : 0;
-  }
-  CHECK(found >= 40);
-}
-
-TEST_CASE("a run that does not follow the last is not held against its end") {
-  std::mt19937_64 random(158);
-  ChangeDetector detector{ChangeSettings{}, kKinds};
-  Eigen::Vector3d slow = Eigen::Vector3d::Zero();
-  for (int i = 0; i < 400; ++i) {
-    slow = 0.9 * slow + 0.4 * noise(random);
-    detector.see(slow, kUnit, turns(0, 2.0));
-  }
-  ChangeDetector other = detector;
-  other.start_run();
-  detector.restart();
-  other.restart();
-  const ByChange by_change = turns(0, 2.0);
-  CHECK(detector.see(slow, kUnit, by_change).log_odds != other.see(slow, kUnit, by_change).log_odds);
+  CHECK(last < 0.85 * first);
 }
 
 TEST_CASE("heavy-tailed residuals raise at most one alarm in a thousand segments") {
@@ -186,7 +146,7 @@ TEST_CASE("a small change is suspected before it is an alarm, and a restart leav
   CHECK(suspected >= 0);
   CHECK((found < 0 || suspected <= found));
   detector.restart();
-  CHECK(detector.see(noise(random), kUnit, turns(0, 2.0)).segments <= 1);
+  CHECK(detector.see(noise(random), kUnit, turns(0, 2.0)).segments == 0);
 }
 
 TEST_CASE("a parked robot shows no change") {
@@ -194,9 +154,7 @@ TEST_CASE("a parked robot shows no change") {
   ChangeDetector detector{ChangeSettings{}, kKinds};
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector3d pose_jumps(3.0, -4.0, 2.0);
-    const ChangeTest test = detector.see(pose_jumps, kUnit, ByChange::Zero(3, 2));
-    CHECK(test.log_odds <= 1e-12);
-    CHECK_FALSE(test.suspicion);
+    CHECK(detector.see(pose_jumps, kUnit, ByChange::Zero(3, 2)).log_odds == 0.0);
   }
 }
 

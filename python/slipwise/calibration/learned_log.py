@@ -292,7 +292,7 @@ def _history(
         weight=np.array([update.weight for update in updates]),
         bases=bases,
         basis_weight=basis_weight,
-        change=np.array([max(update.change.log_odds, 0.0) for update in updates]),
+        change=np.array([update.change.log_odds for update in updates]),
         alarm=np.array(alarm, dtype=np.bool_),
         structures=STRUCTURES if several else (),
         structure_weight=np.array([event.weights for event in events]) if several else None,

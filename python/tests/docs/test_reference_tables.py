@@ -157,7 +157,7 @@ def test_constants_of_the_core_quoted_in_the_pages_are_right() -> None:
     change = average.change
     assert f"above log odds of {change.threshold:g}" in derivations
     assert f"after {change.warm_up} windows in which" in derivations
-    assert f"last `longest` = {change.longest} windows" in derivations
+    assert f"`longest` = {change.longest} windows ago" in derivations
     assert f"a fraction f = {change.forget:g} of their prior variance" in derivations
     assert f"compete for {change.trial} windows" in derivations
 

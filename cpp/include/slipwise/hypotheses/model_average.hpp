@@ -89,10 +89,7 @@ class ModelAverage {
   /// Whether the last segment ended a trial of its own in favour of the models that forgot.
   bool moved() const { return moved_; }
   /// Forgets which segments were the last: another run begins.
-  void start_run() {
-    recent_.clear();
-    detector_.start_run();
-  }
+  void start_run() { recent_.clear(); }
   /// Log odds that a trial would give one of two surfaces against the other, were it the one and driven as of late.
   double apart(const SurfaceMemory& a, const SurfaceMemory& b, const DisturbanceModel& law) const;
   /// What is known where a surface is driven on.
@@ -116,7 +113,7 @@ class ModelAverage {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.filters_, self.places_, self.settings_, self.prior_, self.weights_, self.observed_,
-      self.speeds_, self.changing_);
+      self.speeds_, self.changing_, self.before_);
     a(self.detector_, self.change_, self.learning_, self.update_, self.undecided_, self.announced_);
     a(self.recent_, self.probes_, self.trial_, self.parting_, self.handed_over_, self.suspected_since_, self.moved_);
     self.check_sizes();
@@ -178,6 +175,7 @@ class ModelAverage {
   std::size_t observed_ = 0;  ///< segments weighted by
   DrivenSpeeds speeds_;
   std::vector<Eigen::Index> changing_;  ///< slip parameters, by whose changes a change of terrain is looked for
+  std::deque<AverageState> before_;     ///< before each of the last segments
   ChangeDetector detector_;
   ChangeTest change_;
   std::optional<Learning> learning_;
