@@ -4,6 +4,7 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -73,6 +74,9 @@ void bind_settings(nb::module_& m) {
           "__init__",
           [](DynamicsNoise* self, std::vector<Eigen::Index> measured, std::vector<bool> angle,
              const Eigen::VectorXd& measurement_std, const Eigen::VectorXd& psd) {
+            if (angle.size() != measured.size() || measurement_std.size() != std::ssize(measured)) {
+              throw std::invalid_argument("each measured component needs a standard deviation, and whether it turns");
+            }
             new (self) DynamicsNoise{std::move(measured), std::move(angle), measurement_std, psd};
           },
           "measured"_a, "angle"_a, "measurement_std"_a, "psd"_a);

@@ -45,6 +45,8 @@ ANY_LENGTH = {
     "BayesianRegression.predict_rows features",
     "CostmapView.__init__ cells",
     "WheelRecord.__init__ wheels",
+    "DynamicsFilter.predict inputs",
+    "DynamicsNoise.__init__ psd",
     "ElevationMap.__init__ elevation",
     "Ground.measured rows",
     "Ground.standings poses",
