@@ -22,7 +22,7 @@ void in_steps(const HeldInputs& inputs, const DynamicsSpan& span, const Step& st
     const Eigen::VectorXd& input = inputs.at(t);
     const double until = inputs.until(t, span.end);
     const double pieces = std::max(1.0, std::ceil((until - t) / span.longest_step - kRounding));
-    for (double i = 0.0; i < pieces; i += 1.0) {
+    for (long left = std::lround(pieces); left > 0; --left) {
       step((until - t) / pieces, input);
     }
     t = until;

@@ -111,10 +111,11 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
 
 void SegmentStream::push_command(const InputSample& sample) {
   if (car_) {
+    CarStream& car = *car_;
     const std::size_t before = commands_.size();
-    push_input(Stream::Command, {sample.t, car_->expected(sample, settings_.latency)});
+    push_input(Stream::Command, {sample.t, car.expected(sample, settings_.latency)});
     if (commands_.size() > before) {
-      car_->push_command(sample, settings_.latency);
+      car.push_command(sample, settings_.latency);
     }
   } else {
     push_input(Stream::Command, sample);

@@ -169,8 +169,8 @@ struct GroundUnder {
   }
 };
 
-/// Cuts steps where the ground `changes` on the way, and at the points of the segment's course; returns where these are,
-/// if it has one.
+/// Cuts steps where the ground `changes` on the way, and at the points of the segment's course; returns where these
+/// are, if it has one.
 std::optional<CoursePlaces> cut_steps(ActuatorSteps& drive, const Segment& segment, bool changes) {
   if (changes) {
     cut_for_ground(drive);
@@ -288,6 +288,7 @@ Pose2 SegmentPath::robot_motion(const Pose2& measured) const {
   return compose(compose(sensor, measured), inverse(sensor));
 }
 
+// NOLINTNEXTLINE(readability-function-size): a model, what is driven, how it is integrated and what lies ahead.
 SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                               const InputHistory& inputs, const Segment& segment, Integrator integrator,
                               const SlipAhead& ahead) {
