@@ -127,8 +127,7 @@ void bind_dynamics(nb::module_& m) {
       .def_prop_ro("time", &DynamicsFilter::time, "Of the last measurement [s].")
       .def_prop_ro("state", &DynamicsFilter::state)
       .def_prop_ro("parameters", &DynamicsFilter::parameters)
-      .def_prop_ro("reported_parameters", &DynamicsFilter::reported_parameters)
-      .def_prop_ro("prior_std", &DynamicsFilter::prior_std);
+      .def_prop_ro("reported_parameters", &DynamicsFilter::reported_parameters);
 }
 
 }  // namespace slipwise::bindings

@@ -8,8 +8,6 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/vector.h>
 
-#include <cmath>
-
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
 #include "sample_rows.hpp"
@@ -265,14 +263,7 @@ void bind_online(nb::module_& m) {
       .def("cue_terrain", &MotionLearner::cue_terrain, "answer"_a, "A sensor says what the terrain is now.")
       .def("cue_surface", &MotionLearner::cue_surface, "label"_a = "",
            "The surface changes now: to the one of this name, or to another where it is empty.")
-      .def(
-          "completed",
-          [](const MotionLearner& learner) {
-            MotionLearner complete = learner;
-            complete.end_run();
-            return complete;
-          },
-          "A copy whose run has ended.")
+      .def("completed", &MotionLearner::completed, "A copy whose run has ended.")
       .def("probable_surfaces", &MotionLearner::probable_surfaces,
            "How probable each surface is to be the one under the robot; nothing where none are remembered.")
       .def("surfaces", &MotionLearner::surfaces, "The surfaces that are remembered, as they are known now.")

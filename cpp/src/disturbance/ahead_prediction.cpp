@@ -20,11 +20,7 @@ Eigen::Vector3d end_of(const MotionModel& model, const Eigen::VectorXd& paramete
 /// The end where the slip of all stretches has moved along a direction [slip, stretches].
 Eigen::Vector3d end_along(const MotionModel& model, Eigen::VectorXd parameters, const DrivenSegment& driven,
                           SlipAhead ahead, const Eigen::MatrixXd& direction) {
-  parameters.head(direction.rows()) += direction.col(0);
-  for (std::size_t k = 0; k < ahead.changes.size(); ++k) {
-    const auto next = static_cast<Eigen::Index>(k) + 1;
-    ahead.changes[k] += direction.col(next) - direction.col(next - 1);
-  }
+  move_slip(direction, parameters, ahead);
   return end_of(model, parameters, driven, ahead);
 }
 

@@ -60,7 +60,6 @@ DynamicsFilter::DynamicsFilter(std::shared_ptr<const DynamicsModel> model, const
   check(settings, start);
   const Eigen::Index parameters = start.mean.size() - states_;
   prior_ = start.covariance.bottomRightCorner(parameters, parameters);
-  prior_std_ = prior_.diagonal().cwiseSqrt();
   scores_ = ScoreCovariance(each_alone(parameters), parameters);
 }
 
@@ -197,23 +196,16 @@ std::vector<DynamicsPrediction> DynamicsFilter::predict(const std::vector<double
   known.covariance.bottomRightCorner(parameters, parameters) = reported_parameters().covariance;
   std::vector<DynamicsPrediction> found;
   double t = t_;
-  Eigen::VectorXd state = known.mean.head(states_);
-  Eigen::MatrixXd by_start = Eigen::MatrixXd::Identity(states_, now_.mean.size());
-  Eigen::MatrixXd noise = Eigen::MatrixXd::Zero(states_, states_);
+  DynamicsEnd now = nothing_passed(known.mean.head(states_), parameters);
   for (const double end : times) {
     need(std::isfinite(end) && end >= t, "times to predict must be in order, and not before the last measurement");
     need(end - t_ <= kLongest, "a prediction reaches an hour at most");
-    const DynamicsEnd moved = integrate_dynamics(
+    now = integrate_dynamics(
         *model_, inputs, {.start = t, .end = end, .longest_step = settings_.longest_step, .psd = settings_.noise.psd},
-        state, known.mean.tail(parameters));
-    const Eigen::MatrixXd over = moved.by_start.leftCols(states_);
-    by_start = (over * by_start).eval();
-    by_start.rightCols(parameters) += moved.by_start.rightCols(parameters);
-    noise = (over * noise * over.transpose() + moved.noise).eval();
-    state = moved.state;
+        std::move(now), known.mean.tail(parameters));
     t = end;
-    const Eigen::MatrixXd spread = by_start * known.covariance * by_start.transpose() + noise;
-    found.push_back({.t = end, .state = state, .covariance = (spread + spread.transpose()) / 2.0});
+    const Eigen::MatrixXd spread = now.by_start * known.covariance * now.by_start.transpose() + now.noise;
+    found.push_back({.t = end, .state = now.state, .covariance = (spread + spread.transpose()) / 2.0});
   }
   return found;
 }

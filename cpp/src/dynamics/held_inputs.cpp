@@ -12,8 +12,6 @@ namespace {
 
 constexpr double kRounding = 1e-9;  // [s] of stamps
 
-bool later(double t, const std::pair<double, Eigen::VectorXd>& input) { return t + kRounding < input.first; }
-
 }  // namespace
 
 void HeldInputs::push(double t, Eigen::VectorXd input) {
@@ -29,14 +27,19 @@ void HeldInputs::push(double t, Eigen::VectorXd input) {
   inputs_.emplace_back(t, std::move(input));
 }
 
+/// The first of them.
+HeldInputs::Inputs::const_iterator HeldInputs::later_than(double t) const {
+  return std::ranges::upper_bound(inputs_, t, {}, [](const auto& input) { return input.first - kRounding; });
+}
+
 void HeldInputs::forget_before(double t) {
-  while (inputs_.size() > 1 && !later(t, inputs_[1])) {
-    inputs_.pop_front();
+  if (const auto next = later_than(t); next != inputs_.begin()) {
+    inputs_.erase(inputs_.begin(), std::prev(next));
   }
 }
 
 const Eigen::VectorXd& HeldInputs::at(double t) const {
-  const auto next = std::ranges::upper_bound(inputs_, t, {}, [](const auto& input) { return input.first - kRounding; });
+  const auto next = later_than(t);
   if (next == inputs_.begin()) {
     throw std::invalid_argument("there is no input yet; give one that begins no later than the first measurement");
   }
@@ -44,7 +47,7 @@ const Eigen::VectorXd& HeldInputs::at(double t) const {
 }
 
 double HeldInputs::until(double t, double end) const {
-  const auto next = std::ranges::upper_bound(inputs_, t, {}, [](const auto& input) { return input.first - kRounding; });
+  const auto next = later_than(t);
   return next == inputs_.end() ? end : std::min(next->first, end);
 }
 

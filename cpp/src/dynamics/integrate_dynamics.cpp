@@ -59,18 +59,28 @@ Eigen::VectorXd dynamics_state(const DynamicsModel& model, const HeldInputs& inp
   return now;
 }
 
+DynamicsEnd nothing_passed(const Eigen::VectorXd& state, Eigen::Index parameters) {
+  const Eigen::Index n = state.size();
+  return {
+      .state = state, .by_start = Eigen::MatrixXd::Identity(n, n + parameters), .noise = Eigen::MatrixXd::Zero(n, n)};
+}
+
 DynamicsEnd integrate_dynamics(const DynamicsModel& model, const HeldInputs& inputs, const DynamicsSpan& span,
                                const Eigen::VectorXd& state, const Eigen::VectorXd& parameters) {
-  const Eigen::Index n = state.size();
+  return integrate_dynamics(model, inputs, span, nothing_passed(state, parameters.size()), parameters);
+}
+
+DynamicsEnd integrate_dynamics(const DynamicsModel& model, const HeldInputs& inputs, const DynamicsSpan& span,
+                               DynamicsEnd now, const Eigen::VectorXd& parameters) {
+  const Eigen::Index n = now.state.size();
   const Eigen::Index all = n + parameters.size();
-  DynamicsEnd end{.state = state, .by_start = Eigen::MatrixXd::Identity(n, all), .noise = Eigen::MatrixXd::Zero(n, n)};
   in_steps(inputs, span, [&](double h, const Eigen::VectorXd& input) {
-    Eigen::VectorXd rate = Eigen::VectorXd::Zero(n), sum = end.state;
+    Eigen::VectorXd rate = Eigen::VectorXd::Zero(n), sum = now.state;
     Eigen::MatrixXd by_rate = Eigen::MatrixXd::Zero(n, all);
     const Eigen::MatrixXd start = Eigen::MatrixXd::Identity(n, all);  // of this step
     Eigen::MatrixXd by = start;
     for (std::size_t i = 0; i < kAt.size(); ++i) {
-      const Eigen::VectorXd at = end.state + kAt[i] * h * rate;
+      const Eigen::VectorXd at = now.state + kAt[i] * h * rate;
       const DynamicsJacobians f = model.jacobians(at, input, parameters);
       rate = model.derivative(at, input, parameters);
       by_rate = (f.by_state * (start + kAt[i] * h * by_rate)).eval();
@@ -81,12 +91,12 @@ DynamicsEnd integrate_dynamics(const DynamicsModel& model, const HeldInputs& inp
     need_finite(sum);
     const auto over = by.leftCols(n);
     const Eigen::MatrixXd half = (0.5 * h * span.psd).asDiagonal();  // what is added in half a step, by the trapezium
-    end.state = sum;
-    end.noise = (over * (end.noise + half) * over.transpose() + half).eval();
-    end.by_start = (over * end.by_start).eval();
-    end.by_start.rightCols(parameters.size()) += by.rightCols(parameters.size());
+    now.state = sum;
+    now.noise = (over * (now.noise + half) * over.transpose() + half).eval();
+    now.by_start = (over * now.by_start).eval();
+    now.by_start.rightCols(parameters.size()) += by.rightCols(parameters.size());
   });
-  return end;
+  return now;
 }
 
 }  // namespace slipwise

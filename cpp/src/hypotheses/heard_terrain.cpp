@@ -44,16 +44,8 @@ Eigen::ArrayXd SurfaceBank::class_likelihoods(const std::vector<SurfaceCandidate
 
 /// The mean of all that was said is one cue: what it is worth now replaces what it was worth before.
 void SurfaceBank::weigh_by_classes(const Averages& averages) {
-  double total = 0.0;
-  ClassCounts mean = heard_in_trial_;
-  for (const auto& [name, each] : mean) {
-    total += each;
-  }
-  for (auto& [name, each] : mean) {
-    each /= total;
-  }
   const auto& trial = slipwise::present(averages[leader_]->trial());
-  const Eigen::ArrayXd now = class_likelihoods(trial.candidates, mean).log();
+  const Eigen::ArrayXd now = class_likelihoods(trial.candidates, shares_of(heard_in_trial_)).log();
   const Eigen::Map<Eigen::ArrayXd> before(heard_factors_.data(), std::ssize(heard_factors_));
   const Eigen::VectorXd change = now - before;
   std::ranges::copy(now, heard_factors_.begin());
@@ -76,9 +68,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
     const Eigen::ArrayXd likelihoods = class_likelihoods(candidates, said);
     const bool others = surfaces_.size() > (present_ ? 1 : 0);
     if (!others || doubted_for_ == likeliest->first || likelihoods.maxCoeff() < kFarBetter * likelihoods[0]) {
-      for (const auto& [name, each] : said) {
-        count_in(heard_, name) += each;
-      }
+      add_counts(said, heard_);
       return;
     }
     keep_present(averages, law);
@@ -86,9 +76,7 @@ void SurfaceBank::hear(const Averages& averages, const DisturbanceModel& law, co
     doubted_for_ = likeliest->first;
     open(averages, law, candidates_of_change(), std::numeric_limits<double>::infinity());
   }
-  for (const auto& [name, each] : said) {
-    count_in(heard_in_trial_, name) += each;
-  }
+  add_counts(said, heard_in_trial_);
   weigh_by_classes(averages);
 }
 
@@ -98,9 +86,7 @@ void SurfaceBank::hear_on(Kind taken) {
     heard_.clear();
     doubted_for_.clear();
   }
-  for (const auto& [name, each] : heard_in_trial_) {
-    count_in(heard_, name) += each;
-  }
+  add_counts(heard_in_trial_, heard_);
   heard_in_trial_.clear();
 }
 

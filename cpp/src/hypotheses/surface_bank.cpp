@@ -137,9 +137,7 @@ void SurfaceBank::merge(std::size_t older_place, std::size_t newer_place) {
   older.seconds += newer.seconds;
   older.segments += newer.segments;
   older.visits += newer.visits;
-  for (const auto& [name, count] : newer.classes) {
-    count_in(older.classes, name) += count;
-  }
+  add_counts(newer.classes, older.classes);
   older.used = std::max(older.used, newer.used);
   older.last_seen = std::max(older.last_seen, newer.last_seen);
   older.speeds = fastest(older.speeds, newer.speeds);

@@ -3,6 +3,7 @@
 #include "slipwise/hypotheses/surface_classes.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace slipwise {
 namespace {
@@ -37,6 +38,20 @@ double& count_in(ClassCounts& counts, const std::string& name) {
   return found->second;
 }
 
+void add_counts(const ClassCounts& more, ClassCounts& counts) {
+  for (const auto& [name, each] : more) {
+    count_in(counts, name) += each;
+  }
+}
+
+ClassCounts shares_of(ClassCounts counts) {
+  const double total = total_of(counts);
+  for (auto& [name, each] : counts) {
+    each /= total;
+  }
+  return counts;
+}
+
 ClassCounts even_odds(const TerrainAnswer& answer) {
   ClassCounts odds;
   const auto classes = static_cast<double>(answer.classes.size());
@@ -45,11 +60,7 @@ ClassCounts even_odds(const TerrainAnswer& answer) {
         classes * (1.0 - answer.unknown) * answer.probability[static_cast<Eigen::Index>(i)];
   }
   count_in(odds, kUnknownClass) += answer.unknown;
-  const double total = total_of(odds);
-  for (auto& [name, each] : odds) {
-    each /= total;
-  }
-  return odds;
+  return shares_of(std::move(odds));
 }
 
 double likelihood_of(const ClassCounts& said, const NamedClasses& surface) {

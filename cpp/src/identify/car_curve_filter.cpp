@@ -172,7 +172,7 @@ std::size_t CurveBank::best() const {
 Eigen::MatrixXd CurveBank::covariance() const {
   Eigen::MatrixXd information = information_[best()] / variance(best());
   information.diagonal() += precision_;
-  return Cholesky(information).solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+  return Cholesky(information).inverse();
 }
 
 RestFilter::RestFilter() : score_(kRestLags.size(), 0.0) {}

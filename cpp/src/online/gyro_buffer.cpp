@@ -47,14 +47,14 @@ void GyroBuffer::see_inputs(double t, const InputBuffer& inputs, double still_sp
     const double begin = seen_until_;
     seen_until_ = begin + kStillTime;
     variance_ += squared(kDrift) * kStillTime;
+    const auto turned = angle(begin, begin + kStillTime);
     const double from = begin - kCalm;
     const double until = begin + kStillTime + kCalm;
-    if (inputs.empty() || inputs.unknown_since(from, until)) {
+    if (!turned || inputs.empty() || inputs.unknown_since(from, until)) {
       continue;
     }
     const BodyTwist fastest = inputs.fastest(from, until);
-    const auto turned = angle(begin, begin + kStillTime);
-    if (turned && std::max(fastest.v, fastest.omega) <= still_speed) {
+    if (std::max(fastest.v, fastest.omega) <= still_speed) {
       learn_bias(*turned / kStillTime, squared(kStillStd));
     }
   }

@@ -110,8 +110,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
 }
 
 LearnedModel MotionLearner::model() const {
-  MotionLearner complete = *this;
-  complete.end_run();
+  const MotionLearner complete = completed();
   LearnedModel learned{.known = complete.known_.back(),
                        .students = {},
                        .held_out = complete.held_out_,
@@ -132,8 +131,7 @@ LearnedModel MotionLearner::model() const {
 }
 
 std::optional<ActuatorLimits> MotionLearner::find_limits(double wheel_separation) const {
-  MotionLearner complete = *this;
-  complete.end_run();
+  const MotionLearner complete = completed();
   const auto cascaded = complete.hypotheses_.of(Structure::Cascaded);
   const std::vector<DrivenSegment> segments(complete.command_segments_.begin(), complete.command_segments_.end());
   if (cascaded == nullptr) {

@@ -94,8 +94,7 @@ std::vector<DatedSurfaceEvent> MotionLearner::surface_events() {
 }
 
 SurfaceBank MotionLearner::surfaces() const {
-  MotionLearner complete = *this;
-  complete.end_run();
+  const MotionLearner complete = completed();
   return complete.hypotheses_.surfaces_now(complete.disturbance_.law());
 }
 

@@ -92,6 +92,12 @@ void MotionLearner::end_run() {
   work_through();
 }
 
+MotionLearner MotionLearner::completed() const {
+  MotionLearner complete = *this;
+  complete.end_run();
+  return complete;
+}
+
 /// Where the stamps of a run begin before those of the last one ended, the clock was set again: all is known by then.
 void MotionLearner::see_stamp(double t) {
   if (!run_begins_ || !std::isfinite(t)) {

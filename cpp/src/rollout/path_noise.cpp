@@ -44,15 +44,9 @@ RolloutProgram drive_alone(const UncertainModel& model) {
   return {model.model, parameters, setting};
 }
 
-RolloutProgram moved(const UncertainModel& model, const Eigen::VectorXd& step, const Eigen::MatrixXd& ahead) {
-  Eigen::VectorXd parameters = model.parameters + step;
+RolloutProgram moved(const UncertainModel& model, Eigen::VectorXd parameters, const Eigen::MatrixXd& ahead) {
   RolloutSetting setting = model.setting;
-  if (ahead.cols() > 0) {
-    parameters.head(ahead.rows()) += ahead.col(0);
-  }
-  for (Eigen::Index k = 1; k < ahead.cols(); ++k) {
-    setting.ahead.changes[static_cast<std::size_t>(k - 1)] += ahead.col(k) - ahead.col(k - 1);
-  }
+  move_slip(ahead, parameters, setting.ahead);
   return {model.model, parameters, setting};
 }
 

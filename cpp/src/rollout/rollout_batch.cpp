@@ -116,7 +116,7 @@ LaneJob<Scalar> job_of(const RolloutProgram& program, const RolloutBatch<Scalar>
                       .quadratic = program.quadratic().value_or(LaneQuadratic{}),
                       .factors = program.slip().factors,
                       .squared_curvature_speed = static_cast<Scalar>(kCurvatureSpeed * kCurvatureSpeed),
-                      .on_grade = program.setting().rise_x != 0.0 || program.setting().rise_y != 0.0,
+                      .on_grade = program.setting().on_grade(),
                       .rise_x = static_cast<Scalar>(program.setting().rise_x),
                       .rise_y = static_cast<Scalar>(program.setting().rise_y),
                       .minus_gravity = static_cast<Scalar>(-kStandardGravity),

@@ -79,7 +79,7 @@ class ParameterPart {
   }
 
   RolloutPaths along(const Eigen::VectorXd& step, const Eigen::MatrixXd& of_slip) const {
-    return roll_paths(moved(model_, step, of_slip), batch_, options_);
+    return roll_paths(moved(model_, model_.parameters + step, of_slip), batch_, options_);
   }
 
   const UncertainModel& model_;

@@ -16,8 +16,7 @@ constexpr double kSteepest = std::numbers::sqrt3 + 1e-9;  // rise per metre at 6
 
 /// Gravity that is constant along the robot's axes; without one it turns with the heading.
 std::optional<std::array<double, 2>> constant_gravity(const RolloutSetting& setting) {
-  return setting.rise_x != 0.0 || setting.rise_y != 0.0 ? std::nullopt
-                                                        : std::optional(std::array{setting.gx, setting.gy});
+  return setting.on_grade() ? std::nullopt : std::optional(std::array{setting.gx, setting.gy});
 }
 
 SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
@@ -30,7 +29,7 @@ SlipProgram slip_of(const MotionModel& model, const Eigen::Ref<const Eigen::Vect
   if (!(steepness <= kSteepest)) {
     throw std::invalid_argument("the ground must not be steeper than 60 degrees");
   }
-  if (steepness > 0.0 && (setting.gx != 0.0 || setting.gy != 0.0)) {
+  if (setting.on_grade() && (setting.gx != 0.0 || setting.gy != 0.0)) {
     throw std::invalid_argument("give the gravity along the robot's axes or the ground's grade, not both");
   }
   const Eigen::VectorXd alpha = parameters.head(model.slip_size());

@@ -29,6 +29,21 @@ std::mt19937_64 generator(std::uint64_t seed, std::uint64_t sample, std::uint64_
 constexpr std::uint64_t kParameters = ~std::uint64_t{0};  // stands for the rollout where parameters are drawn
 constexpr std::uint64_t kSurfaces = kParameters - 1;      // and where the slip of surfaces ahead is
 
+/// An error of the slip ahead, [slip, stretches]; no columns where there is none.
+Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std::uint64_t seed) {
+  const std::vector<Eigen::MatrixXd>& directions = model.uncertainty.ahead;
+  if (directions.empty()) {
+    return {};
+  }
+  std::mt19937_64 random = generator(seed, sample, kSurfaces);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd drawn = Eigen::MatrixXd::Zero(directions.front().rows(), directions.front().cols());
+  for (const Eigen::MatrixXd& direction : directions) {
+    drawn += std::sqrt(model.uncertainty.inflation) * normal(random) * direction;
+  }
+  return drawn;
+}
+
 /// Drives along a path again, with noise added to the tangent of every period.
 class NoisyPath {
  public:
@@ -99,18 +114,6 @@ Eigen::MatrixXd draw_parameters(const UncertainModel& model, std::size_t samples
   return drawn;
 }
 
-/// An error of the slip ahead, [slip, stretches]; no columns where there is none.
-Eigen::MatrixXd draw_ahead(const UncertainModel& model, std::size_t sample, std::uint64_t seed) {
-  Eigen::MatrixXd drawn;
-  std::mt19937_64 random = generator(seed, sample, kSurfaces);
-  std::normal_distribution<double> normal;
-  for (const Eigen::MatrixXd& direction : model.uncertainty.ahead) {
-    const Eigen::MatrixXd part = std::sqrt(model.uncertainty.inflation) * normal(random) * direction;
-    drawn = drawn.size() == 0 ? part : Eigen::MatrixXd(drawn + part);
-  }
-  return drawn;
-}
-
 void sample_futures(const UncertainModel& model, const RolloutBatch<double>& batch, std::uint64_t seed,
                     const FutureOutputs& outputs, const RolloutOptions& options) {
   const std::size_t poses = batch.rollouts * batch.periods;
@@ -126,7 +129,7 @@ void sample_futures(const UncertainModel& model, const RolloutBatch<double>& bat
   share_out(samples, options.threads, [&](std::size_t first, std::size_t last) {
     for (std::size_t s = first; s < last; ++s) {
       const RolloutProgram program =
-          moved(model, parameters.col(static_cast<Eigen::Index>(s)) - model.parameters, draw_ahead(model, s, seed));
+          moved(model, parameters.col(static_cast<Eigen::Index>(s)), draw_ahead(model, s, seed));
       const RolloutPaths paths = roll_paths(program, batch, {1, options.level});
       for (std::size_t n = 0; n < batch.rollouts; ++n) {
         NoisyPath noisy(model, terms, generator(seed, s, n));

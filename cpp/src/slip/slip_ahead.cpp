@@ -3,6 +3,7 @@
 #include "slipwise/slip/slip_ahead.hpp"
 
 #include <cmath>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +25,15 @@ void check_ahead(const SlipAhead& ahead, Eigen::Index slip) {
       throw std::invalid_argument("a change of slip ahead needs " + std::to_string(slip) + " finite numbers, got " +
                                   std::to_string(ahead.changes[k].size()));
     }
+  }
+}
+
+void move_slip(const Eigen::MatrixXd& direction, Eigen::VectorXd& parameters, SlipAhead& ahead) {
+  if (direction.cols() > 0) {
+    parameters.head(direction.rows()) += direction.col(0);
+  }
+  for (Eigen::Index k = 1; k < direction.cols(); ++k) {
+    ahead.changes[static_cast<std::size_t>(k - 1)] += direction.col(k) - direction.col(k - 1);
   }
 }
 

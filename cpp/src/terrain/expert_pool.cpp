@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "slipwise/linear/softmax.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -25,12 +27,7 @@ Eigen::MatrixXd ExpertPool::pooled(const Eigen::Ref<const Eigen::MatrixXd>& by_v
   if (current != 0.0) {
     logs += current * (by_current.array() + kLeast).log();
   }
-  if (logs.cols() == 0) {
-    return logs;
-  }
-  const Eigen::ArrayXd most = logs.rowwise().maxCoeff();
-  const Eigen::ArrayXXd raised = (logs.colwise() - most).exp();
-  return raised.colwise() / raised.rowwise().sum();
+  return softmax_of_rows(logs.matrix());
 }
 
 Eigen::VectorXd doubt_of(const Eigen::Ref<const Eigen::MatrixXd>& probability) {

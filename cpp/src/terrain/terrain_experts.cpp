@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "slipwise/linear/softmax.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -77,9 +79,7 @@ Eigen::MatrixXd KernelExpert::distances(const Eigen::Ref<const Eigen::MatrixXd>&
 
 Eigen::MatrixXd KernelExpert::probabilities(const Eigen::Ref<const Eigen::MatrixXd>& features) const {
   const Eigen::MatrixXd kernel = (-width_ * distances(features)).array().exp();
-  const Eigen::MatrixXd scores = kSharpness * (kernel * weights_);
-  const Eigen::ArrayXXd raised = (scores.colwise() - scores.rowwise().maxCoeff()).array().exp();
-  return raised.colwise() / raised.rowwise().sum();
+  return softmax_of_rows(kSharpness * (kernel * weights_));
 }
 
 Eigen::VectorXd KernelExpert::newness(const Eigen::Ref<const Eigen::MatrixXd>& features) const {

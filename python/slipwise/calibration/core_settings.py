@@ -10,10 +10,8 @@ from slipwise.calibration.settings import Settings
 
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
-_CAR_BASES = (
-    "none",
-    "edd-2",
-)  # what other terms would say, curves, drag of cornering and understeer say already
+# What other terms would say, curves, drag of cornering and understeer say already.
+_CAR_BASES = ("none", "edd-2")
 _CAR_LAG, _CAR_DELAY = 0.03, 0.05  # s; medians of what is left behind the lags of a car
 
 
@@ -55,11 +53,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     hypotheses.baseline = "baseline" in tried
     hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
     if positions:
-        causal = hypotheses.filter
-        prior = causal.prior
-        prior.straight_side_slip_std = STRAIGHT_SIDE_SLIP
-        causal.prior = prior
-        hypotheses.filter = causal
+        _change_prior(hypotheses, straight_side_slip_std=STRAIGHT_SIDE_SLIP)
     if remember:
         surfaces = _core.SurfaceSettings()
         surfaces.remember = True
@@ -77,9 +71,15 @@ def _behind_curves(hypotheses: _core.HypothesisSettings, settings: Settings) -> 
     """Expect little slip and lag where a car's curves hold most of both."""
     if settings.basis == "auto":
         hypotheses.bases = [basis for basis in hypotheses.bases if basis.name in _CAR_BASES]
+    _change_prior(hypotheses, time_constant=_CAR_LAG, delay=_CAR_DELAY)
+
+
+def _change_prior(hypotheses: _core.HypothesisSettings, **numbers: float) -> None:
+    """Set numbers of the prior: what the core hands out of its settings is a copy."""
     causal = hypotheses.filter
     prior = causal.prior
-    prior.time_constant, prior.delay = _CAR_LAG, _CAR_DELAY
+    for name, number in numbers.items():
+        setattr(prior, name, number)
     causal.prior = prior
     hypotheses.filter = causal
 

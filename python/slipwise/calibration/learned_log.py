@@ -74,15 +74,33 @@ def learn_log(
 
 
 def new_learner(
-    runs: Sequence[Run], input_name: str, settings: Settings, horizons: Sequence[float]
+    runs: Sequence[Run],
+    input_name: str,
+    settings: Settings,
+    horizons: Sequence[float],
+    *,
+    remember: bool = False,
 ) -> _core.MotionLearner:
     """Return a learner that knows nothing yet but what sort of vehicle and of poses the runs are of.
+
+    Args:
+        runs: that it will learn from.
+        input_name: "command" or "wheel".
+        settings: what to learn and how.
+        horizons: of the predictions [s].
+        remember: keep surfaces that are driven on, and recall them.
 
     Raises:
         SettingsError: a basis or a term is unknown.
     """
-    positions, car = has_course(runs), car_prior(runs)
-    core = core_settings(settings, input_name, horizons, positions=positions, car=car)
+    core = core_settings(
+        settings,
+        input_name,
+        horizons,
+        remember=remember,
+        positions=has_course(runs),
+        car=car_prior(runs),
+    )
     return _core.MotionLearner(core)
 
 
@@ -123,8 +141,7 @@ def learned_of(
     hypotheses = learner.settings.hypotheses
     bases = tuple(basis.name for basis in hypotheses.bases)
     predictions, baseline = held_out_predictions(model, horizons, drive)
-    told = model.car is not None  # its curves hold a dead band and a top speed
-    found = None if keep is None or told else learner.find_limits(keep.wheel_separation)
+    found = None if keep is None else found_limits(learner, model, keep.wheel_separation)
     history = None
     if keep is not None:
         history = _history(events, model.motion, bases, drive, several=hypotheses.several)
@@ -141,6 +158,13 @@ def learned_of(
         limits=None if found is None else found.search,
         car=model.car,
     )
+
+
+def found_limits(
+    learner: _core.MotionLearner, model: _core.LearnedModel, wheel_separation: float
+) -> _core.ActuatorLimits | None:
+    """Look for limits of the actuator; a car's curves hold a dead band and a top speed already."""
+    return None if model.car is not None else learner.find_limits(wheel_separation)
 
 
 def kept_posterior(model: _core.LearnedModel, found: _core.ActuatorLimits | None) -> Posterior:

@@ -7,13 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from slipwise import _core
-from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learned_log import (
     LEARNED,
     Cue,
     Keep,
     LearnedLog,
     learned_of,
+    new_learner,
     predictions_of,
     pushed,
 )
@@ -25,9 +25,7 @@ from slipwise.calibration.surface_course import SurfaceCourse, course_of
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
 from slipwise.calibration.surface_sections import begin_with
 from slipwise.calibration.terrain_cues import Labels, check_labels, cues_of
-from slipwise.logs.log import has_course
 from slipwise.models.model import Model
-from slipwise.segments import car_prior
 
 _WORDS = {
     _core.SurfaceEventKind.Opened: "new",
@@ -161,10 +159,8 @@ def _begun(
     start: Model | None,
 ) -> _core.MotionLearner:
     input_name = drives[0][0].input_name
-    positions = has_course(run.run for drive in drives for run in drive)
-    car = car_prior([run.run for drive in drives for run in drive])
-    core = core_settings(settings, input_name, horizons, remember=True, positions=positions, car=car)
-    learner = _core.MotionLearner(core)
+    runs = [run.run for drive in drives for run in drive]
+    learner = new_learner(runs, input_name, settings, horizons, remember=True)
     if start is not None:
         begin_with(learner, start, input_name, wheels=any(has_wheels(drive) for drive in drives))
     return learner

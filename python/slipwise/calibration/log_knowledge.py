@@ -41,9 +41,8 @@ class StructureKnowledge:
     speeds: tuple[float, float]  # m/s, rad/s, of the prior
     bases: dict[str, BasisKnowledge]
     robot_names: tuple[str, ...]
-    robot: (
-        LearnedNormal | None
-    )  # None where another structure was kept, and this one has an actuator of its own
+    # None where another structure was kept, and this one has an actuator of its own.
+    robot: LearnedNormal | None
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import car_of, core_settings
 from slipwise.calibration.judgement import Judgement
-from slipwise.calibration.learned_log import kept_posterior, predictions_of
+from slipwise.calibration.learned_log import found_limits, kept_posterior, predictions_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.limit_words import advice_on_limits
@@ -323,8 +323,8 @@ class MotionLearner(RememberedSurfaces):
         return with_memory(content, self._core.completed(), (kept.structure, kept.motion), self._start)
 
     def _learned(self, model: _core.LearnedModel, *, limits: bool) -> Learned:
-        wanted = limits and model.car is None  # a car's curves hold a dead band and a top speed
-        found = self._core.find_limits(self._settings.vehicle.wheel_separation) if wanted else None
+        separation = self._settings.vehicle.wheel_separation
+        found = found_limits(self._core, model, separation) if limits else None
         each = list(zip(JUDGING_HORIZONS, model.held_out, model.students, strict=True))
         horizon, held_out, _ = each[judged_horizon([len(predictions) for _, predictions, _ in each])]
         predictions, baseline = predictions_of([held_out.columns()], [horizon])

@@ -54,6 +54,7 @@ def excite(
     """  # noqa: D301
     from dataclasses import replace
 
+    from slipwise.cli.numbers import area_of
     from slipwise.cli.output import Output
     from slipwise.cli.progress import progress_bar
     from slipwise.cli.tables import show_files
@@ -66,7 +67,7 @@ def excite(
     refuse_unwritable(*files.values(), out.written_file, inputs=[model])
     robot = _vehicle(vehicle)
     space, knowledge = _known(model, robot, {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral})
-    options = ExcitationOptions(area=area_of(area), minutes=minutes, hold=hold, pause=pause)
+    options = ExcitationOptions(area=area_of(area, "--area"), minutes=minutes, hold=hold, pause=pause)
     size = radius if radius is not None else robot.radius if robot is not None else options.radius
     options = replace(options, radius=size)
     with progress_bar("searching") as update:
@@ -113,21 +114,6 @@ def _known(
         )
     space = CommandSpace(**limits)
     return space, prior_knowledge(space) if learned is None else knowledge_of(learned)
-
-
-def area_of(text: str, option: str = "--area") -> tuple[float, float]:
-    """Return width and depth [m] of an area such as 8x8.
-
-    Raises:
-        SettingsError: it is none.
-    """
-    from slipwise.errors import SettingsError
-
-    try:
-        width, depth = (float(side) for side in text.lower().split("x"))
-    except ValueError:
-        raise SettingsError(f"{text!r} is no area", where=option, advice="such as 8x8, in metres") from None
-    return width, depth
 
 
 def _write(

@@ -77,7 +77,7 @@ def inspect(
         inspection = inspect_files(logs, log_options, chosen, progress=update)
         drive = None
         if excite is not None and not inspection.problem:
-            from slipwise.cli.excite import area_of
+            from slipwise.cli.numbers import area_of
 
             drive = _write_drive(
                 excite, inspection.log, area_of(excite_area, "--excite-area"), chosen, update

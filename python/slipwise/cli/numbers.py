@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Several numbers in one option, such as a pose or a grade."""
+"""Several numbers in one option, such as a pose, an area or a grade."""
 
 from __future__ import annotations
 
@@ -36,6 +36,19 @@ def pose_of(text: str, option: str) -> tuple[float, float, float]:
     """
     x, y, yaw = _numbers(text, option, "pose X,Y,YAW", "1.5,2,0.3")
     return x, y, yaw
+
+
+def area_of(text: str, option: str) -> tuple[float, float]:
+    """Return width and depth [m] of an area such as 8x8.
+
+    Raises:
+        SettingsError: it is none.
+    """
+    try:
+        width, depth = (float(side) for side in text.lower().split("x"))
+    except ValueError:
+        raise SettingsError(f"{text!r} is no area", where=option, advice="such as 8x8, in metres") from None
+    return width, depth
 
 
 def grade_of(text: str | None) -> Grade | None:

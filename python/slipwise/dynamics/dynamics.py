@@ -29,9 +29,7 @@ class State:
 
     name: str
     unit: str = ""
-    measured: float | None = (
-        None  # standard deviation of a measurement, in the unit; None: it is not measured
-    )
+    measured: float | None = None  # std of a measurement, in the unit; None: it is not measured
     angle: bool = False  # rad; what is measured may differ by whole turns
     noise: float = 0.0  # std of what adds to its rate, in the unit per square root of a second
     start: float = 0.0  # at the first measurement, where it is not measured
@@ -114,12 +112,21 @@ class Dynamics:
         """Names of the states that are measured."""
         return tuple(self.states[place].name for place in self.measured)
 
-    def in_core(self) -> _core.DynamicsModel:
-        """Return the dynamics as the core calls them."""
-        return _core.PythonDynamics(self._rates_in_core, self.jacobians)
+    def filter_from(self, t: float, mean: Floats, covariance: Floats) -> _core.DynamicsFilter:
+        """Return a filter of states and then parameters that knows an estimate at `t` [s].
 
-    def noise_in_core(self) -> _core.DynamicsNoise:
-        """Return what is measured, and what disturbs the motion."""
+        Raises:
+            ValueError: a size does not fit, or a number is not finite.
+        """
+        return _core.DynamicsFilter(
+            _core.PythonDynamics(self._rates_in_core, self.jacobians),
+            self._noise_in_core(),
+            self.longest_step,
+            t,
+            _core.Estimate(mean, covariance),
+        )
+
+    def _noise_in_core(self) -> _core.DynamicsNoise:
         measured = [self.states[place] for place in self.measured]
         return _core.DynamicsNoise(
             list(self.measured),

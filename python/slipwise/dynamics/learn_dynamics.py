@@ -92,12 +92,8 @@ class _Pass:
         std = [state.start_std if state.measured is None else state.measured for state in states]
         share = 1.0 if learning else NOTHING_LEARNED
         variances = [s**2 for s in std] + [share * p.std**2 for p in dynamics.parameters]
-        start = _core.Estimate(
-            np.array(mean + [p.value for p in dynamics.parameters], dtype=np.float64), np.diag(variances)
-        )
-        self.filter = _core.DynamicsFilter(
-            dynamics.in_core(), dynamics.noise_in_core(), dynamics.longest_step, float(drive.t[0]), start
-        )
+        start = np.array(mean + [p.value for p in dynamics.parameters], dtype=np.float64)
+        self.filter = dynamics.filter_from(float(drive.t[0]), start, np.diag(variances))
 
     def learn(self, k: int) -> None:
         """Push inputs up to measurement `k`, and that measurement."""

@@ -171,14 +171,7 @@ class LearnedDynamics:
         covariance = np.zeros((size, size))
         covariance[:states, :states], covariance[states:, states:] = spread, self.estimate.covariance
         try:
-            start = _core.Estimate(np.concatenate((mean, self.estimate.mean)), covariance)
-            ahead = _core.DynamicsFilter(
-                self.dynamics.in_core(),
-                self.dynamics.noise_in_core(),
-                self.dynamics.longest_step,
-                0.0,
-                start,
-            )
+            ahead = self.dynamics.filter_from(0.0, np.concatenate((mean, self.estimate.mean)), covariance)
             found = ahead.predict([float(t) for t in times], rows[:, 0], rows[:, 1:])
         except (ValueError, RuntimeError) as problem:
             raise SettingsError(str(problem), where="predict") from problem

@@ -49,10 +49,8 @@ def method_names(contest: Contest) -> tuple[str, ...]:
     names = ["none"]
     if contest.vendor_wheel_separation_multiplier is not None:
         names.append("vendor")
-    more = {*SLOPE_BASES, *SIDEWAYS_BASES}
-    left_out = more - set(
-        contest.settings.auto.bases
-    )  # where the ground is level, or nothing drives sideways
+    # Where the ground is level, or nothing drives sideways.
+    left_out = {*SLOPE_BASES, *SIDEWAYS_BASES} - set(contest.settings.auto.bases)
     names += [*(name for name in _core.basis_names() if name not in left_out), "batch"]
     names += contest.models
     if contest.settings.basis == "custom":

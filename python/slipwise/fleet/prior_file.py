@@ -6,7 +6,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import yaml
 
@@ -30,26 +29,25 @@ def write_prior(
     Raises:
         OutputError: the file cannot be written.
     """
-    parameters: dict[str, dict[str, Any]] = {
-        each.parameter: {
-            "unit": each.unit,
-            "mean": float(each.prior.mean[0]),
-            "std": math.sqrt(float(each.prior.new_robot[0, 0])),
-            "between_robots_std": math.sqrt(float(each.prior.between[0, 0])),
-            "robots": len(each.vehicles),
-        }
+    parameters = {
+        each.parameter: ParameterPrior(
+            unit=each.unit,
+            mean=float(each.prior.mean[0]),
+            std=math.sqrt(float(each.prior.new_robot[0, 0])),
+            between_robots_std=math.sqrt(float(each.prior.between[0, 0])),
+            robots=len(each.vehicles),
+        )
         for each in findings
         if each.prior is not None
     }
     head = "# What is known of a robot of this fleet before its first log; units as in model files.\n"
-    start = start_prior(knowledge)
     content = FleetPriorFile(
         slipwise_fleet_prior=PRIOR_SCHEMA,
         type=vehicle_type,
         robots=len({vehicle for vehicle, _ in knowledge}),
         logs=len(knowledge),
-        parameters={name: ParameterPrior(**each) for name, each in parameters.items()},
-        start=start,
+        parameters=parameters,
+        start=start_prior(knowledge),
     ).model_dump()
     text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=120)
     write_text_whole(path, head + text)

@@ -17,9 +17,8 @@ from slipwise.models.fleet_prior import BasisPrior, RobotPrior, StartPrior
 
 Floats = NDArray[np.float64]
 
-SPREAD = (
-    0.03  # guess of the variance between robots, and between logs of one; of a first log's prior variance
-)
+# Guess of the variance between robots, and between logs of one; of a first log's prior variance.
+SPREAD = 0.03
 LEFT = 0.05  # of a log's prior, which is taken out of what it says; the rest keeps its covariance finite
 FEWEST_STUDENT = 4  # robots, from which on one of them may count less
 JOINT = "joint"  # the way to explain motion that every log has

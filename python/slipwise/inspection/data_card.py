@@ -80,9 +80,7 @@ class DataCard(_Section):
     distance: float  # m, along the measured poses
     streams: list[CardStream]
     identified: dict[Literal["command", "wheel"], list[CardNumber]]
-    learned_from: dict[
-        Literal["command", "wheel"], Text
-    ]  # why nothing was identified, or how much was driven
+    learned_from: dict[Literal["command", "wheel"], Text]  # how much was driven, or what was missing
     slipwise_version: Text
 
 

@@ -12,7 +12,8 @@ from slipwise.files import write_text_whole
 from slipwise.inspection.data_card import Stated, card_path, make_card, write_card
 from slipwise.inspection.inspect_log import inspect_log
 from slipwise.inspection.strict_check import schema_of, schema_path
-from slipwise.logs import Log, open_log
+from slipwise.logs import open_log
+from slipwise.logs.table import read_parquet
 
 
 def windows_path(table: Path) -> Path:
@@ -34,11 +35,12 @@ def write_beside(
         LogError: nothing in the table can be predicted.
         OutputError: a file cannot be written.
     """
-    log: Log = open_log(table)
+    log = open_log(table)
     progress("learning", 0.3)
     card = make_card(table, inspect_log(log), stated, anonymised=anonymised)
     progress("windows", 0.8)
     windows = evaluate(log, options=EvaluationOptions(methods=("none",)))
-    write_text_whole(schema_path(table), json.dumps(schema_of(table), indent=2, ensure_ascii=False) + "\n")
+    schema = schema_of(read_parquet(table, columns={}))
+    write_text_whole(schema_path(table), json.dumps(schema, indent=2, ensure_ascii=False) + "\n")
     write_predictions(windows_path(table), windows)
     write_card(card, card_path(table))

@@ -43,13 +43,9 @@ def schema_path(table: Path) -> Path:
     return table.with_name(f"{table.stem}.schema.json")
 
 
-def schema_of(table: Path) -> dict[str, Any]:
-    """Return the Table Schema of a Parquet file's columns.
-
-    Raises:
-        LogError: it cannot be read.
-    """
-    arrow = read_parquet(table, columns={}).arrow
+def schema_of(table: Table) -> dict[str, Any]:
+    """Return the Table Schema of a table's columns."""
+    arrow = table.arrow
     return table_schema(arrow.column_names, [f.name for f in arrow.schema if str(f.type) != "string"])
 
 
@@ -140,7 +136,7 @@ def _beside(path: Path, table: Table, log: Log | None) -> Iterator[Departure]:
     schema = schema_path(path)
     try:
         content = json.loads(read_whole(schema, most=_MOST_SCHEMA, error=LogError))
-        if content != schema_of(path):
+        if content != schema_of(table):
             yield Departure("schema", "the schema file is not that of this table's columns", str(schema))
     except LogError as problem:
         yield Departure("schema", f"no schema file: {problem.what}", str(schema))

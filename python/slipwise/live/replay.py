@@ -58,8 +58,10 @@ class Replay(Feed):
     def _paced(self, drive: tuple[PreparedRun, ...], rate: float, label: str | None) -> Iterator[Sample]:
         for place, run in enumerate(drive):
             cues = labels_of(run.run) if label is None else ()
-            begins = DriveStart(label or label_at_start(cues, run.run), date_of(drive))
-            yield RunStart(run.run.name, begins if place == 0 else None)
+            begins = None
+            if place == 0:
+                begins = DriveStart(label or label_at_start(cues, run.run), date_of(drive))
+            yield RunStart(run.run.name, begins)
             begin = time.monotonic()
             for sample in with_labels(samples_of(run), cues):
                 if isinstance(sample, SurfaceCue):

@@ -12,7 +12,6 @@ import numpy as np
 from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
 from slipwise.live.samples import Command, Pose, Wheels
-from slipwise.logs.bag_streams import deviation_of
 from slipwise.logs.joints import SideMotion
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.messages import (
@@ -27,7 +26,6 @@ from slipwise.logs.messages import (
 )
 from slipwise.logs.navsat import ecef, in_tangent_plane
 from slipwise.logs.options import LogOptions
-from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
@@ -167,10 +165,9 @@ class FixPoses:
 
     def take_imu(self, message: Any, t: float) -> None:
         """Take an orientation."""
-        q, good = unit_quaternions(np.array([_values(IMU_VALUES, message)]))
-        if good[0]:
-            roll, pitch, yaw = (float(angle[0]) for angle in angles_of(q))
-            self._imu = (t, roll, pitch, yaw)
+        angles = rotation_of(*_values(IMU_VALUES, message))
+        if angles is not None:
+            self._imu = (t, *angles)
 
     def take_fix(self, message: Any, t: float) -> Pose | None:
         """Return the pose of a fix; None without a fix, or without a heading of the same time."""
@@ -180,7 +177,7 @@ class FixPoses:
         fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
         self._origin = self._origin or fix
         x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
-        std_xy = _known(deviation_of(np.array([variances])))
+        std_xy = deviation(*variances)
         frame = message.header.frame_id
         if not self._headed:
             return Pose(t, x, y, math.nan, std_xy, frame=frame)
@@ -198,7 +195,3 @@ def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.nd
 def _values(table: dict[str, Callable[[Any], Values]], message: Any) -> Values:
     (values,) = table.values()
     return values(message)
-
-
-def _known(deviation: np.ndarray) -> float | None:
-    return float(deviation[0]) if np.isfinite(deviation[0]) else None

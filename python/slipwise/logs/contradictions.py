@@ -33,9 +33,8 @@ def contradictions(
     speed = unlikely_speed(driven, words)
     still = None if speed is not None else standstill(windows, _starts(log, input_name), _CAUSES[input_name])
     found = [speed, still, *gyro_contradictions(log.runs)]
-    if (still is None or not still.spoils) and not has_course(
-        log.runs
-    ):  # a course tells nothing of a heading
+    headed = not has_course(log.runs)  # a course tells nothing of a heading
+    if headed and (still is None or not still.spoils):
         other = "wheel" if input_name == "command" else "command"
         others = driven_windows(_windows(log, other, unknown_after), sensor_yaw)
         alone = others.direction.real > 0.5

@@ -51,9 +51,7 @@ class Inputs:
     v: Floats  # [N] m/s, forward
     vy: Floats  # [N] m/s, to the left
     omega: Floats  # [N] rad/s, counter-clockwise
-    car: CarCommands | None = (
-        None  # where throttle and steering were commanded: v and omega are about what they do
-    )
+    car: CarCommands | None = None  # throttle and steering, where v and omega are about what they do
 
     def __post_init__(self) -> None:
         _check_series(self, required=("t", "v", "vy", "omega"))

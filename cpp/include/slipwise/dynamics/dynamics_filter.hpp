@@ -68,13 +68,11 @@ class DynamicsFilter {
   std::vector<DynamicsPrediction> predict(const std::vector<double>& times, const HeldInputs& future) const;
 
   double time() const { return t_; }  ///< of the last measurement [s]
-  Eigen::Index states() const { return states_; }
-  Estimate state() const;       ///< now
-  Estimate parameters() const;  ///< as the filter takes them to be known
+  Estimate state() const;             ///< now
+  Estimate parameters() const;        ///< as the filter takes them to be known
   /// With a covariance that also holds where residuals are larger than the noise said, or correlated in time
   /// (derivations/reported-covariance.md).
   Estimate reported_parameters() const;
-  const Eigen::VectorXd& prior_std() const { return prior_std_; }  ///< [parameters]
 
  private:
   WindowModel window(const Eigen::VectorXd& start, double end) const;
@@ -85,8 +83,7 @@ class DynamicsFilter {
   DynamicsSettings settings_;
   double t_;
   Eigen::Index states_;
-  Estimate now_;  ///< of (state, parameters)
-  Eigen::VectorXd prior_std_;
+  Estimate now_;           ///< of (state, parameters)
   Eigen::MatrixXd prior_;  ///< of the parameters
   HeldInputs inputs_;
   ScoreCovariance scores_;

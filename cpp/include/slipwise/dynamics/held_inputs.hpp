@@ -26,7 +26,11 @@ class HeldInputs {
   double until(double t, double end) const;
 
  private:
-  std::deque<std::pair<double, Eigen::VectorXd>> inputs_;
+  using Inputs = std::deque<std::pair<double, Eigen::VectorXd>>;
+
+  Inputs::const_iterator later_than(double t) const;
+
+  Inputs inputs_;
 };
 
 }  // namespace slipwise

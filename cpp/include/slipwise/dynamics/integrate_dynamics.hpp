@@ -24,10 +24,17 @@ struct DynamicsEnd {
   Eigen::MatrixXd noise;     ///< [states, states] covariance of what was added on the way
 };
 
-/// By the Runge-Kutta method of fourth order for the state and its derivatives, steps ending where an input changes.
+/// Where an integration begins.
+DynamicsEnd nothing_passed(const Eigen::VectorXd& state, Eigen::Index parameters);
+
+/// From a state on, by the Runge-Kutta method of fourth order for the state and its derivatives, steps ending where
+/// an input changes.
 /// \throws std::runtime_error when the state is not finite any more.
 DynamicsEnd integrate_dynamics(const DynamicsModel& model, const HeldInputs& inputs, const DynamicsSpan& span,
                                const Eigen::VectorXd& state, const Eigen::VectorXd& parameters);
+/// The same from where another one ended; derivatives and noise are those since that began.
+DynamicsEnd integrate_dynamics(const DynamicsModel& model, const HeldInputs& inputs, const DynamicsSpan& span,
+                               DynamicsEnd now, const Eigen::VectorXd& parameters);
 
 /// Where the state is at the end alone.
 Eigen::VectorXd dynamics_state(const DynamicsModel& model, const HeldInputs& inputs, const DynamicsSpan& span,

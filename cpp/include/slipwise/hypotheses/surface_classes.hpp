@@ -27,6 +27,12 @@ struct NamedClasses {
   ClassCounts classes;
 };
 
+/// Adds more of them.
+void add_counts(const ClassCounts& more, ClassCounts& counts);
+
+/// How much of all each is; there is some.
+ClassCounts shares_of(ClassCounts counts);
+
 /// The probability of each class, and of "unknown", where each of them is as likely as the others beforehand.
 ClassCounts even_odds(const TerrainAnswer& answer);
 

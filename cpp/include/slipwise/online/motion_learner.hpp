@@ -131,6 +131,8 @@ class MotionLearner {
   /// Whether the robot moves as its inputs and the learned model say it must. It changes nothing of what is learned,
   /// and it is not saved.
   MotionState motion_monitor();
+  /// A copy whose run has ended.
+  MotionLearner completed() const;
   /// What was learned of all that was pushed; as if the run ended now.
   LearnedModel model() const;
   /// Looks for limits of the actuator in the last commands and wheel speeds, or twists between poses where there are no

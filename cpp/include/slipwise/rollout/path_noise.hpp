@@ -45,9 +45,9 @@ DisturbedTerms disturbed_terms_of(const UncertainModel& model);
 /// The model that only drives: no slip, the same actuator. Its paths say how far the drive moves.
 RolloutProgram drive_alone(const UncertainModel& model);
 
-/// The model with its parameters moved by a step, and the slip of all stretches by `ahead` [slip, stretches], which has
-/// no columns where it stays.
-RolloutProgram moved(const UncertainModel& model, const Eigen::VectorXd& step, const Eigen::MatrixXd& ahead);
+/// The model with other parameters, and the slip of all stretches moved by `ahead` [slip, stretches], which has no
+/// columns where it stays.
+RolloutProgram moved(const UncertainModel& model, Eigen::VectorXd parameters, const Eigen::MatrixXd& ahead);
 
 /// The paths of all rollouts, [periods * rollouts] each.
 struct RolloutPaths {

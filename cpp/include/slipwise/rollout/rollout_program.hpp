@@ -24,6 +24,8 @@ struct RolloutSetting {
   double rise_x = 0.0;        ///< of a plane per metre along the axes of the starts' frame; excludes gx and gy
   double rise_y = 0.0;        ///< [m/m]
   SlipAhead ahead = {};       ///< where slip becomes another along the path
+
+  bool on_grade() const { return rise_x != 0.0 || rise_y != 0.0; }
 };
 
 /// The program in the numbers of a kernel.

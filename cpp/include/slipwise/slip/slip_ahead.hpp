@@ -23,6 +23,10 @@ struct SlipAhead {
 /// not fit the `slip` parameters of a model.
 void check_ahead(const SlipAhead& ahead, Eigen::Index slip);
 
+/// Moves the slip of all stretches along a `direction` [slip, stretches], which may have no columns: that of the first
+/// is the head of `parameters`.
+void move_slip(const Eigen::MatrixXd& direction, Eigen::VectorXd& parameters, SlipAhead& ahead);
+
 /// Which fraction of a step of `length` [m], from `travelled` [m] on, lies beyond an edge.
 inline double fraction_beyond(double edge, double travelled, double length) {
   const double step = length + kEdgeWidth;
