@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Cars told throttle and steering: `auto` beside a kinematic bicycle with the best gains in hindsight.
+"""Cars commanded by throttle and steering: `auto` beside a bicycle with the best gains in hindsight.
 
 The logs are those of DART (github.com/Lorenzo-Lyons/DART, MIT), as tables with the columns run, t, throttle,
 steering, safety (throttle acts only where it is 1), x, y, yaw; the marker is moved to the rear axle by their

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bindings of cars that are told throttle and steering: cpp/include/slipwise/actuator/car_curves.hpp.
+// Bindings of cars commanded by throttle and steering: cpp/include/slipwise/actuator/car_curves.hpp.
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>

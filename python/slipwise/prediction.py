@@ -95,9 +95,9 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             (t [s], v [m/s], omega [rad/s]), [N, 3]. Those before `start` matter where there is lag or delay.
         horizon: how far to predict [s]; poses are returned every `PERIOD` and at the horizon.
         start: when the prediction starts [s]; by default at the first command.
-        initial: the drive's measured (v [m/s], omega [rad/s]) at the start, of which a car that is told
-            throttle and steering takes the speed; by default it follows from the
-            commands, before the first of which the robot is at rest.
+        initial: the drive's measured (v [m/s], omega [rad/s]) at the start, of which a car
+            commanded by throttle and steering takes the speed; by default it follows from the commands,
+            before the first of which the robot is at rest.
         slip_now: where the slip disturbance is at the start, as `slip_seen` says; by default nothing recent
             is known of it.
         ground: what the robot drives on, a `Grade` or an `ElevationMap`; level by default. The path is then
@@ -180,7 +180,7 @@ def slip_seen(model: Model, inputs: Inputs, windows: Sequence[_core.Segment]) ->
 def asked_twists(
     model: Model, inputs: Inputs, begin: float | None = None, initial: tuple[float, float] | None = None
 ) -> _core.InputHistory:
-    """Inputs as twists; those of a car that is told throttle and steering go through its curves."""
+    """Inputs as twists; those of a car commanded by throttle and steering go through its curves."""
     car, told = model.car, inputs.car
     if car is None:
         return _core.InputHistory(inputs.t, inputs.v, inputs.vy, inputs.omega)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A simulated car that is told throttle and steering, as a table."""
+"""A simulated car commanded by throttle and steering, as a table."""
 
 from __future__ import annotations
 

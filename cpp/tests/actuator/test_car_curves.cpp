@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A car that is told throttle and steering: its curves, its lag, and what was measured of it.
+// A car commanded by throttle and steering: its curves, its lag, and what was measured of it.
 #include "slipwise/actuator/car_curves.hpp"
 
 #include <doctest/doctest.h>

@@ -101,7 +101,7 @@ class MotionLearner(RememberedSurfaces):
     def push_command(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
         """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s].
 
-        Of a car that is told throttle and steering (`vehicle` of [log]) v is the throttle and omega the
+        Of a car commanded by throttle and steering (`vehicle` of [log]) v is the throttle and omega the
         steering, both in [-1, 1].
         """
         self._core.push_command(t, v, omega, vy)

@@ -163,7 +163,7 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
     from slipwise.live.ros_roles import find_roles, only_positions
-    from slipwise.live.ros_transport import RosTransport, ToldTopics
+    from slipwise.live.ros_transport import CueTopics, RosTransport
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
@@ -179,8 +179,8 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
         say(f"learning from {input_name}s; the node is /{table.name}")
         if only_positions(roles):
             say("satellite fixes without an IMU: positions only, headings are courses of the path")
-        told = ToldTopics(table.override_topic, table.terrain_topic)
-        transport = RosTransport(wire, roles, options, name=table.name, told=told)
+        cues = CueTopics(table.override_topic, table.terrain_topic)
+        transport = RosTransport(wire, roles, options, name=table.name, cues=cues)
     except BaseException:
         wire.close()
         raise

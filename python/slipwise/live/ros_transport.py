@@ -36,14 +36,14 @@ ToSample = Callable[[Any, float], Any]
 
 
 @dataclass(frozen=True)
-class ToldTopics:
+class CueTopics:
     """Topics on which others say what they know of the drive."""
 
     override: str | None = None  # std_msgs/Bool that is true while an operator drives
     terrain: str | None = None  # std_msgs/String with the name of the surface, beside `~/terrain`
 
 
-_NOTHING_TOLD = ToldTopics()
+_NO_CUES = CueTopics()
 
 
 class RosTransport:
@@ -54,7 +54,7 @@ class RosTransport:
         roles: which topic is what.
         options: scales and sizes.
         name: of the node.
-        told: topics on which others say what they know.
+        cues: topics on which others say what they know.
     """
 
     def __init__(
@@ -64,10 +64,10 @@ class RosTransport:
         options: LogOptions,
         *,
         name: str,
-        told: ToldTopics = _NOTHING_TOLD,
+        cues: CueTopics = _NO_CUES,
     ) -> None:
         self._wire, self._roles, self._options = wire, roles, options
-        self._name, self._override, self._terrain = name, told.override, told.terrain
+        self._name, self._override, self._terrain = name, cues.override, cues.terrain
         self._messages, self._listeners = RosMessages(name), Listeners(wire.connections)
         self._reading = ros_types()
         self._stamps = Stamps()

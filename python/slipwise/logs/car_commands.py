@@ -16,7 +16,7 @@ _LARGEST = 1.001  # of a command, with rounding
 
 
 def with_car_commands(log: Log, options: LogOptions) -> Log:
-    """Return the log of a car that is told throttle and steering, with about what it makes of them.
+    """Return the log of a car commanded by throttle and steering, with about what it makes of them.
 
     Each command is taken by curves that were known half a second before it; a learner learns them again.
 

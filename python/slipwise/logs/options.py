@@ -105,7 +105,7 @@ class LogOptions:
 
     @property
     def car(self) -> ThrottleSteering | None:
-        """What is taken of a car that is told throttle and steering, where the vehicle is one."""
+        """What is taken of a car commanded by throttle and steering, where the vehicle is one."""
         described = self._described()
         return None if described is None else described.throttle_steering
 

@@ -39,9 +39,9 @@ from slipwise.logs.tidy_columns import (
     USED,
     InputColumns,
     command_columns,
+    commanded_by_direction,
     missing_input,
     require_columns,
-    told_by_direction,
     wheel_columns,
 )
 
@@ -107,7 +107,7 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
     names = table.names
     wanted = ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS) if options.poses is None else ()
     pose = {name: table.numbers(name, tally) for name in wanted if name in names}
-    if "yaw" in pose and "yaw_body" in names and told_by_direction(table, options):
+    if "yaw" in pose and "yaw_body" in names and commanded_by_direction(table, options):
         pose["yaw"] = table.numbers("yaw_body", tally)  # where yaw is the direction of travel
         notes.append(f"{table.path.name}: headings are yaw_body")
     if pose and "frame" in names:

@@ -64,8 +64,8 @@ class InputColumns:
 def require_columns(table: Table, *, poses: bool, described: bool = False, car: bool = False) -> None:
     """Check that the table has a time, some input and, where `poses` come from it, a pose.
 
-    Wheels of a vehicle that is `described` are looked for when they are read. A `car` is told throttle and
-    steering.
+    Wheels of a vehicle that is `described` are looked for when they are read. A `car` is commanded by
+    throttle and steering.
 
     Raises:
         LogError: it does not; the error names what is missing and what was found.
@@ -98,7 +98,7 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     if options.car is not None and {*CAR} <= set(names):
         throttle, steering = (table.numbers(name, tally) for name in CAR)
         return InputColumns(throttle, None, steering)
-    if told_by_direction(table, options):
+    if commanded_by_direction(table, options):
         notes.append(f"{table.path.name}: cmd_vx and cmd_vy from cmd_v along cmd_dir")
         speed, along = table.numbers("cmd_v", tally), table.numbers("cmd_dir", tally)
         turn = table.numbers("cmd_omega", tally) if "cmd_omega" in names else np.zeros(len(table))
@@ -126,8 +126,8 @@ def command_columns(table: Table, options: LogOptions, tally: Tally, notes: list
     return InputColumns(v, vy, omega)
 
 
-def told_by_direction(table: Table, options: LogOptions) -> bool:
-    """Whether a vehicle that drives sideways is told a speed and the direction of travel to its x axis."""
+def commanded_by_direction(table: Table, options: LogOptions) -> bool:
+    """Whether a vehicle that drives sideways is commanded by a speed and a direction to its x axis."""
     return options.sideways and {"cmd_v", "cmd_dir"} <= set(table.names)
 
 

@@ -65,7 +65,7 @@ class Tracks(_Part):
 
 
 class ThrottleSteering(_Part):
-    """A car that is told throttle and steering in [-1, 1]: what is taken before its curves are learned."""
+    """A car commanded by throttle and steering in [-1, 1]: what is taken before its curves are learned."""
 
     top_speed: Annotated[float, Field(gt=0.0, le=100.0)]  # m/s, at full throttle
     curvature: Annotated[float, Field(gt=0.0, le=100.0)]  # 1/m, at full steering

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The curves of a car that is told throttle and steering, in a model file and for the core."""
+"""The curves of a car commanded by throttle and steering, in a model file and for the core."""
 
 from __future__ import annotations
 

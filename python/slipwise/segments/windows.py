@@ -63,7 +63,7 @@ class Windows:
 def input_rows(inputs: Inputs | None) -> Floats:
     """Return rows of (t, v, vy, omega), [N, 4]; none where there are no inputs.
 
-    Of a car that is told throttle and steering, v is the throttle and omega the steering.
+    Of a car commanded by throttle and steering, v is the throttle and omega the steering.
     """
     if inputs is None:
         return np.empty((0, 4))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A car that is told throttle and steering, learned from a table, live, and beside a kinematic bicycle."""
+"""A car commanded by throttle and steering, learned from a table, live, and beside a kinematic bicycle."""
 
 from __future__ import annotations
 

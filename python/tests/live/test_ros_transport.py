@@ -10,7 +10,7 @@ from live.sample_outputs import odometry_at, straight_path, surface_at, waiting_
 
 from slipwise.live.outputs import ModelText, Note
 from slipwise.live.ros_samples import to_pose, to_wheels
-from slipwise.live.ros_transport import RosTransport, ToldTopics
+from slipwise.live.ros_transport import CueTopics, RosTransport
 from slipwise.live.samples import Pose, Sample, SurfaceCue, Wheels
 from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import WireTopic
@@ -64,7 +64,7 @@ class Wire:
 
 def transport_on(wire: Wire, terrain: str | None = None) -> RosTransport:
     roles = Roles(command=None, wheel=CHOSEN, pose=CHOSEN, imu=None, guessed=(), advice={})
-    return RosTransport(wire, roles, LogOptions(), name="slipwise", told=ToldTopics(terrain=terrain))
+    return RosTransport(wire, roles, LogOptions(), name="slipwise", cues=CueTopics(terrain=terrain))
 
 
 def test_where_nobody_listens_only_what_comes_once_is_published() -> None:

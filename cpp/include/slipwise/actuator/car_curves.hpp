@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A car that is told throttle and steering without units: static curves, a lag, drag of cornering and understeer
+// A car commanded by throttle and steering without units: static curves, a lag, drag of cornering and understeer
 // (derivations/car-commands.md).
 #pragma once
 
