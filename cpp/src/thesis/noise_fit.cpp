@@ -9,8 +9,8 @@
 #include <string>
 
 #include "slipwise/linear/cholesky.hpp"
-#include "slipwise/linear/symmetric_eigen.hpp"
 #include "slipwise/linear/nonnegative.hpp"
+#include "slipwise/linear/symmetric_eigen.hpp"
 
 namespace slipwise {
 namespace {
