@@ -32,7 +32,10 @@ def fleet(
     settings: SettingsFile = None,
     workers: Annotated[int | None, optional("N", "Processes; by default one per processor.")] = None,
     scheduler: Annotated[
-        str | None, optional("ADDRESS", "A Dask scheduler in place of processes, such as tcp://host:8786.")
+        str | None,
+        optional(
+            "ADDRESS", "Of Dask (tcp://host:8786) or Ray (ray://host:10001, or ray) in place of processes."
+        ),
     ] = None,
     json: Json = None,
 ) -> int:
@@ -90,6 +93,10 @@ def _scheduler(address: str | None, workers: int | None) -> Scheduler:
 
     if address is None:
         return ProcessScheduler(workers)
+    if address.partition(":")[0] == "ray":
+        from slipwise.fleet.ray_scheduler import RayScheduler
+
+        return RayScheduler(address)
     from slipwise.fleet.dask_scheduler import DaskScheduler
 
     return DaskScheduler(address)
