@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 def fleet(
     logs: Annotated[
         list[str],
-        typer.Argument(metavar="PLACE...", show_default=False, help="Logs, folders of logs, or patterns."),
+        typer.Argument(
+            metavar="PLACE...",
+            show_default=False,
+            help="Logs, folders, patterns, addresses, or @FILE that lists some.",
+        ),
     ],
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="DIR", help="Where rows, page and prior are kept.")
@@ -50,6 +54,7 @@ def fleet(
     Examples:
       slipwise fleet logs/ -o fleet
       slipwise fleet "bags/*/*.mcap" --settings fleet.toml --workers 8
+      slipwise fleet https://example.org/husky-1/a.mcap @more_logs.txt
       slipwise fleet /data/logs --scheduler tcp://10.0.0.1:8786
     """  # noqa: D301
     from slipwise.cli.output import Output

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from slipwise.calibration import Settings, load_settings
 from slipwise.fleet.find_logs import LogTask
-from slipwise.fleet.learned_rows import key_of, log_hash, settings_hash
+from slipwise.fleet.learned_rows import LogRows, key_of, log_hash, settings_hash
 from slipwise.fleet.scheduler import Scheduler
 from slipwise.fleet.store import Store
+from slipwise.logs.remote import remote_url, shown
 
 
 @dataclass(frozen=True)
@@ -55,37 +56,44 @@ def learn_fleet(
     Raises:
         OutputError: a file cannot be written.
     """
-    work = _Work(logs, store.keys(), settings)
+    work = _Work(logs, store, settings)
     began = time.monotonic()
     learned = unusable = 0
     failed: list[tuple[str, str]] = []
     with closing(scheduler.run(work.tasks())) as outcomes:
         for outcome in outcomes:
-            if outcome.rows is None:
-                failed.append((outcome.task.path, outcome.failure))
-            else:
+            if outcome.rows is None or not outcome.rows.key:
+                failed.append((shown(outcome.task.path), outcome.failure))
+            elif work.is_new(outcome.task, outcome.rows):
                 store.add(outcome.rows)
                 learned, unusable = learned + bool(outcome.rows.rows), unusable + (not outcome.rows.rows)
             if progress is not None:
                 done = learned + unusable + len(failed)
                 left = len(logs) - done - work.known - len(work.unreadable)
-                progress(Progress(len(logs) - left, len(logs), (time.monotonic() - began) / done * left))
+                each = (time.monotonic() - began) / max(done, 1)
+                progress(Progress(len(logs) - left, len(logs), each * left))
     return Count(learned, work.known, unusable, (*failed, *work.unreadable))
 
 
 class _Work:
     """The tasks of the logs that are new, made one by one as workers are free."""
 
-    def __init__(self, logs: Sequence[tuple[Path, str]], done: frozenset[str], settings: Path | None) -> None:
+    def __init__(self, logs: Sequence[tuple[Path, str]], store: Store, settings: Path | None) -> None:
         self.known = 0
         self.unreadable: list[tuple[str, str]] = []
-        self._logs, self._done = logs, set(done)
+        self._logs, self._store, self._done = logs, store, set(store.keys())
         self._file = "" if settings is None else str(settings.absolute())
         self._hash = settings_hash(Settings() if settings is None else load_settings(settings))
 
     def tasks(self) -> Iterator[LogTask]:
-        """Yield one task per log whose bytes were not learned with these settings."""
+        """Yield one task per log whose bytes were not learned with these settings, or that is on a server."""
         for path, vehicle in self._logs:
+            url = remote_url(path)
+            if url is not None:
+                digest, tag = self._store.address(url)
+                before = (digest, tag) if key_of(digest, self._hash) in self._done else ("", "")
+                yield LogTask(url, vehicle, self._file, *before)
+                continue
             try:
                 digest = log_hash(path)
             except OSError as problem:
@@ -97,3 +105,16 @@ class _Work:
                 continue
             self._done.add(key)  # a copy of a log is the same log
             yield LogTask(str(path.absolute()), vehicle, self._file, digest)
+
+    def is_new(self, task: LogTask, rows: LogRows) -> bool:
+        """Say whether what came is to be kept; of a log on a server only now its bytes are known."""
+        url = remote_url(task.path)
+        if url is None:
+            return True
+        if not rows.known or rows.tag != task.tag:
+            self._store.add_address(url, rows.log_sha256, rows.tag)
+        if rows.key in self._done:
+            self.known += 1
+            return False
+        self._done.add(rows.key)
+        return True

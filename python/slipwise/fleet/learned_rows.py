@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import time
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -14,11 +15,12 @@ import numpy as np
 
 from slipwise.calibration import Settings, load_settings
 from slipwise.calibration.from_prior import calibrate_from
-from slipwise.errors import SlipwiseError
+from slipwise.errors import LogError, SlipwiseError
 from slipwise.files import sha256_of
 from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.knowledge_file import knowledge_text
 from slipwise.logs import Log, open_log
+from slipwise.logs.remote import lent, remote_url, remote_version, shown
 from slipwise.models.model import Model
 
 FIRST_UNIX_TIME = 946684800.0  # s, the year 2000; a log with earlier stamps counts from its own start
@@ -40,7 +42,7 @@ class Row:
 class LogRows:
     """What was learned of one log, or why nothing was."""
 
-    key: str  # of the log's bytes and the settings
+    key: str  # of the log's bytes and the settings; empty where the log could not be fetched
     log: str
     vehicle: str
     month: str  # such as 2026-11
@@ -55,21 +57,43 @@ class LogRows:
     verdict: str = ""
     rows: tuple[Row, ...] = ()
     failure: str = ""  # why there are no rows
+    known: bool = False  # a log on a server is that which was learned before
+    tag: str = ""  # of the version on the server
     knowledge: str = ""  # JSON of what the log says in the terms of every basis
 
 
 def learn_task(task: LogTask) -> LogRows:
-    """Learn one log; a log that cannot be used is no error, its reason is in what is returned."""
-    path = Path(task.path)
+    """Learn one log; a log that cannot be used is no error, its reason is in what is returned.
+
+    One on a server is fetched into a temporary file, which is removed before the next is.
+    """
     settings = load_settings(Path(task.settings)) if task.settings else Settings()
-    head = _head(task, settings_hash(settings))
+    url = remote_url(task.path)
+    if url is None:
+        return _learned(task, settings, Path(task.path).stat().st_mtime)
     try:
-        log = open_log(path, options=settings.log_options())
+        on_server = remote_version(url)
+        if task.tag and on_server.tag == task.tag:
+            return replace(_head(task, settings, 0.0), known=True, tag=task.tag)
+        changed = time.time() if on_server.changed is None else on_server.changed
+        with lent(url, settings.log_options().most_fetched) as copy:
+            there = replace(task, log_sha256=log_hash(copy))
+            if there.log_sha256 == task.log_sha256:
+                return replace(_head(there, settings, changed), known=True, tag=on_server.tag)
+            return replace(_learned(there, settings, changed), tag=on_server.tag)
+    except LogError as problem:
+        return replace(_head(task, settings, 0.0), key="", failure=str(problem))
+
+
+def _learned(task: LogTask, settings: Settings, changed: float) -> LogRows:
+    head = _head(task, settings, changed)
+    try:
+        log = open_log(Path(task.path), options=settings.log_options())
         calibration, known = calibrate_from(log, None, settings=settings)
     except SlipwiseError as problem:
         return replace(head, failure=str(problem))
     content = calibration.model.content
-    start = _start(log, path)
+    start = _start(log, changed)
     return replace(
         head,
         month=f"{datetime.fromtimestamp(start, UTC):%Y-%m}",
@@ -110,26 +134,26 @@ def key_of(log_sha256: str, settings_sha256: str) -> str:
     return f"{log_sha256[:16]}-{settings_sha256[:16]}"
 
 
-def _head(task: LogTask, settings_sha256: str) -> LogRows:
-    start = Path(task.path).stat().st_mtime
+def _head(task: LogTask, settings: Settings, changed: float) -> LogRows:
+    settings_sha256 = settings_hash(settings)
     return LogRows(
         key=key_of(task.log_sha256, settings_sha256),
-        log=task.path,
+        log=shown(task.path),
         vehicle=task.vehicle,
-        month=f"{datetime.fromtimestamp(start, UTC):%Y-%m}",
+        month=f"{datetime.fromtimestamp(changed, UTC):%Y-%m}",
         log_sha256=task.log_sha256,
         settings_sha256=settings_sha256,
         version=version("slipwise"),
-        start=start,
+        start=changed,
         seconds=0.0,
         distance=0.0,
     )
 
 
-def _start(log: Log, path: Path) -> float:
+def _start(log: Log, changed: float) -> float:
     """Return when the log begins [s since 1970]: by its stamps, or by the file where these are not such."""
     first = min(run.span[0] for run in log.runs)
-    return first if first >= FIRST_UNIX_TIME else path.stat().st_mtime
+    return first if first >= FIRST_UNIX_TIME else changed
 
 
 def _distance(log: Log) -> float:

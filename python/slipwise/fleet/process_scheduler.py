@@ -6,7 +6,8 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Generator, Iterable
+import tempfile
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 
@@ -14,6 +15,7 @@ from slipwise.fleet.find_logs import LogTask
 from slipwise.fleet.learned_rows import LogRows, learn_task
 from slipwise.fleet.scheduler import ATTEMPTS, DIED, Outcome
 
+PATIENCE = 10.0  # s for a worker to end
 Work = Callable[[LogTask], LogRows]
 
 
@@ -31,8 +33,11 @@ class ProcessScheduler:
 
     def run(self, tasks: Iterable[LogTask]) -> Generator[Outcome, None, None]:
         """Yield the outcome of each task as it is done."""
-        waiting = iter(tasks)
-        free = [_pool() for _ in range(self._workers)]
+        with tempfile.TemporaryDirectory(prefix="slipwise-", ignore_cleanup_errors=True) as folder:
+            yield from self._run(iter(tasks), folder)
+
+    def _run(self, waiting: Iterator[LogTask], folder: str) -> Generator[Outcome, None, None]:
+        free = [_pool(folder) for _ in range(self._workers)]
         running: dict[Future[LogRows], tuple[ProcessPoolExecutor, LogTask, int]] = {}
         try:
             while True:
@@ -47,7 +52,7 @@ class ProcessScheduler:
                     problem = future.exception()
                     if isinstance(problem, BrokenProcessPool):
                         pool.shutdown(wait=False)
-                        pool = _pool()
+                        pool = _pool(folder)
                         if attempt < ATTEMPTS:
                             running[pool.submit(self._work, task)] = pool, task, attempt + 1
                             continue
@@ -57,14 +62,15 @@ class ProcessScheduler:
             _end([*free, *(pool for pool, _, _ in running.values())])
 
 
-def _pool() -> ProcessPoolExecutor:
+def _pool(folder: str) -> ProcessPoolExecutor:
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(1, mp_context=context, initializer=_leave_interrupts)
+    return ProcessPoolExecutor(1, mp_context=context, initializer=_begin, initargs=(folder,))
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C is the parent's to handle, which ends its workers."""
+def _begin(folder: str) -> None:
+    """Leave to the parent what is its own: Ctrl-C, and the temporary files of a worker that is killed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    tempfile.tempdir = folder
 
 
 def _outcome(task: LogTask, future: Future[LogRows], problem: BaseException | None) -> Outcome:
@@ -82,3 +88,5 @@ def _end(pools: Iterable[ProcessPoolExecutor]) -> None:
         pool.shutdown(wait=False, cancel_futures=True)
         for process in processes:
             process.terminate()
+        for process in processes:
+            process.join(PATIENCE)

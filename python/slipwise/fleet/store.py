@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import json
 import re
 from dataclasses import asdict
@@ -19,8 +20,9 @@ from slipwise.calibration.log_knowledge import LogKnowledge
 from slipwise.files import write_text_whole, write_whole
 from slipwise.fleet.knowledge_file import knowledge_from
 from slipwise.fleet.learned_rows import LogRows, Row
+from slipwise.logs.remote import shown
 
-ROWS, UNUSABLE, KNOWLEDGE = "rows", "unusable", "knowledge"
+ROWS, UNUSABLE, KNOWLEDGE, ADDRESSES = "rows", "unusable", "knowledge", "addresses"
 #: Of the rows that a fleet is looked at by.
 COLUMNS = (
     "vehicle",
@@ -77,6 +79,32 @@ class Store:
         write_whole(path, lambda temporary: _write(temporary, learned))
         return path
 
+    def address(self, url: str) -> tuple[str, str]:
+        """Return hash and version's tag of what was learned from an address; both empty where nothing was.
+
+        The tag is empty where the address had another key to the file, which may choose another file.
+        """
+        try:
+            entry = json.loads(self._address_file(url).read_text(encoding="utf-8"))
+            digest, tag = str(entry["log_sha256"]), str(entry["tag"])
+            return digest, tag if entry["url_sha256"] == _text_hash(url) else ""
+        except (OSError, ValueError, KeyError, TypeError):
+            return "", ""
+
+    def add_address(self, url: str, digest: str, tag: str) -> None:
+        """Remember what was learned from an address, without what it keeps secret.
+
+        Raises:
+            OutputError: it cannot be written.
+        """
+        path = self._address_file(url)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        entry = {"address": shown(url), "url_sha256": _text_hash(url), "tag": tag, "log_sha256": digest}
+        write_text_whole(path, json.dumps(entry) + "\n")
+
+    def _address_file(self, url: str) -> Path:
+        return self.folder / ADDRESSES / f"{_text_hash(shown(url))[:32]}.json"
+
     def table(self) -> dict[str, NDArray[Any]]:
         """Return the columns `COLUMNS` of all rows by name, in order of vehicle and time; empty without rows.
 
@@ -107,6 +135,10 @@ class Store:
             json.loads(path.read_text(encoding="utf-8")) for path in (self.folder / UNUSABLE).glob("*.json")
         ]
         return sorted(found, key=lambda entry: str(entry["log"]))
+
+
+def _text_hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _read(paths: list[Path]) -> dict[str, list[Any]]:

@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
-import functools
+import contextlib
 import re
 import shutil
 import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
@@ -22,6 +26,14 @@ _NOT_FOUND = 404  # of HTTP
 _PATIENCE = 60.0  # [s] without a byte
 _REMOTE = re.compile(r"(?P<scheme>https?|s3|gs|az):/{1,2}(?P<rest>[^/].*)", re.DOTALL)
 _AGAIN = "try again, or copy the file yourself"
+_TAGS = ("ETag", "etag", "md5Hash", "Content-MD5", "generation", "Last-Modified", "LastModified", "updated")
+_CHANGED = (
+    "Last-Modified",
+    "LastModified",
+    "last_modified",
+    "updated",
+    "mtime",
+)  # of HTTP, S3, Azure, Google
 _PACKAGES = {"s3": "s3fs", "gs": "gcsfs", "az": "adlfs"}
 
 
@@ -50,7 +62,61 @@ def staged(url: str, most_fetched: float = MOST_FETCHED) -> Path:
     Raises:
         LogError: a package is missing, the file cannot be fetched, is too large or comes cut off.
     """
-    return _staged(url, int(most_fetched * 1024 * 1024))
+    asked = url, int(most_fetched * 1024 * 1024)
+    if asked not in _copies:
+        _copies[asked] = _fetched(*asked)
+    return _copies[asked][1]
+
+
+@contextlib.contextmanager
+def lent(url: str, most_fetched: float = MOST_FETCHED) -> Iterator[Path]:
+    """Lend a copy on this machine, which `open_log` reads for this address, and remove it at the end.
+
+    Raises:
+        LogError: as `staged` does.
+    """
+    asked = url, int(most_fetched * 1024 * 1024)
+    try:
+        yield staged(url, most_fetched)
+    finally:
+        if asked in _copies:
+            _copies.pop(asked)[0].cleanup()
+
+
+@dataclass(frozen=True)
+class RemoteVersion:
+    """What a server says of a file without sending it."""
+
+    tag: str  # another one where the file changed; empty where the server says nothing of it
+    changed: float | None  # s since 1970
+
+
+def remote_version(url: str) -> RemoteVersion:
+    """Return what tells one version of a file on a server from the next.
+
+    Raises:
+        LogError: a package is missing, there is no such file, or the server does not answer.
+    """
+    where = _public(url)
+    system = _file_system(url.partition(":")[0], where)
+    try:
+        about = system.info(url)
+    except Exception as error:  # the clients of servers have errors of their own
+        raise _failure(error, url, where) from error
+    said = [f"{name}={about[name]}" for name in _TAGS if about.get(name)]
+    return RemoteVersion(" ".join([*said, f"size={about.get('size')}"]) if said else "", _changed(about))
+
+
+def _changed(about: Mapping[str, Any]) -> float | None:
+    """Return when a file was changed [s since 1970], which every kind of server says in its own way."""
+    said = next((about[name] for name in _CHANGED if about.get(name)), None)
+    with contextlib.suppress(ValueError, OverflowError):
+        if isinstance(said, str):
+            iso = said[:1].isdigit()
+            said = datetime.fromisoformat(said) if iso else parsedate_to_datetime(said)
+        if isinstance(said, datetime):
+            return (said if said.tzinfo else said.replace(tzinfo=UTC)).timestamp()
+    return None
 
 
 def local_file(path: Path, advice: str, most_fetched: float = MOST_FETCHED) -> Path:
@@ -72,11 +138,13 @@ def local_file(path: Path, advice: str, most_fetched: float = MOST_FETCHED) -> P
     return staged(url, most_fetched)
 
 
-_folders: list[tempfile.TemporaryDirectory[str]] = []  # removed when the program ends
+_Folder = tempfile.TemporaryDirectory[str]
+_copies: dict[
+    tuple[str, int], tuple[_Folder, Path]
+] = {}  # by address and limit; removed when the program ends
 
 
-@functools.cache
-def _staged(url: str, most: int) -> Path:
+def _fetched(url: str, most: int) -> tuple[_Folder, Path]:
     where = _public(url)
     system = _file_system(url.partition(":")[0], where)
     folder = tempfile.TemporaryDirectory(prefix="slipwise-")
@@ -92,8 +160,7 @@ def _staged(url: str, most: int) -> Path:
     except Exception as error:  # the clients of servers have errors of their own
         folder.cleanup()
         raise _failure(error, url, where) from error
-    _folders.append(folder)
-    return copy
+    return folder, copy
 
 
 def _file_system(scheme: str, where: str) -> AbstractFileSystem:

@@ -46,3 +46,29 @@ def test_place_that_is_not_there_is_refused(logs: Path, place: str) -> None:
 def test_folder_without_logs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no log"):
         find_logs([tmp_path])
+
+
+def test_address_is_a_log_of_the_folder_that_it_lies_in() -> None:
+    found = find_logs(["https://host/fleet/husky%201/a.mcap?key=secret", "s3://bucket/b.mcap"])
+    assert [(str(path), vehicle) for path, vehicle in found] == [
+        ("https:/host/fleet/husky%201/a.mcap?key=secret", "husky 1"),
+        ("s3:/bucket/b.mcap", "unknown"),
+    ]
+
+
+def test_list_stands_for_the_places_in_it(logs: Path) -> None:
+    text = f"# of may\n{logs}/red\n\n  {logs}/blue/*.gz  \nhttps://host/green/a.csv\n"
+    (logs / "some.txt").write_text(text, encoding="utf-8")
+    found = [(path.name, vehicle) for path, vehicle in find_logs([f"@{logs}/some.txt"])]
+    assert found == [("c.csv.gz", "blue"), ("a.csv", "red"), ("b.mcap", "red"), ("a.csv", "green")]
+
+
+def test_list_that_cannot_be_read_is_refused(logs: Path) -> None:
+    with pytest.raises(LogError, match="cannot read the list"):
+        find_logs([f"@{logs}/none.txt"])
+
+
+def test_log_of_an_autopilot_is_found(tmp_path: Path) -> None:
+    for name in ("a.bin", "b.tlog", "c.ulg"):
+        (tmp_path / name).touch()
+    assert len(find_logs([tmp_path])) == 3

@@ -3,19 +3,17 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
-from dataclasses import dataclass, field
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 import pytest
+from logs.file_server import Server, serving
 
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs import LogOptions, open_log
 from slipwise.logs.left_out import Tally
 from slipwise.logs.pose_file import read_pose_file
-from slipwise.logs.remote import remote_url, shown, staged
+from slipwise.logs.remote import lent, remote_url, remote_version, shown, staged
 from slipwise.logs.survey import survey_log
 
 fsspec = pytest.importorskip("fsspec")
@@ -25,51 +23,10 @@ ROWS = "".join(f"{0.1 * k:.1f},0.5,0.1,{0.05 * k:.3f},0,0\n" for k in range(50))
 DRIVE = ("t,odo_v,odo_omega,x,y,yaw\n" + ROWS).encode()
 
 
-@dataclass
-class Server:
-    """Files by their path, and what was asked for."""
-
-    address: str
-    files: dict[str, bytes] = field(default_factory=dict)
-    asked: list[str] = field(default_factory=list)
-    silent: bool = False  # about how long a file is
-    cut: bool = False  # before the end
-
-
 @pytest.fixture
 def server() -> Iterator[Server]:
-    class Handler(BaseHTTPRequestHandler):
-        def do_HEAD(self) -> None:
-            self._answer(body=False)
-
-        def do_GET(self) -> None:
-            self._answer(body=True)
-
-        def _answer(self, *, body: bool) -> None:
-            content = shared.files.get(self.path.partition("?")[0])
-            if body:
-                shared.asked.append(self.path)
-            if content is None:
-                self.send_error(403 if "locked" in self.path else 404)
-                return
-            self.send_response(200)
-            if not shared.silent:
-                self.send_header("Content-Length", str(len(content)))
-            self.end_headers()
-            if body:
-                self.wfile.write(content[: len(content) // 2] if shared.cut else content)
-
-        def log_message(self, *_: object) -> None:
-            """Say nothing."""
-
-    http = ThreadingHTTPServer(("127.0.0.1", 0), Handler)
-    shared = Server(f"http://127.0.0.1:{http.server_port}")
-    thread = threading.Thread(target=http.serve_forever, daemon=True)
-    thread.start()
-    yield shared
-    http.shutdown()
-    http.server_close()
-    thread.join()
+    with serving() as shared:
+        yield shared
 
 
 @pytest.mark.parametrize("silent", [False, True])
@@ -205,3 +162,29 @@ def test_names_of_files_are_shown_as_they_are() -> None:
 def test_a_limit_is_positive() -> None:
     with pytest.raises(SettingsError, match="most_fetched must be a positive number of MiB"):
         LogOptions(most_fetched=0.0)
+
+
+def test_a_lent_copy_serves_all_that_read_it_and_is_gone_at_the_end(server: Server) -> None:
+    server.files["/a.csv"] = DRIVE
+    with lent(f"{server.address}/a.csv") as copy:
+        assert len(open_log(f"{server.address}/a.csv").runs[0].poses) == 50
+        assert server.asked == ["/a.csv"]
+    assert not copy.exists()
+    assert not copy.parent.exists()
+    with lent(f"{server.address}/a.csv"):
+        assert server.asked == ["/a.csv"] * 2
+
+
+def test_another_version_has_another_tag(server: Server) -> None:
+    server.files["/a.csv"] = DRIVE
+    url = f"{server.address}/a.csv"
+    assert remote_version(url).tag == ""  # nothing but a length tells no versions apart
+    server.headers = {"ETag": '"1"', "Last-Modified": "Wed, 21 Oct 2015 07:28:00 GMT"}
+    first = remote_version(url)
+    assert first.changed == 1445412480.0
+    assert remote_version(url) == first
+    server.headers = {"ETag": '"2"'}
+    assert remote_version(url).tag not in ("", first.tag)
+    assert not server.asked
+    with pytest.raises(LogError, match="no such file on the server"):
+        remote_version(f"{server.address}/none.csv")
