@@ -33,32 +33,45 @@ Eigen::MatrixX2d twist_rows(const Eigen::VectorXd& first, const Eigen::VectorXd&
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+std::optional<Hinge> hinge_at(const std::optional<std::pair<double, double>>& place) {
+  return place ? std::optional<Hinge>({.x = place->first, .y = place->second}) : std::nullopt;
+}
+
 /// One row of readings: all that was read at once.
-WheelReadings readings_at(Eigen::Index row, const Rows& speed, const Rows& steering, const Rows& hinge) {
+WheelReadings readings_at(Eigen::Index row, const Rows& speed, const Rows& steering, const Rows& hinge,
+                          const Rows& steering_rate) {
   WheelReadings readings{.speed = speed.row(row).transpose(), .steering = steering.row(row).transpose()};
   if (hinge.rows() > 0) {
     readings.hinge = hinge(row, 0);
     readings.hinge_rate = hinge(row, 1);
   }
+  if (steering_rate.rows() > 0) {
+    readings.steering_rate = steering_rate.row(row).transpose();
+  }
   return readings;
 }
 
-void check_readings(bool hinged, const Rows& speed, const Rows& steering, const Rows& hinge) {
+void check_readings(const WheelLayout& layout, const Rows& speed, const Rows& steering, const Rows& hinge,
+                    const Rows& steering_rate) {
+  // A bent vehicle is never taken for a straight one, nor steering that moves contacts for one at rest.
   const bool missing =
-      hinged && speed.rows() > 0 && hinge.rows() == 0;  // a bent vehicle is never taken for a straight one
-  const bool uneven = hinge.rows() > 0 && (hinge.rows() != speed.rows() || hinge.cols() != 2);
+      speed.rows() > 0 && ((layout.hinged() && hinge.rows() == 0) || (layout.pivoted() && steering_rate.rows() == 0));
+  const bool uneven =
+      (hinge.rows() > 0 && (hinge.rows() != speed.rows() || hinge.cols() != 2)) ||
+      (steering_rate.rows() > 0 && (steering_rate.rows() != speed.rows() || steering_rate.cols() != speed.cols()));
   if (steering.rows() != speed.rows() || missing || uneven) {
-    throw std::invalid_argument("speeds, steering angles and the hinge's (angle, rate) need equally many rows");
+    throw std::invalid_argument(
+        "speeds, steering angles and rates, and the hinge's (angle, rate) need equally many rows");
   }
 }
 
 /// Rows of (v, vy, omega, chi2, freedom), and of covariances (3 x 3, row by row).
 std::pair<Rows, Rows> wheel_twists(const WheelLayout& layout, const Rows& speed, const Rows& steering,
-                                   const Rows& hinge) {
-  check_readings(layout.hinged(), speed, steering, hinge);
+                                   const Rows& hinge, const Rows& steering_rate) {
+  check_readings(layout, speed, steering, hinge, steering_rate);
   Rows twists(speed.rows(), 5), covariances(speed.rows(), 9);
   for (Eigen::Index i = 0; i < speed.rows(); ++i) {
-    const WheelTwist found = layout.twist(readings_at(i, speed, steering, hinge));
+    const WheelTwist found = layout.twist(readings_at(i, speed, steering, hinge, steering_rate));
     twists.row(i) << found.twist.v, found.twist.vy, found.twist.omega, found.chi2, static_cast<double>(found.freedom);
     covariances.row(i) = Eigen::Map<const Eigen::RowVectorXd>(found.covariance.data(), 9);
   }
@@ -87,40 +100,43 @@ void bind_wheel_layout(nb::module_& m) {
       .def(
           "__init__",
           [](Wheel* self, double x, double y, double radius, double angle, std::optional<double> roller, bool steered,
-             bool behind_hinge) {
+             bool behind_hinge, const std::optional<std::pair<double, double>>& pivot) {
             new (self) Wheel{.x = x,
                              .y = y,
                              .radius = radius,
                              .angle = angle,
                              .roller = roller,
                              .steered = steered,
-                             .behind_hinge = behind_hinge};
+                             .behind_hinge = behind_hinge,
+                             .pivot = hinge_at(pivot)};
           },
-          "x"_a, "y"_a, "radius"_a, "angle"_a, "roller"_a, "steered"_a, "behind_hinge"_a)
+          "x"_a, "y"_a, "radius"_a, "angle"_a, "roller"_a, "steered"_a, "behind_hinge"_a, "pivot"_a.none())
       .def_ro("x", &Wheel::x)
       .def_ro("y", &Wheel::y)
       .def_ro("radius", &Wheel::radius)
       .def_ro("angle", &Wheel::angle)
       .def_ro("roller", &Wheel::roller)
       .def_ro("steered", &Wheel::steered)
-      .def_ro("behind_hinge", &Wheel::behind_hinge);
+      .def_ro("behind_hinge", &Wheel::behind_hinge)
+      .def_prop_ro("pivot", [](const Wheel& wheel) {
+        using Place = std::pair<double, double>;
+        return wheel.pivot ? std::optional<Place>({wheel.pivot->x, wheel.pivot->y}) : std::nullopt;
+      });
   nb::class_<WheelLayout>(m, "WheelLayout", "Any set of wheels: body twist by least squares, and back.")
       .def(
           "__init__",
           [](WheelLayout* self, std::vector<Wheel> wheels, double rolling, double sideways,
              const std::optional<std::pair<double, double>>& hinge) {
-            std::optional<Hinge> joint;
-            if (hinge) {
-              joint = Hinge{.x = hinge->first, .y = hinge->second};
-            }
-            new (self) WheelLayout(std::move(wheels), {.rolling = rolling, .sideways = sideways}, joint);
+            new (self) WheelLayout(std::move(wheels), {.rolling = rolling, .sideways = sideways}, hinge_at(hinge));
           },
           "wheels"_a, "rolling"_a, "sideways"_a, "hinge"_a.none())
       .def_prop_ro("wheels", &WheelLayout::wheels)
       .def_prop_ro("tells_sideways", &WheelLayout::tells_sideways)
-      .def("twists", &wheel_twists, "speed"_a, "steering"_a, "hinge"_a,
+      .def_prop_ro("pivoted", &WheelLayout::pivoted)
+      .def("twists", &wheel_twists, "speed"_a, "steering"_a, "hinge"_a, "steering_rate"_a,
            "Rows of (v, vy, omega, chi2, freedom) and of covariances [9] from speeds and angles [N, wheels] in rad/s "
-           "and rad, and (angle, rate) of the hinge [N, 2], or [0, 2] where there is none.")
+           "and rad, (angle, rate) of the hinge [N, 2], or [0, 2] where there is none, and rates of the steering "
+           "[N, wheels], or [0, wheels] where no wheel has a pivot.")
       .def("wheels_for", &wheels_for_twists, "twists"_a,
            "Speeds and steering angles [N, wheels] that make twists [N, 3], the hinge straight.");
 }

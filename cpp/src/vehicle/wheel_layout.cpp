@@ -23,20 +23,38 @@ constexpr double kStandstill = 1e-9;
 Eigen::Vector2d direction(double angle) { return {std::cos(angle), std::sin(angle)}; }
 Eigen::Vector2d left_of(const Eigen::Vector2d& a) { return {-a.y(), a.x()}; }
 
+Eigen::Vector2d turned_by(double angle, const Eigen::Vector2d& a) {
+  const Eigen::Vector2d along = direction(angle);
+  return along * a.x() + left_of(along) * a.y();
+}
+
 /// Where a wheel is and points.
 struct Placed {
-  Eigen::Vector2d at;     ///< contact in base_link [m]
-  Eigen::Vector2d swing;  ///< contact velocity because the hinge turns [m/s]
-  double heading;         ///< it rolls in [rad]
+  Eigen::Vector2d at;                             ///< contact in base_link [m]
+  Eigen::Vector2d swing;                          ///< contact velocity because hinge and steering turn [m/s]
+  double heading;                                 ///< it rolls in [rad]
+  Eigen::Vector2d arm = Eigen::Vector2d::Zero();  ///< from the pivot of its steering to the contact [m]
+  double arm_rate = 0.0;                          ///< the arm turns against base_link [rad/s]
 };
 
-Placed placed(const Wheel& wheel, const std::optional<Hinge>& hinge, double steering, const WheelReadings& now) {
+Placed placed(const Wheel& wheel, const std::optional<Hinge>& hinge, double steering, double steering_rate,
+              const WheelReadings& now) {
   Placed result{{wheel.x, wheel.y}, Eigen::Vector2d::Zero(), wheel.angle + (wheel.steered ? steering : 0.0)};
+  if (wheel.steered && wheel.pivot) {
+    const Eigen::Vector2d pivot(wheel.pivot->x, wheel.pivot->y);
+    result.arm = turned_by(steering, result.at - pivot);
+    result.arm_rate = steering_rate;
+    result.at = pivot + result.arm;
+    result.swing = steering_rate * left_of(result.arm);
+  }
   if (wheel.behind_hinge && hinge) {
     const Eigen::Vector2d joint(hinge->x, hinge->y);
-    const Eigen::Vector2d along = direction(now.hinge), arm = result.at - joint;
-    const Eigen::Vector2d turned = along * arm.x() + left_of(along) * arm.y();
-    result = {joint + turned, now.hinge_rate * left_of(turned), result.heading + now.hinge};
+    const Eigen::Vector2d turned = turned_by(now.hinge, result.at - joint);
+    result.at = joint + turned;
+    result.swing = now.hinge_rate * left_of(turned) + turned_by(now.hinge, result.swing);
+    result.heading += now.hinge;
+    result.arm = turned_by(now.hinge, result.arm);
+    result.arm_rate += now.hinge_rate;
   }
   return result;
 }
@@ -45,7 +63,16 @@ Eigen::RowVector3d velocity_along(const Eigen::Vector2d& at, const Eigen::Vector
   return {along.x(), along.y(), along.y() * at.x() - along.x() * at.y()};
 }
 
+/// What yaw alone adds to the velocity along a direction at `at`.
+Eigen::RowVector3d turning_along(const Eigen::Vector2d& at, const Eigen::Vector2d& along) {
+  return {0.0, 0.0, along.y() * at.x() - along.x() * at.y()};
+}
+
 bool finite(double value) { return std::isfinite(value); }
+
+double steering_rate_of(const WheelReadings& readings, Eigen::Index wheel) {
+  return readings.steering_rate.size() > 0 ? readings.steering_rate[wheel] : 0.0;
+}
 
 void check_wheel(const Wheel& wheel, bool hinged) {
   if (!finite(wheel.x) || !finite(wheel.y) || !finite(wheel.angle) || !(wheel.radius > 0.0) || !finite(wheel.radius)) {
@@ -53,6 +80,9 @@ void check_wheel(const Wheel& wheel, bool hinged) {
   }
   if (wheel.roller && !(std::abs(std::cos(*wheel.roller)) > 0.1)) {
     throw std::invalid_argument("axes of rollers must not lie across the wheel; 0 is an omni wheel, 0.7854 mecanum");
+  }
+  if (wheel.pivot && (!wheel.steered || !finite(wheel.pivot->x) || !finite(wheel.pivot->y))) {
+    throw std::invalid_argument("a pivot is finite [m] and of a wheel that is steered");
   }
   if (wheel.behind_hinge && !hinged) {
     throw std::invalid_argument("a wheel is behind a hinge, but there is no hinge; say where it is");
@@ -79,7 +109,8 @@ std::vector<Row> rows_of(const std::vector<Wheel>& wheels, const WheelNoise& noi
   for (std::size_t i = 0; i < wheels.size(); ++i) {
     const Wheel& wheel = wheels[i];
     const auto place = static_cast<Eigen::Index>(i);
-    const Placed at = placed(wheel, hinge, readings.steering[place], readings);
+    const Placed at = placed(wheel, hinge, readings.steering[place], steering_rate_of(readings, place), readings);
+    const Eigen::Vector2d moved = left_of(at.arm);  // derivative of the contact by the steering angle
     const auto add = [&](double angle, double std, double by_speed) {
       const Eigen::Vector2d along = direction(angle), turned = left_of(along);
       const double speed = by_speed != 0.0 ? by_speed * readings.speed[place] : 0.0;
@@ -88,8 +119,8 @@ std::vector<Row> rows_of(const std::vector<Wheel>& wheels, const WheelNoise& noi
                       .weight = 1.0 / std,
                       .wheel = place,
                       .by_speed = by_speed,
-                      .turned = velocity_along(at.at, turned),
-                      .reading_turned = -turned.dot(at.swing)});
+                      .turned = velocity_along(at.at, turned) + turning_along(moved, along),
+                      .reading_turned = at.arm_rate * along.dot(at.arm) - turned.dot(at.swing)});
     };
     const double roller = wheel.roller.value_or(0.0);
     if (finite(readings.speed[place])) {
@@ -142,6 +173,29 @@ bool tell_twist(const std::vector<Wheel>& wheels, const std::optional<Hinge>& hi
   });
 }
 
+Eigen::Vector2d contact_velocity(const Placed& wheel, const BodyTwist& twist) {
+  return Eigen::Vector2d(twist.v, twist.vy) + twist.omega * left_of(wheel.at) + wheel.swing;
+}
+
+/// How far to turn the steering until the wheel rolls without sliding, forwards or backwards, whichever is nearer
+/// [rad]. A contact that trails its pivot by e rolls where the pivot's velocity c leans by asin(e omega / |c|) to it.
+double turn_to_roll(const Placed& wheel, const BodyTwist& twist) {
+  const double turning = twist.omega + wheel.arm_rate;
+  const Eigen::Vector2d moves = contact_velocity(wheel, twist) - turning * left_of(wheel.arm);  // of the pivot
+  if (!(moves.norm() > kStandstill)) {
+    return 0.0;
+  }
+  const double ahead = wheel.arm.dot(direction(wheel.heading));
+  const double along = std::atan2(moves.y(), moves.x()) - wheel.heading;
+  const double lean = std::asin(std::clamp(turning * ahead / moves.norm(), -1.0, 1.0));
+  if (lean == 0.0) {
+    return std::remainder(along, std::numbers::pi);
+  }
+  const double forwards = std::remainder(along + lean, 2.0 * std::numbers::pi);
+  const double backwards = std::remainder(along + std::numbers::pi - lean, 2.0 * std::numbers::pi);
+  return std::abs(forwards) <= std::abs(backwards) ? forwards : backwards;
+}
+
 WheelTwist solved(const System& system) {
   const Eigen::Vector3d t = system.qr.solve(system.weight.cwiseProduct(system.b));
   WheelTwist found;
@@ -183,11 +237,20 @@ void WheelLayout::check(const WheelReadings& readings) const {
   if (!finite(readings.hinge) || !finite(readings.hinge_rate)) {
     throw std::invalid_argument("the hinge's angle and rate must be finite [rad, rad/s]");
   }
+  const Eigen::Index rates = readings.steering_rate.size();
+  if (rates != 0 && rates != count) {
+    throw std::invalid_argument("one steering rate per wheel is needed, or none: " + std::to_string(count));
+  }
   for (Eigen::Index i = 0; i < count; ++i) {
-    if (wheels_[static_cast<std::size_t>(i)].steered && !finite(readings.steering[i])) {
-      throw std::invalid_argument("the angle of a steered wheel must be finite [rad]");
+    const Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
+    if (wheel.steered && !(finite(readings.steering[i]) && (!wheel.pivot || finite(steering_rate_of(readings, i))))) {
+      throw std::invalid_argument("the angle of a steered wheel, and its rate, must be finite [rad, rad/s]");
     }
   }
+}
+
+bool WheelLayout::pivoted() const {
+  return std::ranges::any_of(wheels_, [](const Wheel& wheel) { return wheel.pivot.has_value(); });
 }
 
 WheelTwist WheelLayout::twist(const WheelReadings& readings) const {
@@ -231,17 +294,12 @@ WheelTargets WheelLayout::wheels_for(const BodyTwist& twist, const WheelReadings
   WheelTargets targets{Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count), Eigen::VectorXd::Zero(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
     const Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
-    Placed at = placed(wheel, hinge_, now.steering[i], now);
-    const Eigen::Vector2d moves = Eigen::Vector2d(twist.v, twist.vy) + twist.omega * left_of(at.at) + at.swing;
     if (wheel.steered) {
-      targets.steering[i] = now.steering[i];
-      if (moves.norm() > kStandstill) {
-        // The nearer of the two angles at which the wheel rolls along, forwards or backwards.
-        const double away = std::remainder(std::atan2(moves.y(), moves.x()) - at.heading, std::numbers::pi);
-        targets.steering[i] += away;
-        at.heading += away;
-      }
+      const Placed resting = placed(wheel, hinge_, now.steering[i], 0.0, now);
+      targets.steering[i] = now.steering[i] + turn_to_roll(resting, twist);
     }
+    const Placed at = placed(wheel, hinge_, targets.steering[i], steering_rate_of(now, i), now);
+    const Eigen::Vector2d moves = contact_velocity(at, twist);
     const double roller = wheel.roller.value_or(0.0);
     targets.speed[i] = moves.dot(direction(at.heading + roller)) / (wheel.radius * std::cos(roller));
     targets.across[i] = wheel.roller ? 0.0 : moves.dot(left_of(direction(at.heading)));

@@ -159,6 +159,91 @@ TEST_CASE("the rear part of an articulated vehicle swings with its hinge") {
   check_same(layout.twist(now).twist, {.v = v, .vy = 0.0, .omega = omega});
 }
 
+/// Four casters with two wheels each, as a PR2 has them: wheels stand beside the joint that turns both.
+WheelLayout twin_casters(double behind) {
+  std::vector<Wheel> wheels;
+  for (const double x : {0.22, -0.22}) {
+    for (const double y : {0.22, -0.22}) {
+      for (const double beside : {0.05, -0.05}) {
+        wheels.push_back({.x = x - behind, .y = y + beside, .radius = 0.075, .steered = true, .pivot = Hinge{x, y}});
+      }
+    }
+  }
+  return WheelLayout(wheels);
+}
+
+TEST_CASE("an axle that is steered about its middle is the part behind a hinge") {
+  const auto axle = [](double y, bool hinged) {
+    return Wheel{.x = -1.2,
+                 .y = y,
+                 .radius = 0.3,
+                 .steered = !hinged,
+                 .behind_hinge = hinged,
+                 .pivot = hinged ? std::optional<Hinge>() : Hinge{-0.9, 0.0}};
+  };
+  const Wheel left{.y = 0.5, .radius = 0.3}, right{.y = -0.5, .radius = 0.3};
+  const WheelLayout steered({left, right, axle(0.5, false), axle(-0.5, false)});
+  const WheelLayout hinged({left, right, axle(0.5, true), axle(-0.5, true)}, {}, Hinge{.x = -0.9});
+  auto of_hinge = at_zero(4);
+  of_hinge.speed << 3.0, 4.0, 3.1, 4.4;
+  of_hinge.hinge = 0.3;
+  of_hinge.hinge_rate = -0.2;
+  WheelReadings of_steering{.speed = of_hinge.speed,
+                            .steering = Eigen::Vector4d(0.0, 0.0, 0.3, 0.3),
+                            .steering_rate = Eigen::Vector4d(0.0, 0.0, -0.2, -0.2)};
+  check_same(steered.twist(of_steering).twist, hinged.twist(of_hinge).twist);
+  CHECK(steered.pivoted());
+  CHECK_FALSE(hinged.pivoted());
+}
+
+TEST_CASE("wheels beside or behind the joint that turns them roll without sliding, and tell the twist") {
+  for (const double behind : {0.0, 0.04}) {
+    const WheelLayout layout = twin_casters(behind);
+    for (const double v : {0.8, -0.8}) {
+      const BodyTwist motion{.v = v, .vy = -0.3, .omega = 0.6};
+      const auto targets = layout.wheels_for(motion, at_zero(8));
+      CHECK(targets.across.cwiseAbs().maxCoeff() < 1e-12);
+      for (Eigen::Index i = 0; i < 8; i += 2) {  // both wheels of a caster ask for the same angle
+        CHECK(targets.steering[i] == doctest::Approx(targets.steering[i + 1]));
+      }
+      CHECK(targets.steering.cwiseAbs().maxCoeff() <= kPi / 2.0 + 0.1);
+      check_same(layout.twist(readings_of(layout, targets)).twist, motion);
+    }
+  }
+}
+
+TEST_CASE("wheels beside their joint turn against each other while the joint turns, and the twist stays") {
+  const WheelLayout layout = twin_casters(0.0);
+  auto readings = readings_of(layout, layout.wheels_for(kMotion, at_zero(8)));
+  readings.steering_rate = Eigen::VectorXd::Constant(8, 1.5);
+  const auto at_rest = readings.speed;
+  readings.speed = layout.wheels_for(kMotion, readings).speed;
+  CHECK(readings.speed[1] - at_rest[1] == doctest::Approx(1.5 * 0.05 / 0.075));
+  CHECK(readings.speed[0] - at_rest[0] == doctest::Approx(-1.5 * 0.05 / 0.075));
+  const auto found = layout.twist(readings);
+  check_same(found.twist, kMotion);
+  CHECK(found.chi2 < 1e-16);
+}
+
+TEST_CASE("derivatives by the angle of a caster whose contact moves with it are those of finite differences") {
+  const Wheel trailing{
+      .x = -1.2, .y = 0.1, .radius = 0.3, .steered = true, .behind_hinge = true, .pivot = Hinge{-1.1, 0.05}};
+  const WheelLayout layout({{.y = 0.5, .radius = 0.3}, {.y = -0.5, .radius = 0.3}, trailing}, {}, Hinge{.x = -0.5});
+  WheelReadings base{.speed = Eigen::Vector3d(3.0, 4.0, 2.8), .steering = Eigen::Vector3d(0.0, 0.0, 0.3)};
+  base.hinge = 0.2;
+  base.hinge_rate = 0.4;
+  base.steering_rate = Eigen::Vector3d(0.0, 0.0, -0.7);
+  const auto of_angle = [&](const Eigen::VectorXd& angle) -> Eigen::VectorXd {
+    auto now = base;
+    now.steering[2] = angle[0];
+    const BodyTwist t = layout.twist(now).twist;
+    return Eigen::Vector3d(t.v, t.vy, t.omega);
+  };
+  const Eigen::MatrixXd exact = layout.linearize_twist(base).by_steering.col(2);
+  const Eigen::VectorXd at = Eigen::VectorXd::Constant(1, 0.3);
+  CHECK(tests::jacobian_error(exact, tests::finite_difference(of_angle, at, 0.05)) < tests::kDerivativeTolerance);
+}
+
 TEST_CASE("derivatives of the twist are those of finite differences") {
   const WheelLayout layout = swerve();
   auto base = readings_of(layout, layout.wheels_for(kMotion, at_zero(4)));
@@ -208,7 +293,11 @@ TEST_CASE("wheels that make no sense are refused") {
   CHECK_THROWS_AS(WheelLayout({{.radius = 0.1, .behind_hinge = true}, {.y = 1.0, .radius = 0.1}}),
                   std::invalid_argument);
   CHECK_THROWS_AS(WheelLayout({{.radius = 0.1}, {.y = 1.0, .radius = 0.1}}, {.rolling = 0.0}), std::invalid_argument);
+  CHECK_THROWS_AS(WheelLayout({{.radius = 0.1, .pivot = Hinge{}}, {.y = 1.0, .radius = 0.1}}), std::invalid_argument);
   CHECK_THROWS_AS(skid_steer().twist(at_zero(3)), std::invalid_argument);
+  auto rates = at_zero(8);
+  rates.steering_rate = Eigen::Vector3d::Zero();
+  CHECK_THROWS_AS(twin_casters(0.0).twist(rates), std::invalid_argument);
   auto unread = at_zero(4);
   unread.speed.setConstant(kUnread);
   CHECK_THROWS_AS(skid_steer().twist(unread), std::invalid_argument);

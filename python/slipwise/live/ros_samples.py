@@ -103,11 +103,10 @@ def _layout_wheels(vehicle: VehicleDescription, scale: tuple[float, float]) -> T
 
     def joints(message: Any, t: float) -> Wheels | None:
         values = dict(zip(read.names.all, read(message), strict=True))
-        hinge = read.names.hinge
         rows = {name: np.array([last.get(name, value), value]) for name, value in values.items()}
         found = twists_of_wheels(vehicle, read.names, rows, np.array([last.get("t", t), t]))
-        if hinge is not None:
-            last.update({hinge: values[hinge], "t": t})
+        if all(map(math.isfinite, values.values())):
+            last.update({**values, "t": t})
         v, vy, omega = float(found.v[1]), float(found.vy[1]), float(found.omega[1])
         if not math.isfinite(v + vy + omega):
             return None

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.log import Floats, Inputs, Log, Poses, Run
-from slipwise.logs.tidy_columns import LAYOUT_PREFIXES, NUMERIC
+from slipwise.logs.tidy_columns import NUMERIC
+from slipwise.logs.wheel_readings import PREFIXES
 
 LONGEST_GAP = 3600.0  # s between runs; a longer one would tell the hours of work
 _DIGITS = 12  # hexadecimal, of a hashed name
@@ -54,7 +55,7 @@ def anonymised(log: Log, *, keep: Collection[str] = ()) -> Log:
 
 def _harmless(name: str) -> bool:
     """Whether a column beside the tidy ones holds speeds or angles of the vehicle alone."""
-    return name in NUMERIC or name.startswith((*LAYOUT_PREFIXES, "cmd_", "odo_"))
+    return name in NUMERIC or name.startswith((*PREFIXES, "cmd_", "odo_"))
 
 
 def _shifts(spans: Iterable[tuple[float, float]]) -> list[float]:

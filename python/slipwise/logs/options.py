@@ -94,14 +94,13 @@ class LogOptions:
 
     @property
     def sideways(self) -> bool:
-        """Whether the vehicle drives sideways, as omni and mecanum wheels do."""
+        """Whether the vehicle drives sideways, on omni or mecanum wheels or where each wheel is steered."""
         wheels = self.wheels
-        return (
-            wheels is not None
-            and any(wheel.roller is not None for wheel in wheels.wheels)
-            and wheels.layout is not None
-            and wheels.layout.tells_sideways
-        )
+        if wheels is None or wheels.layout is None:
+            return False
+        rollers = any(wheel.roller is not None for wheel in wheels.wheels)
+        steered = all(wheel.steer is not None for wheel in wheels.wheels)
+        return (rollers or steered) and wheels.layout.tells_sideways
 
     @property
     def car(self) -> ThrottleSteering | None:

@@ -41,7 +41,6 @@ USED = frozenset(
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
 POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
-LAYOUT_PREFIXES = ("wheel_", "steer_")  # of columns, before the names of wheels and steering joints
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
@@ -176,7 +175,7 @@ def _layout_columns(
     table: Table, options: LogOptions, vehicle: VehicleDescription, tally: Tally, notes: list[str]
 ) -> InputColumns:
     try:
-        names = wheel_names(vehicle, table.names, LAYOUT_PREFIXES)
+        names = wheel_names(vehicle, table.names)
     except LogError as error:
         raise LogError(error.what, where=str(table.path), advice=error.advice) from error
     readings = {name: table.numbers(name, tally) for name in names.all}

@@ -31,18 +31,21 @@ class _Part(BaseModel):
 
 
 class WheelDescription(_Part):
-    """One wheel; its speed is the column `wheel_NAME` of a table or the joint NAME of a JointState."""
+    """One wheel; its speed is the column `wheel_NAME` of a table, or the joint NAME or `wheel_NAME`."""
 
     name: Name
     x: Metres  # ahead of base_link
     y: Metres  # to the left of it
     radius: Size
     angle: Angle = 0.0  # it rolls in while its steering reads 0
-    steer: Name | None = None  # its steering angle: the column `steer_STEER`, or the joint of that name
+    steer: Name | None = None  # its steering angle: the column or joint `steer_STEER`, or the joint STEER
     roller: Annotated[float, Field(ge=-1.4, le=1.4)] | None = None  # axes of rollers, to its direction
     slides: bool = False  # across its direction, as the wheels of skid steering do
     driven: bool = True  # its speed is read; false where only its steering is
     behind_hinge: bool = False
+    pivot: tuple[Metres, Metres] | None = None  # x, y of the joint that steers it; none: above its contact
+    reversed: bool = False  # its speed counts backwards, as the joints of a mirrored side do
+    steer_reversed: bool = False  # its steering angle counts to the right
 
     def core(self) -> _core.Wheel:
         """Return the wheel as the core knows it."""
@@ -54,6 +57,7 @@ class WheelDescription(_Part):
             roller=0.0 if self.slides else self.roller,
             steered=self.steer is not None,
             behind_hinge=self.behind_hinge,
+            pivot=self.pivot,
         )
 
 

@@ -16,6 +16,7 @@ from slipwise.logs.log import Floats
 from slipwise.logs.vehicle_description import VehicleDescription
 
 _NOT_READ = math.nan
+PREFIXES = ("wheel_", "steer_")  # of columns and joints, before the names of wheels and of steering joints
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,32 +51,37 @@ class WheelNames:
         return tuple(dict.fromkeys(name for name in named if name is not None))
 
 
-def wheel_names(vehicle: VehicleDescription, found: Collection[str], prefixes: tuple[str, str]) -> WheelNames:
-    """Return the names under which readings are found: as in the description, or with a prefix.
+def wheel_names(vehicle: VehicleDescription, found: Collection[str]) -> WheelNames:
+    """Return the names under which readings are found: with `wheel_` or `steer_`, or as in the description.
 
     Args:
         vehicle: a vehicle with wheels.
         found: names of columns or joints.
-        prefixes: of speeds and of angles, such as `wheel_` and `steer_` in tables; empty for none.
 
     Raises:
         LogError: one is missing; the error says which.
     """
 
     def named(name: str | None, prefix: str) -> str | None:
-        if name is None or name in found:
+        if name is None or prefix + name in found:
+            return None if name is None else prefix + name
+        if name in found:
             return name
-        if prefix + name in found:
-            return prefix + name
         shown = ", ".join(list(found)[:12])
-        raise LogError(f"there is no {prefix}{name}", advice=f"rename it or the wheel; found {shown}")
+        advice = f"rename it or the wheel; found {shown}"
+        raise LogError(f"there is no {prefix}{name}, and no {name}", advice=advice)
 
-    speed, angle = prefixes
-    return WheelNames(
+    speed, angle = PREFIXES
+    result = WheelNames(
         tuple(named(wheel.name if wheel.driven else None, speed) for wheel in vehicle.wheels),
         tuple(named(wheel.steer, angle) for wheel in vehicle.wheels),
         named(None if vehicle.hinge is None else vehicle.hinge.name, angle),
     )
+    both = (set(result.speeds) & {*result.steering, result.hinge}) - {None}
+    if both:
+        advice = f"name columns or joints {speed}NAME and {angle}NAME"
+        raise LogError(f"{min(map(str, both))} would be a speed and an angle at once", advice=advice)
+    return result
 
 
 def twists_of_wheels(
@@ -87,34 +93,43 @@ def twists_of_wheels(
         vehicle: a vehicle with wheels.
         names: of the readings.
         readings: by name [N], rad/s of speeds and rad of angles, NaN where there is none.
-        t: stamps [N] s, which the rate of a hinge is taken from.
+        t: stamps [N] s, which rates of a hinge, and of steering about a pivot, are taken from.
     """
     layout = vehicle.layout
     assert layout is not None
-    count = len(t)
-    there = np.ones(count, bool)
+    there = np.ones(len(t), bool)
     for name in names.all:
         there &= np.isfinite(readings[name])
-    speed, steering = (np.zeros((count, len(vehicle.wheels))) for _ in range(2))
-    for k, (own, angle_name) in enumerate(zip(names.speeds, names.steering, strict=True)):
-        speed[:, k] = _NOT_READ if own is None else readings[own]
+    speed, steering, rate = (np.zeros((len(t), len(vehicle.wheels))) for _ in range(3))
+    for k, wheel in enumerate(vehicle.wheels):
+        own, angle_name = names.speeds[k], names.steering[k]
+        speed[:, k] = _NOT_READ if own is None else _signed(readings[own], wheel.reversed)
         if angle_name is not None:
-            steering[:, k] = readings[angle_name]
+            steering[:, k] = _signed(readings[angle_name], wheel.steer_reversed)
+            if wheel.pivot is not None:
+                rate[:, k] = _rate(t, steering[:, k], there)
     hinge = np.zeros((0, 2))
     if names.hinge is not None:
         angle = readings[names.hinge]
         hinge = np.stack([angle, _rate(t, angle, there)], axis=1)[there]
-    result = np.full((count, 5), np.nan)
+    result = np.full((len(t), 5), np.nan)
     if there.any():
-        result[there] = _twists(layout, speed[there], steering[there], hinge)
+        rates = rate[there] if layout.pivoted else rate[:0]
+        result[there] = _twists(layout, speed[there], steering[there], hinge, rates)
     squares, freedom = np.nansum(result[:, 3]), np.nansum(result[:, 4])
     agree = math.sqrt(squares / freedom) if freedom > 0.0 else math.nan
     return WheelTwists(result[:, 0], result[:, 1], result[:, 2], agree)
 
 
-def _twists(layout: _core.WheelLayout, speed: Floats, steering: Floats, hinge: Floats) -> Floats:
+def _signed(values: Floats, backwards: bool) -> Floats:
+    return -values if backwards else values
+
+
+def _twists(
+    layout: _core.WheelLayout, speed: Floats, steering: Floats, hinge: Floats, steering_rate: Floats
+) -> Floats:
     try:
-        twists, _ = layout.twists(speed, steering, hinge)
+        twists, _ = layout.twists(speed, steering, hinge, steering_rate)
     except ValueError as wrong:
         raise LogError(str(wrong), where="wheels", advice="docs/vehicles.md has every key") from wrong
     return np.asarray(twists)
@@ -137,7 +152,7 @@ class JointReadings:
         self._vehicle = vehicle
         self._joints: tuple[str, ...] = ()
         self._places: tuple[tuple[bool, int], ...] = ()
-        self.names: WheelNames = wheel_names(vehicle, _every_name(vehicle), ("", ""))
+        self.names: WheelNames = wheel_names(vehicle, _every_name(vehicle))
 
     def __call__(self, message: Any) -> tuple[float, ...]:
         """Return one number for each of `names.all`: speeds [rad/s] and angles [rad]; NaN where it has none.
@@ -147,9 +162,8 @@ class JointReadings:
         """
         joints = tuple(message.name)
         if joints != self._joints:
-            wheel_names(self._vehicle, joints, ("", ""))
-            speeds = {name for name in self.names.speeds if name is not None}
-            self._places = tuple((name in speeds, joints.index(name)) for name in self.names.all)
+            found = wheel_names(self._vehicle, joints)
+            self._places = tuple((name in found.speeds, joints.index(name)) for name in found.all)
             self._joints = joints
         return tuple(
             _at(message.velocity if speed else message.position, place) for speed, place in self._places
@@ -157,10 +171,10 @@ class JointReadings:
 
 
 def _every_name(vehicle: VehicleDescription) -> list[str]:
-    names = [wheel.name for wheel in vehicle.wheels] + [
-        w.steer for w in vehicle.wheels if w.steer is not None
-    ]
-    return names + ([] if vehicle.hinge is None else [vehicle.hinge.name])
+    speed, angle = PREFIXES
+    angles = [wheel.steer for wheel in vehicle.wheels if wheel.steer is not None]
+    angles += [] if vehicle.hinge is None else [vehicle.hinge.name]
+    return [speed + wheel.name for wheel in vehicle.wheels] + [angle + name for name in angles]
 
 
 def _at(values: Any, place: int) -> float:

@@ -39,7 +39,7 @@ class MecanumPlatform:
         """Return the wheels as the core knows them: front left, front right, rear left, rear right."""
         return _core.WheelLayout(
             [
-                _core.Wheel(x, y, self.radius, 0.0, angle, steered=False, behind_hinge=False)
+                _core.Wheel(x, y, self.radius, 0.0, angle, steered=False, behind_hinge=False, pivot=None)
                 for x, y, angle in self.places()
             ],
             rolling=0.02,

@@ -12,7 +12,7 @@ from slipwise import _core
 
 
 def _wheel(x: float, y: float, *, trailed: bool = False) -> _core.Wheel:
-    return _core.Wheel(x, y, 0.1, 0.0, None, trailed, trailed)
+    return _core.Wheel(x, y, 0.1, 0.0, None, trailed, trailed, (x + 0.05, y) if trailed else None)
 
 
 def _layout() -> _core.WheelLayout:
@@ -28,5 +28,6 @@ VEHICLE_OBJECTS: dict[str, Callable[[], Any]] = {"Wheel": lambda: _wheel(0.0, 0.
 VEHICLE_ARGUMENTS: dict[str, Callable[[], Any]] = {
     "Wheel.__init__ behind_hinge": lambda: False,
     "WheelLayout.__init__ wheels": lambda: [_wheel(0.0, 0.3), _wheel(0.0, -0.3)],
+    "Wheel.__init__ pivot": lambda: None,
     "WheelLayout.twists hinge": lambda: np.full((3, 2), 0.1),
 }

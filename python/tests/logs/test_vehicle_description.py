@@ -42,6 +42,14 @@ def test_a_robotino_that_drives_ahead_turns_its_side_wheels_against_each_other()
     assert speed[0, 1] == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("vehicle", "sideways"),
+    [("pr2", True), ("ranger-mini", True), ("robotino", True), ("osr-rover", False), ("husky", False)],
+)
+def test_a_vehicle_whose_wheels_are_all_steered_drives_sideways(vehicle: str, sideways: bool) -> None:
+    assert LogOptions(vehicle=vehicle).sideways == sideways
+
+
 def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
     text = """vehicle:
   hinge: {name: waist, x: -1.0}
@@ -63,6 +71,10 @@ def test_a_file_describes_wheels_of_a_kind_of_their_own(tmp_path: Path) -> None:
         ("vehicle: {wheelbase: 1.0, tracks: {radius: 1, separation: 1}}\n", "tracks and wheelbase"),
         ("vehicle: {tracks: {radius: -1, separation: 1}}\n", "radius"),
         ("vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1, slides: true}]}\n", "do not tell a motion"),
+        (
+            "vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 1, pivot: [0, 1]}]}\n",
+            "pivot",
+        ),
         (
             "vehicle: {wheels: [{name: a, x: 0, y: 0, radius: 0.1}, {name: a, x: 0, y: 1, radius: 0.1}]}\n",
             "same name",

@@ -11,6 +11,12 @@
 
 namespace slipwise {
 
+/// Joint about which a part of an articulated vehicle turns; base_link is on the other part.
+struct Hinge {
+  double x = 0.0;  ///< ahead of base_link [m]
+  double y = 0.0;  ///< [m]
+};
+
 /// One wheel on the ground. A plain wheel rolls along its direction and does not move across it. One with rollers, or
 /// one that slides across as the wheels of skid steering do, tells its speed along the rollers' axes alone.
 struct Wheel {
@@ -21,12 +27,7 @@ struct Wheel {
   std::optional<double> roller{};  ///< axes of its rollers, to the left of its direction [rad]; 0: omni, or it slides
   bool steered = false;            ///< its steering angle is a reading, and free to be commanded
   bool behind_hinge = false;       ///< x, y, angle hold while the hinge reads 0; otherwise it is turned with it
-};
-
-/// Joint about which a part of an articulated vehicle turns; base_link is on the other part.
-struct Hinge {
-  double x = 0.0;  ///< ahead of base_link [m]
-  double y = 0.0;  ///< [m]
+  std::optional<Hinge> pivot{};    ///< its steering turns it about this, while x, y hold at 0; none: about its contact
 };
 
 /// How far a reading and what a wheel does come apart, one standard deviation.
@@ -42,6 +43,8 @@ struct WheelReadings {
   Eigen::VectorXd steering;  ///< [wheels], [rad]; that of a wheel which is not steered is ignored
   double hinge = 0.0;        ///< how far the part behind the hinge is turned, to the left [rad]
   double hinge_rate = 0.0;   ///< [rad/s]
+  Eigen::VectorXd
+      steering_rate{};  ///< [wheels], [rad/s], that of a wheel without a pivot is ignored; empty: none turns
 };
 
 /// A body twist (v, vy, omega) and what the readings say against it.
@@ -73,6 +76,8 @@ class WheelLayout {
 
   const std::vector<Wheel>& wheels() const { return wheels_; }
   bool hinged() const { return hinge_.has_value(); }
+  /// Whether steering moves a contact: then its rate counts.
+  bool pivoted() const;
   /// Wheels that all slide across, as in skid steering, do not tell vy: it is taken as 0, and slip terms say the rest.
   bool tells_sideways() const { return tells_sideways_; }
 
@@ -81,7 +86,8 @@ class WheelLayout {
   WheelTwist twist(const WheelReadings& readings) const;
   WheelTwistLinearization linearize_twist(const WheelReadings& readings) const;
 
-  /// The inverse. `now` is where steering and hinge are; its speeds are ignored.
+  /// The inverse. `now` is where steering and hinge are; its speeds are ignored. A steered wheel points to where it
+  /// rolls without sliding once its steering rests.
   WheelTargets wheels_for(const BodyTwist& twist, const WheelReadings& now) const;
 
  private:
