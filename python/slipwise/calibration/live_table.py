@@ -63,6 +63,7 @@ class LiveTable(_Table):
     terrain_topic: str | None = None  # std_msgs/String: the surface's name, beside ~/terrain
     cache: str | None = None  # folder
     save_every: Seconds = 60.0  # s of the wall clock between two times that the cache is written
+    moves_every: Annotated[float, Field(ge=0.0, le=1e6)] = 10.0  # s between two looks for moves; 0: none
     gates: GatesTable = GatesTable()
     apply: ApplyTable = ApplyTable()
 

@@ -8,6 +8,7 @@ from slipwise.excitation.design import Excitation, ExcitationOptions, design_dri
 from slipwise.excitation.knowledge import Knowledge, knowledge_of, prior_knowledge
 from slipwise.excitation.lessons import Lesson, lessons_of
 from slipwise.excitation.moves import Move
+from slipwise.excitation.next_moves import NextMove, NextMoves, choose_next_moves
 from slipwise.excitation.robots import drawn_robots
 from slipwise.excitation.vehicles import VEHICLES, Vehicle, vehicle_named
 
@@ -19,7 +20,10 @@ __all__ = [
     "Knowledge",
     "Lesson",
     "Move",
+    "NextMove",
+    "NextMoves",
     "Vehicle",
+    "choose_next_moves",
     "command_inputs",
     "design_drive",
     "drawn_robots",

@@ -18,6 +18,7 @@ from slipwise.live.gates import Gates, rules_for
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
+from slipwise.live.move_adviser import MoveAdviser
 from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
 from slipwise.live.samples import DriveStart
@@ -86,6 +87,7 @@ def build_node(
         intake=intake,
         gates=gates,
         said=said,
+        adviser=MoveAdviser(every=table.moves_every, reverse=rules.reverse, turning=intake.turning),
         watchers=watchers,
         applied=AppliedModel(table.apply, start) if applying else None,
         handover=Handover(table.apply, said) if applying else None,

@@ -7,6 +7,7 @@ from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
 from slipwise.live.gates import Gates
+from slipwise.live.move_adviser import Turning
 from slipwise.live.said import Said
 from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, Twist, Wheels
 from slipwise.live.surface_watch import SurfaceWatch
@@ -20,6 +21,7 @@ class Intake:
         self._input = Command if input_name == "command" else Wheels
         self._clock = ClockWatch()
         self.surfaces = SurfaceWatch(learner, said)
+        self.turning = Turning()
         self._frames: dict[str, int] = {}
         self.newest_input: Twist | None = None
         self.newest_pose: Pose | None = None
@@ -79,6 +81,7 @@ class Intake:
         learner = self._learner
         if isinstance(sample, self._input):
             self.newest_input = sample
+            self.turning.take(sample)
         if isinstance(sample, Command):
             learner.push_command(sample.t, sample.v, sample.omega, sample.vy)
         elif isinstance(sample, Wheels):

@@ -12,11 +12,13 @@ from slipwise.errors import LogError
 from slipwise.live.outputs import (
     AppliedParameters,
     ModelText,
+    NextMovesNow,
     Odometry,
     Output,
     Path,
     Status,
     SurfaceNow,
+    next_moves_content,
     surface_content,
 )
 from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, SurfaceCue, Wheels
@@ -186,6 +188,8 @@ def _content(output: Output) -> dict[str, object]:
         }
     if isinstance(output, SurfaceNow):
         return surface_content(output) | {"t": output.t}
+    if isinstance(output, NextMovesNow):
+        return {"next_moves": next_moves_content(output), "t": output.t if math.isfinite(output.t) else None}
     if isinstance(output, ModelText):
         return {"model": output.text, "t": output.t}
     if isinstance(output, AppliedParameters):

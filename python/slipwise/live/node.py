@@ -20,6 +20,7 @@ from slipwise.live.gates import Gates
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
+from slipwise.live.move_adviser import MoveAdviser
 from slipwise.live.odometry import odometry_of, path_ahead
 from slipwise.live.outputs import ModelText, Odometry, Output, ParameterNow, Path
 from slipwise.live.said import Said
@@ -48,6 +49,7 @@ class NodeParts:
     intake: Intake
     gates: Gates
     said: Said
+    adviser: MoveAdviser
     watchers: Sequence[Watcher] = ()
     applied: AppliedModel | None = None
     handover: Handover | None = None
@@ -101,10 +103,22 @@ class LiveNode:
     def _take_some(self) -> bool:
         """Take what waits, up to a number; return whether there was anything."""
         if not self._waiting:
-            time.sleep(REST)  # a lock for each sample would cost more than what is done with it
+            if not self._look_for_moves():
+                time.sleep(REST)  # a lock for each sample would cost more than what is done with it
             return False
         for _ in range(min(len(self._waiting), AT_ONCE)):
             self._take(self._waiting.popleft())
+        return True
+
+    def _look_for_moves(self, *, whole: bool = False) -> bool:
+        """Look for moves worth driving, for a millisecond or so; return whether there was something to do."""
+        parts = self._parts
+        model = parts.learning.model
+        if model is None or not parts.adviser.due(model, time.monotonic()):
+            return False
+        found = parts.adviser.advance(parts.intake.newest, model, self._parameters, whole=whole)
+        if found is not None:
+            self._publish(found)
         return True
 
     def _take(self, sample: Sample) -> None:
@@ -276,6 +290,7 @@ class LiveNode:
     def _finish(self) -> None:
         parts = self._parts
         parts.learning.take(parts.intake.events())
+        self._look_for_moves(whole=True)
         self.save()
         self._take_notices()
         for note in parts.said.take_new():

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
@@ -52,6 +53,66 @@ class ParameterNow:
     validity: Validity
     start: float  # its value when the node started
     applied: float | None = None  # what others were given; None: nothing
+    target_std: float = math.nan  # at which it is identified
+
+    @property
+    def known(self) -> float | None:
+        """How far its standard deviation came from the prior's to the target: 0 to 1; None: no target."""
+        return filled(self.prior_std, self.std, self.target_std)
+
+
+def filled(prior: float, now: float, target: float) -> float | None:
+    """Return how much of a bar is full, 0 to 1, by the logarithm of a standard deviation.
+
+    None where a number is not finite or makes no sense.
+    """
+    if not (math.isfinite(prior + now + target) and prior > 0.0 and now >= 0.0 and target >= 0.0):
+        return None
+    if now <= target:
+        return 1.0
+    if target <= 0.0:
+        return 0.0
+    whole = math.log(prior / target)
+    return 0.0 if whole <= 0.0 else min(max(math.log(prior / now) / whole, 0.0), 1.0)
+
+
+@dataclass(frozen=True)
+class MoveNow:
+    """A command worth holding, from standing, and what is known after it and those before it."""
+
+    v: float  # m/s
+    omega: float  # rad/s
+    seconds: float  # held
+    yaw_std: float  # rad, of the worst prediction over 2 s
+    position_std: float  # m, likewise
+    teaches: str  # the parameter of which most is learned
+
+
+@dataclass(frozen=True)
+class SureNow:
+    """How sure the worst prediction over 2 s is."""
+
+    name: str  # "yaw" or "position"
+    unit: str
+    prior_std: float  # before anything was learned
+    std: float
+    target_std: float  # as sure as one measured move
+
+    @property
+    def known(self) -> float | None:
+        """How far the standard deviation came from the prior's to the target: 0 to 1."""
+        return filled(self.prior_std, self.std, self.target_std)
+
+
+@dataclass(frozen=True)
+class NextMovesNow:
+    """The moves worth driving next, `~/next_moves` (latched)."""
+
+    t: float  # s
+    moves: tuple[MoveNow, ...]
+    predictions: tuple[SureNow, ...]
+    parameters: tuple[ParameterNow, ...]
+    why: str = ""  # there are no moves
 
 
 @dataclass(frozen=True)
@@ -118,7 +179,30 @@ class AppliedParameters:
     values: dict[str, Any]  # by the parameter's full name
 
 
-Output = Odometry | Path | Status | SurfaceNow | ModelText | Note | AppliedParameters
+Output = Odometry | Path | Status | SurfaceNow | NextMovesNow | ModelText | Note | AppliedParameters
+
+
+def next_moves_content(now: NextMovesNow) -> dict[str, Any]:
+    """Return the moves and how far each bar is full as JSON has it; null stands for what is not finite."""
+    return {
+        "moves": [{key: _short(value) for key, value in asdict(move).items()} for move in now.moves],
+        "predictions": {each.name: _bar(each, each.unit) for each in now.predictions},
+        "parameters": {each.name: _bar(each, each.unit) for each in now.parameters},
+        "why": now.why,
+    }
+
+
+def _bar(each: ParameterNow | SureNow, unit: str) -> dict[str, Any]:
+    stds = {"prior_std": each.prior_std, "std": each.std, "target_std": each.target_std}
+    known = {"known": None if each.known is None else round(each.known, 3)}
+    return known | {key: _short(value) for key, value in stds.items()} | {"unit": unit}
+
+
+def _short(value: Any) -> Any:
+    """Return a number with four significant digits, None where it is not finite; all else as it is."""
+    if not isinstance(value, float):
+        return value
+    return float(f"{value:.4g}") if math.isfinite(value) else None
 
 
 def surface_content(now: SurfaceNow) -> dict[str, Any]:

@@ -16,12 +16,14 @@ from slipwise.live.outputs import (
     AppliedParameters,
     Floats,
     ModelText,
+    NextMovesNow,
     Note,
     Odometry,
     Output,
     Path,
     Status,
     SurfaceNow,
+    next_moves_content,
     surface_content,
 )
 from slipwise.live.wires.ros_types import ros_types
@@ -59,6 +61,7 @@ TOPICS: Mapping[str, RosTopic] = {
     "model": RosTopic(STRING, latched=True),
     "surface": RosTopic(STRING, latched=True),
     "surface_json": RosTopic(STRING, latched=True),
+    "next_moves": RosTopic(STRING, latched=True),
 }
 
 
@@ -122,6 +125,8 @@ class RosMessages:
                 return [self._diagnostics(output.t, diagnostics_of(output, self._name), output.vehicle)]
             case SurfaceNow():
                 return self._surface(output)
+            case NextMovesNow():
+                return [self._string("next_moves", output.t, json.dumps(next_moves_content(output)))]
             case ModelText():
                 return [self._string("model", output.t, output.text)]
             case Note():

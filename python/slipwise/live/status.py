@@ -139,6 +139,7 @@ def parameters_now(learning: Learning, applied: AppliedModel | None) -> tuple[Pa
                 validity=learning.validity.of(prior.name),
                 start=each.value if start is None else start,
                 applied=None if applied is None else physical(name, applied.values),
+                target_std=each.target_std,
             )
         )
     return tuple(rows)

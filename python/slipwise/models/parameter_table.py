@@ -29,6 +29,7 @@ class PhysicalParameter:
     std: float
     unit: str
     identified: bool  # known to a stated fraction, or known to be negligible
+    target_std: float = math.nan  # at which it is identified; NaN: nobody asked
 
     def __str__(self) -> str:
         unit = "" if self.unit == "-" else f" {self.unit}"
@@ -56,7 +57,8 @@ def physical_parameters(model: Model) -> tuple[PhysicalParameter, ...]:
             value = math.exp(p.value)
             std = value * p.std
         identified = known(value, std) or std * effect <= NEGLIGIBLE
-        rows.append(PhysicalParameter(name, value, std, unit, identified))
+        target = max(IDENTIFIED_FRACTION * abs(value), NEGLIGIBLE / effect if effect > 0.0 else math.inf)
+        rows.append(PhysicalParameter(name, value, std, unit, identified, target))
     limits = limit_rows(model.content.limits) if model.content.limits is not None else []
     rows += [
         PhysicalParameter(name, value, std, unit, known(value, std)) for name, value, std, unit in limits

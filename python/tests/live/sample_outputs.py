@@ -17,12 +17,15 @@ from slipwise.errors import SettingsError
 from slipwise.live.outputs import (
     Floats,
     ModelText,
+    MoveNow,
+    NextMovesNow,
     Note,
     Odometry,
     Output,
     ParameterNow,
     Path,
     Status,
+    SureNow,
     SurfaceNow,
     Validity,
 )
@@ -82,6 +85,17 @@ def waiting_status(**changes: object) -> Status:
         apply="off",
     )
     return replace(status, **changes)  # type: ignore[arg-type]
+
+
+def next_moves(t: float = 3.0, **changes: object) -> NextMovesNow:
+    """Return three moves worth driving, with some of it changed."""
+    moves = (
+        MoveNow(1.0, -0.8, 2.0, 0.12, 0.2, "ang.V*w"),
+        MoveNow(-0.5, 0.0, 2.0, 0.08, 0.15, "lon.V"),
+        MoveNow(0.0, 0.8, 2.0, 0.05, 0.12, "time_constant_omega"),
+    )
+    sure = (SureNow("yaw", "rad", 0.9, 0.15, 0.03), SureNow("position", "m", 1.0, 0.04, 0.05))
+    return replace(NextMovesNow(t, moves, sure, driven_status().parameters), **changes)  # type: ignore[arg-type]
 
 
 def surface_at(t: float = 3.0, name: str = "sand", probability: float = 0.9) -> SurfaceNow:
@@ -166,7 +180,8 @@ def _status(model: Model, t: float, driven: Floats, command: tuple[float, float]
         spread = prior.get(p.name, 0.3) * (p.value if log else 1.0)
         rows.append(
             ParameterNow(
-                p.name, p.unit, p.value, p.std, spread, validity, 0.2 if p.unit == "s" else 0.0, given
+                *(p.name, p.unit, p.value, p.std, spread, validity),
+                *(0.2 if p.unit == "s" else 0.0, given, p.target_std),
             )
         )
     held = content.verdict.held_out

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from live.sample_outputs import surface_at
+from live.sample_outputs import next_moves, surface_at
 
 from slipwise.errors import LogError
 from slipwise.live.lines import LineReader, line_of
@@ -93,6 +93,16 @@ def test_a_line_may_name_the_ground_or_say_that_it_changes() -> None:
     reader.read("t,odo_v,odo_omega,terrain")
     assert reader.read("1.0,0.5,0.1,sand") == [SurfaceCue("sand"), Wheels(1.0, 0.5, 0.1)]
     assert reader.read("1.1,0.5,0.1,") == [Wheels(1.1, 0.5, 0.1)]
+
+
+def test_moves_worth_driving_are_a_line() -> None:
+    content = json.loads(line_of(next_moves(t=float("nan"))))
+    assert content["t"] is None
+    assert [move["teaches"] for move in content["next_moves"]["moves"]] == [
+        "ang.V*w",
+        "lon.V",
+        "time_constant_omega",
+    ]
 
 
 def test_the_surface_is_a_line_with_its_probability() -> None:

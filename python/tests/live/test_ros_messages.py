@@ -12,7 +12,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_outputs, odometry_at, straight_path, surface_at, waiting_status
+from live.sample_outputs import (
+    driven_outputs,
+    next_moves,
+    odometry_at,
+    straight_path,
+    surface_at,
+    waiting_status,
+)
 
 from slipwise.live.outputs import ModelText, Note, Output
 from slipwise.live.ros_messages import TOPICS, RosMessage, RosMessages, stamp_ns
@@ -83,10 +90,27 @@ def test_json_has_null_for_what_is_not_finite(messages: RosMessages) -> None:
 
 
 def test_the_model_and_the_surface_are_kept_for_who_comes_late(messages: RosMessages) -> None:
-    assert {name for name, topic in TOPICS.items() if topic.latched} == {"model", "surface", "surface_json"}
+    latched = {"model", "surface", "surface_json", "next_moves"}
+    assert {name for name, topic in TOPICS.items() if topic.latched} == latched
     (message,) = messages.of(ModelText(1.0, "schema: 4\nname: Ä\n"))
     assert message.latched
     assert _read(messages, message).data == "schema: 4\nname: Ä\n"
+
+
+def test_moves_worth_driving_are_json_with_a_bar_per_prediction_and_parameter(messages: RosMessages) -> None:
+    content = json.loads(_of(messages, next_moves())["next_moves"].data)
+    assert content["moves"][0] == {
+        "v": 1.0,
+        "omega": -0.8,
+        "seconds": 2.0,
+        "yaw_std": 0.12,
+        "position_std": 0.2,
+        "teaches": "ang.V*w",
+    }
+    assert content["predictions"]["position"]["known"] == 1.0
+    assert 0.0 < content["predictions"]["yaw"]["known"] < 1.0
+    assert content["parameters"]["ang.w"]["known"] == 1.0
+    assert content["why"] == ""
 
 
 def test_the_name_of_a_surface_is_sent_where_it_is_another_and_the_rest_each_time() -> None:
@@ -106,7 +130,7 @@ def test_the_name_of_a_surface_is_sent_where_it_is_another_and_the_rest_each_tim
 
 def test_every_output_of_a_drive_is_read_back_to_the_same_bytes(messages: RosMessages) -> None:
     used = set()
-    for output in driven_outputs():
+    for output in (*driven_outputs(), next_moves()):
         for message in messages.of(output):
             used.add(message.topic)
             again = messages.store.serialize_cdr(_read(messages, message), message.type)

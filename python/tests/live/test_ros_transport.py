@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from live.sample_outputs import odometry_at, straight_path, surface_at, waiting_status
+from live.sample_outputs import next_moves, odometry_at, straight_path, surface_at, waiting_status
 
 from slipwise.live.outputs import ModelText, Note
 from slipwise.live.ros_samples import to_pose, to_wheels
@@ -20,6 +20,7 @@ from slipwise.logs.role_choice import Topic
 from slipwise.logs.topics import Roles
 
 CHOSEN = Topic("/odom", ODOMETRY, 1)
+LATCHED = ("model", "surface", "surface_json", "next_moves")
 
 
 class Wire:
@@ -41,7 +42,7 @@ class Wire:
         self.takers[topic] = on_message
 
     def publish(self, topic: str, _type_name: str, payload: bytes, *, latched: bool = False) -> None:
-        assert latched == (topic.removeprefix("/slipwise/") in ("model", "surface", "surface_json"))
+        assert latched == (topic.removeprefix("/slipwise/") in LATCHED)
         assert payload
         self.published.append(topic.removeprefix("/slipwise/"))
 
@@ -75,6 +76,7 @@ def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
     assert wire.published == []
     for once in (ModelText(1.0, "x: 1"), Note(1.0, "said"), straight_path(asked=True), surface_at()):
         transport.publish(once)
+    transport.publish(next_moves())
     assert wire.published == [
         "model",
         "diagnostics",
@@ -82,6 +84,7 @@ def test_where_nobody_listens_only_what_comes_once_is_published() -> None:
         "prediction_json",
         "surface",
         "surface_json",
+        "next_moves",
     ]
 
 

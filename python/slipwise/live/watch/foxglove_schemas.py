@@ -17,6 +17,11 @@ def _object(title: str, properties: dict[str, Any]) -> dict[str, Any]:
     return {"title": title, "type": "object", "properties": properties}
 
 
+_KNOWN = _object(
+    "slipwise.Known",
+    {**dict.fromkeys(("known", "prior_std", "std", "target_std"), _NUMBER), "unit": _TEXT},
+)
+
 #: By the topic below the node's.
 SCHEMAS: dict[str, dict[str, Any]] = {
     "state": _object(
@@ -62,6 +67,24 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         },
     ),
     "slip": _object("slipwise.Slip", {"forward": _NUMBER, "sideways": _NUMBER, "yaw_rate": _NUMBER}),
+    "next_moves": _object(
+        "slipwise.NextMoves",
+        {
+            "moves": {
+                "type": "array",
+                "items": _object(
+                    "slipwise.Move",
+                    {
+                        **dict.fromkeys(("v", "omega", "seconds", "yaw_std", "position_std"), _NUMBER),
+                        "teaches": _TEXT,
+                    },
+                ),
+            },
+            "predictions": {"type": "object", "additionalProperties": _KNOWN},
+            "parameters": {"type": "object", "additionalProperties": _KNOWN},
+            "why": _TEXT,
+        },
+    ),
     "nis": _object("slipwise.Nis", {"nis": _NUMBER, "expected": _NUMBER, "segments": {"type": "integer"}}),
 }
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from slipwise.errors import OutputError, SettingsError
-from slipwise.live.outputs import Note, Odometry, Output, Path, Status
+from slipwise.live.outputs import Note, Odometry, Output, Path, Status, next_moves_content
 from slipwise.live.ros_messages import stamp_ns
 from slipwise.live.watch.foxglove_schemas import SCHEMAS, nis_of, parameters_of, slip_of, state_of
 from slipwise.live.watch.history import History
@@ -121,6 +121,9 @@ class FoxgloveServer:
             self._driven.log(self._make.poses_in_frame(status.t, frame, status.driven), log_time=time)
         if self._scene.has_sinks():
             self._scene.log(self._make.scene(self._history.seen(), frame), log_time=time)
+        moves = self._history.seen().next_moves
+        if moves is not None and self._json["next_moves"].has_sinks():  # again: who comes late sees them too
+            self._json["next_moves"].log(next_moves_content(moves), log_time=time)
         for topic, made in _JSON.items():
             message = made(status) if self._json[topic].has_sinks() else None
             if message is not None:

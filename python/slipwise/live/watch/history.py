@@ -8,7 +8,7 @@ import threading
 from collections import deque
 from dataclasses import dataclass
 
-from slipwise.live.outputs import Note, Odometry, Output, Path, Status
+from slipwise.live.outputs import NextMovesNow, Note, Odometry, Output, Path, Status
 
 MOST_FUSED = 600  # points of the fused path
 MOST_NIS = 240
@@ -28,6 +28,7 @@ class Seen:
     fused: tuple[tuple[float, float], ...]  # x, y [m], oldest first
     nis: tuple[tuple[int, float], ...]  # which segment, its NIS; oldest first. Clocks may jump, counts do not
     notes: tuple[tuple[float, str], ...]  # stamp [s], text, newest first
+    next_moves: NextMovesNow | None = None
 
 
 class History:
@@ -39,6 +40,7 @@ class History:
         self._predicted: Path | None = None
         self._odometry: Odometry | None = None
         self._fused: deque[tuple[float, float]] = deque(maxlen=MOST_FUSED)
+        self._next_moves: NextMovesNow | None = None
         self._frame = ""
         self._nis: deque[tuple[int, float]] = deque(maxlen=MOST_NIS)
         self._segments = 0
@@ -57,6 +59,8 @@ class History:
                 case Path():
                     if not output.asked:
                         self._predicted = output
+                case NextMovesNow():
+                    self._next_moves = output
                 case Note():
                     self._notes.append((output.t, output.text))
 
@@ -73,6 +77,7 @@ class History:
                 fused=tuple(self._fused),
                 nis=tuple(self._nis),
                 notes=tuple(reversed(said)),
+                next_moves=self._next_moves,
             )
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from slipwise.live.diagnostics import surface_name
-from slipwise.live.outputs import ParameterNow, Status
+from slipwise.live.outputs import MoveNow, ParameterNow, Status, SureNow
 from slipwise.number_text import DASH, estimate_texts, number_text
 
 _CLOCK = 1e8  # s; stamps beyond it count from 1970, smaller ones from some start
@@ -80,6 +80,27 @@ def error_texts(status: Status) -> tuple[ErrorTexts, ...]:
         _error("position", "m", position, baseline_position),
         _error("heading", "rad", heading, baseline_heading),
     )
+
+
+def move_text(move: MoveNow) -> str:
+    """Return a move in words, such as "backwards 0.50 m/s, turning left 0.80 rad/s": anticlockwise."""
+    speed, turn = f"{abs(move.v):.2f} m/s", f"{abs(move.omega):.2f} rad/s"
+    side = "left" if move.omega > 0.0 else "right"
+    if move.v == 0.0:
+        return f"on the spot, turning {side} {turn}"
+    way = f"{'forwards' if move.v > 0.0 else 'backwards'} {speed}"
+    return f"{way}, straight" if move.omega == 0.0 else f"{way}, turning {side} {turn}"
+
+
+def after_text(move: MoveNow) -> str:
+    """Return how sure the worst prediction is after a move."""
+    return f"yaw ± {number_text(move.yaw_std, 2)} rad, position ± {number_text(move.position_std, 2)} m"
+
+
+def sure_text(sure: SureNow) -> str:
+    """Return how sure the worst prediction is, and how sure is enough."""
+    now, target = number_text(sure.std, 2), number_text(sure.target_std, 2)
+    return f"± {now} {sure.unit}, wanted {target}"
 
 
 def nis_text(status: Status) -> str:

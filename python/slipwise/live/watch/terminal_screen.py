@@ -7,15 +7,18 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from slipwise.live.outputs import ParameterNow, Status
+from slipwise.live.outputs import NextMovesNow, ParameterNow, Status
 from slipwise.live.watch.history import Seen
 from slipwise.live.watch.status_texts import (
     SLIP_NAMES,
+    after_text,
     error_texts,
+    move_text,
     nis_text,
     parameter_texts,
     slip_texts,
     stamp_text,
+    sure_text,
     surface_text,
 )
 
@@ -27,14 +30,17 @@ _WIDE = 110  # columns from which on the table has all of its columns
 _OF_STATE = {"learning": "bold green", "waiting": "bold yellow", "stuck": "bold red"}
 _OF_VALIDITY = {"estimated": "green", "unestimated": "yellow", "invalid": "red"}
 _RANKS = {"invalid": 0, "estimated": 1, "unestimated": 2}
-_HEADS = ("parameter", "value", "± σ", "prior σ", "applied", "validity")
-_HEADS_WIDE = (*_HEADS[:1], "unit", "prior -2σ … +2σ", *_HEADS[1:4], "at start", *_HEADS[4:])
+_HEADS = ("parameter", "value", "± σ", "prior σ", "known", "applied", "validity")
+_HEADS_WIDE = (*_HEADS[:1], "unit", "prior -2σ … +2σ", *_HEADS[1:5], "at start", *_HEADS[5:])
 _RIGHT = frozenset({"value", "± σ", "prior σ", "at start", "applied"})
-_COLOURED = {False: (5,), True: (2, 8)}  # columns in the colour of the validity, narrow and wide
+_COLOURED = {False: (4, 6), True: (2, 6, 9)}  # columns in the colour of the validity, narrow and wide
 _WIDEST_CELL = 26
 _LEVELS = "▁▂▃▄▅▆▇█"
 _SPARKS = 24  # segments of which the NIS is drawn
 _MOST_NOTES = 6
+_HIGH = 32  # lines from which on every move worth driving has one of its own
+_FILL = 8  # characters of a bar that fills
+_EIGHTHS = " ▏▎▍▌▋▊▉█"
 _BAR = 21  # characters, odd: the start is in the middle
 _BAR_SPAN = 2.0  # standard deviations of the prior to each side
 
@@ -59,6 +65,8 @@ def screen(seen: Seen, size: ConsoleDimensions, headlines: Sequence[str] = ()) -
         notes = _notes(seen, max(size.height - len(top) - 2, 0), width)
         return Group(*top, *notes)
     top += _head(status, width) + _numbers(seen, status, width)
+    if seen.next_moves is not None:
+        top += _next_moves(seen.next_moves, width, high=size.height >= _HIGH)
     free = max(size.height - len(top) - 1, 0)  # the last line stays empty: a terminal scrolls after it
     notes = _notes(seen, min(_MOST_NOTES, max(free // 4, 1), free), width)
     rows = free - len(notes)
@@ -115,6 +123,33 @@ def _numbers(seen: Seen, status: Status, width: int) -> list[Text]:
     return [_line([(f"{name:<10}", "dim"), (text, "")], width) for name, text in facts.items()]
 
 
+def _next_moves(now: NextMovesNow, width: int, *, high: bool) -> list[Text]:
+    """Return how sure the worst prediction is, and what to drive: a line each, or all in one."""
+    sure = "   ".join(f"{s.name} {fill_bar(s.known)} {sure_text(s)}" for s in now.predictions)
+    facts = [("worst σ", sure)] if sure else []
+    if not now.moves:
+        facts.append(("next", clean(now.why)))
+    elif high:
+        heads = ("next", *[""] * (len(now.moves) - 1))
+        facts += [
+            (head, f"{move_text(m)}, {m.seconds:g} s: {after_text(m)}; {clean(m.teaches)}")
+            for head, m in zip(heads, now.moves, strict=True)
+        ]
+    else:
+        facts.append(("next", ", ".join(f"{m.v:+.2f} m/s {m.omega:+.2f} rad/s" for m in now.moves)))
+    return [_line([(f"{name:<10}", "dim"), (text, "")], width) for name, text in facts]
+
+
+def fill_bar(known: float | None) -> str:
+    """Draw a bar that fills from 0 to 1; blank where nothing is known of it."""
+    if known is None:
+        return ""
+    eighths = min(int(known * 8 * _FILL), 8 * _FILL)
+    whole, rest = divmod(eighths, 8)
+    bar = "█" * whole + (_EIGHTHS[rest] if rest else "")
+    return bar.ljust(_FILL, "░")
+
+
 def _sparkline(seen: Seen) -> str:
     """Draw the last NIS on a logarithmic scale from 0.1 to 30."""
     values = [min(max(value, 0.1), 30.0) for _, value in seen.nis[-_SPARKS:]]
@@ -164,11 +199,12 @@ def _cells(p: ParameterNow, *, wide: bool) -> tuple[str, ...]:
             texts.value,
             texts.std,
             texts.prior,
+            fill_bar(p.known),
             texts.start,
             texts.applied,
             p.validity,
         )
-    return (name, texts.value, texts.std, texts.prior, texts.applied, p.validity)
+    return (name, texts.value, texts.std, texts.prior, fill_bar(p.known), texts.applied, p.validity)
 
 
 def _padded(cells: Sequence[str], *, right: bool) -> list[str]:

@@ -10,16 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from slipwise.live.outputs import Floats, ParameterNow, Status
+from slipwise.live.outputs import Floats, NextMovesNow, ParameterNow, Status
 from slipwise.live.watch.history import Seen
 from slipwise.live.watch.path_ellipses import path_ellipses
 from slipwise.live.watch.status_texts import (
     SLIP_NAMES,
+    after_text,
     error_texts,
+    move_text,
     nis_text,
     parameter_texts,
     slip_texts,
     stamp_text,
+    sure_text,
     surface_text,
 )
 
@@ -43,6 +46,7 @@ def snapshot(seen: Seen) -> str:
         },
         "nis": [[segment - seen.nis[-1][0], _round(value)] for segment, value in seen.nis],
         "status": None if status is None else _status(status),
+        "next": None if seen.next_moves is None else _next(seen.next_moves),
     }
     return json.dumps(content, allow_nan=False, separators=(",", ":"))
 
@@ -75,6 +79,29 @@ def _status(status: Status) -> dict[str, Any]:
     }
 
 
+def _next(now: NextMovesNow) -> dict[str, Any]:
+    """Return the moves worth driving, and how sure the worst prediction is."""
+    return {
+        "why": now.why,
+        "moves": [
+            {
+                "v": _round(move.v),
+                "omega": _round(move.omega),
+                "seconds": _round(move.seconds),
+                "text": move_text(move),
+                "after": after_text(move),
+                "teaches": move.teaches,
+            }
+            for move in now.moves
+        ],
+        "sure": [{"name": s.name, "text": sure_text(s), "known": _share(s.known)} for s in now.predictions],
+    }
+
+
+def _share(known: float | None) -> float | None:
+    return None if known is None else _round(known)
+
+
 def _parameter(parameter: ParameterNow) -> dict[str, Any]:
     """Return a parameter's texts, and its places in standard deviations of the prior from its start."""
     scale = parameter.prior_std
@@ -88,6 +115,7 @@ def _parameter(parameter: ParameterNow) -> dict[str, Any]:
         "at": place(parameter.value),
         "spread": _round(parameter.std / scale) if drawn else None,
         "appliedAt": None if parameter.applied is None else place(parameter.applied),
+        "known": _share(parameter.known),
     }
 
 

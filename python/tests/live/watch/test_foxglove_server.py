@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_status, odometry_at, straight_path, waiting_status
+from live.sample_outputs import driven_status, next_moves, odometry_at, straight_path, waiting_status
 
 from slipwise.errors import OutputError
 from slipwise.live.outputs import Note, Output
@@ -32,6 +32,7 @@ SCHEMAS = {
     "/slipwise/parameters": "slipwise.Parameters",
     "/slipwise/slip": "slipwise.Slip",
     "/slipwise/nis": "slipwise.Nis",
+    "/slipwise/next_moves": "slipwise.NextMoves",
 }
 
 
@@ -86,6 +87,14 @@ def test_a_status_is_heard_as_numbers(server: FoxgloveServer) -> None:
     assert status.slip is not None
     assert list(said["/slipwise/slip"].values()) == status.slip.tolist()
     assert said["/slipwise/nis"]["nis"] == status.nis
+
+
+def test_moves_worth_driving_are_heard_by_who_comes_after_them(server: FoxgloveServer) -> None:
+    server.take(next_moves())
+    heard = _received(server, {"/slipwise/next_moves"}, driven_status())
+    content = json.loads(heard["/slipwise/next_moves"][1])
+    assert [move["v"] for move in content["moves"]] == [1.0, -0.5, 0.0]
+    assert content["predictions"]["position"]["known"] == 1.0
 
 
 def test_paths_transforms_and_notes_are_heard_with_well_known_schemas(server: FoxgloveServer) -> None:

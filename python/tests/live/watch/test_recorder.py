@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from live.sample_outputs import driven_outputs, odometry_at, straight_path, waiting_status
+from live.sample_outputs import driven_outputs, next_moves, odometry_at, straight_path, waiting_status
 from rosbags.rosbag2 import Reader
 
 from slipwise.errors import OutputError
@@ -39,7 +39,7 @@ for i in range(10**6):
 
 def _record(path: Path) -> None:
     recorder = Recorder(path)
-    for output in (*driven_outputs(), straight_path(asked=True)):
+    for output in (*driven_outputs(), straight_path(asked=True), next_moves()):
         recorder.take(output)
     recorder.close()
     assert recorder.notices() == []
@@ -49,7 +49,7 @@ def test_all_outputs_are_read_back_in_their_order(tmp_path: Path) -> None:
     path = tmp_path / "out.mcap"
     _record(path)
     messages = RosMessages()
-    outputs = (*driven_outputs(), straight_path(asked=True))
+    outputs = (*driven_outputs(), straight_path(asked=True), next_moves())
     expected = [message for output in outputs for message in messages.of(output)]
     with Reader(path) as reader:
         read = [(c.topic, c.msgtype, bytes(data)) for c, _, data in reader.messages()]
@@ -59,6 +59,7 @@ def test_all_outputs_are_read_back_in_their_order(tmp_path: Path) -> None:
         "/slipwise/model",
         "/slipwise/surface",
         "/slipwise/surface_json",
+        "/slipwise/next_moves",
     ]
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out.mcap"]
 

@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from live.sample_outputs import driven_outputs, driven_status, surface_at, waiting_status
+from live.sample_outputs import driven_outputs, driven_status, next_moves, surface_at, waiting_status
 from rich.console import Console
 
 from slipwise.live.outputs import Note, Output, ParameterNow
 from slipwise.live.watch.history import History
-from slipwise.live.watch.terminal_screen import clean, screen
+from slipwise.live.watch.terminal_screen import clean, fill_bar, screen
 
 HOSTILE = "[red]\x1b]0;owned\x07\x1b[2J\x9b31m\nb\ud800"
 
@@ -38,7 +38,8 @@ def _named(lines: list[str], name: str) -> str:
 def test_it_fits_every_terminal(width: int, height: int) -> None:
     notes = [Note(float(i), f"note {i} " + "x" * 300) for i in range(20)]
     status = replace(driven_status(), log=tuple((n.t, n.text) for n in notes))
-    for outputs in (driven_outputs(), notes, (status,), (waiting_status(),)):
+    moves = (status, next_moves())
+    for outputs in (driven_outputs(), notes, (status,), (waiting_status(),), moves):
         lines = _lines(width, height, *outputs)
         assert max(map(len, lines)) <= width
         assert len(lines) < height
@@ -54,8 +55,36 @@ def test_a_common_terminal_shows_what_matters() -> None:
     assert "(3 expected)" in _named(lines, "NIS")
     assert "baseline" in _named(lines, "held out")
     assert "standstill 3" in _named(lines, "left out")
-    assert _named(lines, "ang.w ").split() == ["ang.w", "-0.29", "0.07", "0.30", "-0.29", "estimated"]
+    assert _named(lines, "ang.w ").split() == [
+        "ang.w",
+        "-0.29",
+        "0.07",
+        "0.30",
+        "█" * 8,
+        "-0.29",
+        "estimated",
+    ]
     assert "commands from /cmd_vel" in lines[-1]
+
+
+def test_moves_worth_driving_are_one_line_where_room_is_short_and_three_where_it_is_not() -> None:
+    short = _lines(80, 24, *driven_outputs(), next_moves())
+    assert _named(short, "next").split("next", 1)[1].strip() == (
+        "+1.00 m/s -0.80 rad/s, -0.50 m/s +0.00 rad/s, +0.00 m/s +0.80 rad/s"
+    )
+    assert "yaw ████▏░░░ ± 0.15 rad, wanted 0.030" in _named(short, "worst")
+    high = _lines(120, 40, *driven_outputs(), next_moves())
+    begin = high.index(_named(high, "next"))
+    assert "forwards 1.00 m/s, turning right 0.80 rad/s, 2 s: yaw ± 0.12 rad" in high[begin]
+    assert "backwards 0.50 m/s, straight" in high[begin + 1]
+    assert "on the spot, turning left 0.80 rad/s" in high[begin + 2]
+    none = _lines(80, 24, *driven_outputs(), next_moves(moves=(), why=HOSTILE))
+    assert "\x1b]0" not in _named(none, "next")
+
+
+def test_a_bar_fills_by_eighths_of_a_character_and_is_blank_where_nothing_is_known() -> None:
+    assert [fill_bar(known) for known in (None, 0.0, 0.5, 1.0)] == ["", "░" * 8, "████░░░░", "█" * 8]
+    assert fill_bar(0.99) != fill_bar(1.0)
 
 
 def test_where_room_is_short_the_estimated_parameters_stay() -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from live.sample_outputs import driven_outputs, driven_status, waiting_status
+from live.sample_outputs import driven_outputs, driven_status, next_moves, waiting_status
 from reporting.browser import Browser
 
 from slipwise.live.outputs import Note, Status
@@ -50,7 +50,7 @@ def _updates(browser: Browser, least: int) -> None:
 
 
 def _take_drive(page: WebPage) -> Status:
-    for output in driven_outputs():
+    for output in (*driven_outputs(), next_moves()):
         page.take(output)
     return driven_status()
 
@@ -67,6 +67,10 @@ def test_a_drive_is_shown_without_error_and_without_scrolling_sideways(
     assert _text(browser, "segments") == str(status.segments)
     rows = browser.value("Array.from(document.querySelectorAll('#parameters tbody tr td.name')).length")
     assert rows == len(status.parameters)
+    assert browser.value("document.querySelectorAll('#moves svg.move').length") == 3
+    assert "turning right 0.80 rad/s" in _text(browser, "moves")
+    full = "Array.from(document.querySelectorAll('#sure .rail')).map(r => r.classList.contains('full'))"
+    assert browser.value(full) == [False, True]
     drawn = "Array.from(document.querySelectorAll('.plot')).map(p => p.querySelectorAll('.trace').length)"
     assert all(count > 0 for count in browser.value(drawn))
     assert browser.problems == []
@@ -134,9 +138,10 @@ def test_names_from_the_robot_are_text_and_never_run(browser: Browser, page: Web
             log=((0.0, HOSTILE),),
         )
     )
+    page.take(next_moves(moves=tuple(replace(move, teaches=HOSTILE) for move in next_moves().moves)))
     _show(browser, page, width)
     _updates(browser, 1)
-    for name in ("vehicle", "why", "validity-why", "log", "counts", "parameters"):
+    for name in ("vehicle", "why", "validity-why", "log", "counts", "parameters", "moves"):
         assert HOSTILE in _text(browser, name)
     assert browser.value(f"{STATE}.owned === undefined && document.querySelector('img') === null")
     assert browser.value("document.querySelectorAll('script').length") == 2

@@ -13,6 +13,7 @@ import pytest
 from live.sample_outputs import (
     driven_outputs,
     driven_status,
+    next_moves,
     odometry_at,
     straight_path,
     surface_at,
@@ -50,6 +51,22 @@ def test_a_drive_is_shown_with_its_parameters_paths_and_nis() -> None:
     assert shown["nis"][-1][0] == 0.0
     assert len(shown["nis"]) > 3
     assert len(shown["path"]["ellipses"]) >= 3
+
+
+def test_moves_worth_driving_are_shown_in_words_with_bars() -> None:
+    assert _shown(*driven_outputs())["next"] is None
+    shown = _shown(*driven_outputs(), next_moves())
+    first, second, third = shown["next"]["moves"]
+    assert (first["v"], first["omega"], first["seconds"]) == (1.0, -0.8, 2.0)
+    assert first["text"] == "forwards 1.00 m/s, turning right 0.80 rad/s"
+    assert second["text"] == "backwards 0.50 m/s, straight"
+    assert third["text"] == "on the spot, turning left 0.80 rad/s"
+    assert [part["known"] == 1.0 for part in shown["next"]["sure"]] == [False, True]
+    rows = {row["name"]: row["known"] for row in shown["status"]["parameters"]}
+    assert rows["ang.w"] == 1.0
+    assert 0.0 < rows["delay_omega"] < 1.0
+    without = _shown(next_moves(moves=(), predictions=(), why="drive a slow curve first"))
+    assert without["next"] == {"why": "drive a slow curve first", "moves": [], "sure": []}
 
 
 def test_a_parameter_is_placed_in_standard_deviations_of_its_prior() -> None:

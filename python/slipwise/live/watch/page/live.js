@@ -127,6 +127,65 @@
     return picture;
   };
 
+  const filling = (known) => {
+    const rail = make("div", "rail filling" + (known === 1 ? " full" : ""));
+    const part = make("i");
+    part.style.left = "0";
+    part.style.width = 100 * (known ?? 0) + "%";
+    rail.append(part);
+    return rail;
+  };
+
+  // ---- moves worth driving
+
+  const PICTURE = 88; // px
+  const track = (move) => {
+    const points = [];
+    for (let i = 0; i <= 32; i++) {
+      const t = (move.seconds * i) / 32;
+      const turn = move.omega * t;
+      const arc = Math.abs(turn) < 1e-6 ? 1 : Math.sin(turn / 2) / (turn / 2);
+      points.push([-move.v * t * arc * Math.sin(turn / 2), -move.v * t * arc * Math.cos(turn / 2)]); // ahead is up
+    }
+    return points;
+  };
+  const movePicture = (move, scale) => {
+    const picture = shape("svg", "move", { viewBox: `${-PICTURE / 2} ${-PICTURE / 2} ${PICTURE} ${PICTURE}`, width: PICTURE, height: PICTURE });
+    const points = track(move).map(([x, y]) => [x * scale, y * scale]);
+    picture.append(shape("path", "driven", { d: "M" + points.map((p) => p.map((n) => n.toFixed(1)).join(" ")).join("L") }));
+    const [x, y] = points[points.length - 1];
+    const turned = (-move.omega * move.seconds * 180) / Math.PI;
+    const body = "M0 -7L5 6L0 3L-5 6Z";
+    picture.append(shape("path", "from", { d: body }));
+    picture.append(shape("path", "to", { d: body, transform: `translate(${x.toFixed(1)} ${y.toFixed(1)}) rotate(${turned.toFixed(1)})` }));
+    return picture;
+  };
+  let shownNext = null;
+  const showNext = (next) => {
+    const key = JSON.stringify(next);
+    if (next === null || key === shownNext) return;
+    shownNext = key;
+    const far = Math.max(0.1, ...next.moves.flatMap((move) => track(move).flat().map(Math.abs)));
+    const items = next.moves.map((move) => {
+      const item = make("li");
+      const words = make("div");
+      words.append(
+        make("strong", "", move.text),
+        make("p", "", `hold ${move.seconds} s, then the worst is ${move.after}`),
+        make("p", "", "teaches most of " + move.teaches),
+      );
+      item.append(movePicture(move, (PICTURE / 2 - 9) / far), words);
+      return item;
+    });
+    at("moves").replaceChildren(...(items.length ? items : [make("li", "empty", next.why || "Not known yet.")]));
+    const rows = next.sure.map((part) => {
+      const row = make("div", "amount sure");
+      row.append(make("span", "name", "worst " + part.name), filling(part.known), make("span", "text", part.text));
+      return row;
+    });
+    at("sure").replaceChildren(...rows);
+  };
+
   const cell = (kind, label, text) => {
     const one = make("td", kind, text);
     if (label) one.dataset.label = label;
@@ -143,12 +202,15 @@
       if (p.unit) name.append(make("small", "", p.unit));
       const picture = make("td", "bar");
       picture.append(bar(p));
+      const sure = make("td", "known");
+      if (p.known !== null) sure.append(filling(p.known));
       const state = make("td", "state");
       state.append(make("span", "validity " + (OF_VALIDITY[p.validity] || ""), p.validity));
       row.append(
         name,
         make("td", "number value", minus(p.value) + " ± " + p.std),
         picture,
+        sure,
         cell("number quiet", "prior ±", p.prior),
         cell("number quiet", "at start", minus(p.start)),
         cell("number quiet", "applied", minus(p.applied)),
@@ -159,7 +221,7 @@
     if (rows.length === 0) {
       const row = make("tr");
       const only = make("td", "empty", "Nothing was learned yet.");
-      only.colSpan = 7;
+      only.colSpan = 8;
       row.append(only);
       rows.push(row);
     }
@@ -301,6 +363,7 @@
     drawPath(newest.path, status ? status.frame : "");
     drawNis(newest.nis);
     showLog(newest.log);
+    showNext(newest.next);
     if (status === null) return;
     showAnswer(status);
     showSlip(status.slip);
