@@ -8,7 +8,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Protocol
 
 import typer
 
@@ -26,7 +26,6 @@ from slipwise.cli.options import (
 if TYPE_CHECKING:
     from types import FrameType
 
-    from slipwise.live.node import LiveNode
     from slipwise.logs import LogOptions
 
 
@@ -176,10 +175,17 @@ class Shown:
             Output(None).line(text)
 
 
+class Stoppable(Protocol):
+    """What can be ended from a signal."""
+
+    def stop(self) -> None:
+        """End it in order."""
+
+
 class Stopping:
     """Ends the node on a signal; before there is one, the signal interrupts what goes on."""
 
-    node: LiveNode | None = None
+    node: Stoppable | None = None
 
     def __call__(self, _signal: int, _frame: FrameType | None) -> None:
         """Take a signal."""

@@ -17,6 +17,25 @@ DEFAULT_ADDRESS = "127.0.0.1:7447"
 LARGEST = 60_000  # bytes of a packet
 
 
+def listening_socket(address: str) -> socket.socket:
+    """Return a socket that takes packets at "host:port"; a look for one ends after a fifth of a second.
+
+    Raises:
+        SettingsError: the address cannot be used.
+    """
+    host, _, port = address.rpartition(":")
+    found = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    try:
+        found.bind((host or "127.0.0.1", int(port)))
+    except (OSError, ValueError, OverflowError) as problem:
+        found.close()
+        raise SettingsError(
+            f"cannot listen on {address!r}: {problem}", advice="such as 127.0.0.1:7447"
+        ) from problem
+    found.settimeout(0.2)
+    return found
+
+
 class Udp:
     """Listens on loopback unless told otherwise.
 
@@ -28,16 +47,7 @@ class Udp:
     """
 
     def __init__(self, address: str = DEFAULT_ADDRESS) -> None:
-        host, _, port = address.rpartition(":")
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        try:
-            self._socket.bind((host or "127.0.0.1", int(port)))
-        except (OSError, ValueError, OverflowError) as problem:
-            self._socket.close()
-            raise SettingsError(
-                f"cannot listen on {address!r}: {problem}", advice="such as 127.0.0.1:7447"
-            ) from problem
-        self._socket.settimeout(0.2)
+        self._socket = listening_socket(address)
         self._reader, self._wrong = LineReader(), WrongLines()
         self._sender: tuple[str, int] | None = None
         self._stopped = threading.Event()
