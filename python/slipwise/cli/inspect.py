@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from slipwise.cli.output import Output
     from slipwise.excitation import Excitation
     from slipwise.inspection import Inspection, Learnability, Stream, Timing
-    from slipwise.logs import Log, LogOptions, Survey
+    from slipwise.logs import LogOptions, Survey
 
 
 @takes_log_options
@@ -74,14 +74,12 @@ def inspect(
     if strict:
         return _check_strictly(out, logs)
     with progress_bar("reading") as update:
-        inspection = inspect_files(logs, log_options, chosen, progress=update)
+        inspection = inspect_files(logs, log_options, chosen, progress=update, keep=excite is not None)
         drive = None
         if excite is not None and not inspection.problem:
             from slipwise.cli.numbers import area_of
 
-            drive = _write_drive(
-                excite, inspection.log, area_of(excite_area, "--excite-area"), chosen, update
-            )
+            drive = _write_drive(excite, inspection, area_of(excite_area, "--excite-area"), chosen, update)
     document = _document(inspection)
     if drive is not None:
         document |= {"excite": {"file": excite, "seconds": drive.seconds, "start": drive.start}}
@@ -98,13 +96,21 @@ def inspect(
 
 
 def _write_drive(
-    path: Path, log: Log, area: tuple[float, float], settings: Settings, update: Callable[[str, float], None]
+    path: Path,
+    inspection: Inspection,
+    area: tuple[float, float],
+    settings: Settings,
+    update: Callable[[str, float], None],
 ) -> Excitation:
     from slipwise.excitation import ExcitationOptions, write_commands
     from slipwise.inspection import next_drive
 
     drive = next_drive(
-        log, ExcitationOptions(area=area), settings, progress=lambda part: update("searching a drive", part)
+        inspection.log,
+        ExcitationOptions(area=area),
+        settings,
+        progress=lambda part: update("searching a drive", part),
+        kept=inspection.kept,
     )
     write_commands(path, drive)
     return drive

@@ -8,6 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from slipwise.calibration import Settings
+from slipwise.calibration.learned_log import LearnedLog
+from slipwise.calibration.prepared_run import choose_input
+from slipwise.calibration.settings import AVERAGE
+from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.errors import LogError
 from slipwise.inspection.coverage_map import coverage_map
 from slipwise.inspection.learnability import Learnability, learnability_of
@@ -27,6 +31,7 @@ class Inspection:
     maps: dict[str, tuple[str, ...]]  # lines of the coverage map, by kind of input
     surveys: tuple[Survey, ...] = ()  # of each file: its topics or columns, and what they are used as
     problem: str = ""  # why the files make no log as they are; then the rest is empty
+    kept: LearnedLog | None = None  # what a model of the log is made of, where it was asked for
 
 
 def inspect_files(
@@ -35,6 +40,7 @@ def inspect_files(
     settings: Settings | None = None,
     *,
     progress: Callable[[str, float], None] | None = None,
+    keep: bool = False,
 ) -> Inspection:
     """Look at files that should make a log; what is merely unclear or missing in them is no error.
 
@@ -43,6 +49,7 @@ def inspect_files(
         options: as for `open_log`.
         settings: as for `inspect_log`.
         progress: called with what is done now, and how much of all is done.
+        keep: as for `inspect_log`.
 
     Raises:
         LogError: a file is missing, damaged or of an unknown kind.
@@ -54,23 +61,30 @@ def inspect_files(
         return Inspection(Log(runs=()), (), (), (), {}, surveys, str(unusable))
     if progress is not None:
         progress("learning", 0.5)
-    return replace(inspect_log(log, settings), surveys=surveys)
+    return replace(inspect_log(log, settings, keep=keep), surveys=surveys)
 
 
-def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
+def inspect_log(log: Log, settings: Settings | None = None, *, keep: bool = False) -> Inspection:
     """Look at a log; one without anything to learn is looked at as well.
 
     Args:
         log: what `open_log` returned.
         settings: rules of windows, and the basis to learn; `auto` by default.
+        keep: keep what was learned from the input that `calibrate` chooses, where it learns the same, so that
+            `next_drive` need not learn it again.
     """
     settings = settings or Settings()
+    kept: dict[str, LearnedLog] = {}
+    chosen = choose_input(log) if keep and _as_calibrate(log, settings) else None
     inputs = {
         "command": [run.commands for run in log.runs if run.commands is not None],
         "wheel": [run.wheels for run in log.runs if run.wheels is not None],
     }
     present = [name for name, series in inputs.items() if any(len(part) for part in series)]
-    learned = tuple(learnability_of(log, name, settings) for name in present or ["command"])
+    learned = tuple(
+        learnability_of(log, name, settings, kept if name == chosen else None)
+        for name in present or ["command"]
+    )
     return Inspection(
         log=log,
         streams=streams_of(log, settings.rules()),
@@ -79,4 +93,10 @@ def inspect_log(log: Log, settings: Settings | None = None) -> Inspection:
         maps={
             name: coverage_map(inputs[name], unknown_after=settings.segment.unknown_after) for name in present
         },
+        kept=kept.get(chosen or ""),
     )
+
+
+def _as_calibrate(log: Log, settings: Settings) -> bool:
+    """Whether `calibrate` learns this log with these settings as they are."""
+    return settings.estimator == AVERAGE and for_the_ground_of(log, settings) == settings

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.calibration import Settings
-from slipwise.calibration.calibrate import learning_windows, refuse_empty
+from slipwise.calibration.calibrate import JUDGING_HORIZONS, learning_windows, refuse_empty
 from slipwise.calibration.identifiability import drives_for
-from slipwise.calibration.learned_log import learn_log
+from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Posterior
 from slipwise.calibration.prepared_run import prepare_run
 from slipwise.calibration.verdict import POSITIONS_ONLY
@@ -56,22 +56,38 @@ class Learnability:
         return next((p for p in self.parameters if p.name == name), None)
 
 
-def learnability_of(log: Log, input_name: str, settings: Settings) -> Learnability:
-    """Learn as `calibrate` does and say what is determined; nothing to learn is no error."""
+def learnability_of(
+    log: Log, input_name: str, settings: Settings, kept: dict[str, LearnedLog] | None = None
+) -> Learnability:
+    """Learn as `calibrate` does and say what is determined; nothing to learn is no error.
+
+    Args:
+        log: what `open_log` returned.
+        input_name: "command" or "wheel".
+        settings: what is learned and how.
+        kept: gets what was learned, by input, with the predictions and limits that a model needs.
+    """
     found = contradictions(
         log, input_name, settings.segment.unknown_after, sensor_yaw=settings.sensor_extrinsics.yaw
     )
-    return replace(_learned(log, input_name, settings), contradictions=found)
+    return replace(_learned(log, input_name, settings, kept), contradictions=found)
 
 
-def _learned(log: Log, input_name: str, settings: Settings) -> Learnability:
+def _learned(
+    log: Log, input_name: str, settings: Settings, kept: dict[str, LearnedLog] | None
+) -> Learnability:
     try:
         windows = learning_windows(prepare_run(log, input_name), input_name, settings)
         refuse_empty(windows, log)
     except LogError as nothing:
         reason = f"{nothing.what}{f': {nothing.advice}' if nothing.advice else ''}"
         return Learnability(input_name, 0, 0.0, (), (), reason, ())
-    posterior = learn_log(windows.drive, settings, ()).slip
+    if kept is None:
+        posterior = learn_log(windows.drive, settings, ()).slip
+    else:
+        keep = Keep(settings.vehicle.wheel_separation)
+        kept[input_name] = learn_log(windows.drive, settings, JUDGING_HORIZONS, keep=keep)
+        posterior = kept[input_name].slip
     parameters = tuple(
         _parameter((info.name, info.unit), posterior, i) for i, info in enumerate(posterior.motion.parameters)
     )

@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from slipwise.calibration import Settings, calibrate
+from slipwise.calibration.calibrate import calibrate_by, learned_by
+from slipwise.calibration.learned_log import LearnedLog
+from slipwise.calibration.prepared_run import choose_input
 from slipwise.errors import SettingsError
 from slipwise.excitation import (
     CommandSpace,
@@ -25,6 +28,7 @@ def next_drive(
     settings: Settings | None = None,
     *,
     progress: Callable[[float], None] | None = None,
+    kept: LearnedLog | None = None,
 ) -> Excitation:
     """Return the drive after which the worst prediction is surest, given what this log has taught.
 
@@ -35,12 +39,17 @@ def next_drive(
         options: the area, the time and the robot's size.
         settings: what is learned and how.
         progress: called with the fraction done, 0 to 1.
+        kept: what `inspect_log` learned of the log with these settings, where it kept that; it is learned
+            here otherwise.
 
     Raises:
         LogError: nothing can be learned from the log.
         SettingsError: the robot never drove or turned, so that its limits are not known; or no drive fits.
     """
-    model = calibrate(log, settings=settings).model
+    if kept is None:
+        model = calibrate(log, settings=settings).model
+    else:
+        model = calibrate_by(lambda _: learned_by(kept), log, choose_input(log), settings or Settings()).model
     try:
         limits = limits_of(model)
     except SettingsError as problem:

@@ -3,14 +3,17 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
 
 from slipwise import _core
+from slipwise.calibration import Settings
 from slipwise.errors import SettingsError
 from slipwise.excitation import ExcitationOptions, command_inputs
-from slipwise.inspection import next_drive
+from slipwise.inspection import inspect_log, next_drive
 
 FEW = ExcitationOptions(minutes=0.5, levels=3, robots=25, checked=200)
 SLIP = {"basis": _core.named_basis("edd-2"), "alpha": (-0.1, -0.3)}
@@ -27,6 +30,24 @@ def test_the_drive_is_no_faster_than_the_log() -> None:
     assert np.abs(inputs.omega).max() <= np.abs(driven.omega).max() + 1e-9
     assert np.abs(inputs.v).max() > 0.1
     assert done
+
+
+@pytest.mark.slow
+def test_what_inspect_learned_is_not_learned_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    log = simulated_log(Drive(seconds=40.0, **SLIP))  # type: ignore[arg-type]
+    plain, keeping = inspect_log(log), inspect_log(log, keep=True)
+    assert plain.kept is None
+    assert keeping.learned == plain.learned
+    learned = next_drive(log, FEW)
+    monkeypatch.setattr(sys.modules["slipwise.inspection.next_drive"], "calibrate", None)
+    kept = next_drive(log, FEW, kept=keeping.kept)
+    assert kept.moves == learned.moves
+    assert np.array_equal(kept.knowledge.covariance, learned.knowledge.covariance)
+
+
+def test_nothing_is_kept_where_calibrate_learns_another_way() -> None:
+    log = simulated_log(Drive(seconds=20.0, **SLIP))  # type: ignore[arg-type]
+    assert inspect_log(log, Settings(estimator="iekf"), keep=True).kept is None
 
 
 @pytest.mark.slow
