@@ -56,11 +56,28 @@ void bind_settings(nb::module_& m) {
       .def_rw("prior_segments", &NoiseSettings::prior_segments)
       .def_rw("forgetting_time", &NoiseSettings::forgetting_time)
       .def_rw("largest", &NoiseSettings::largest);
+  nb::class_<BodyForceSettings>(m, "BodyForceSettings")
+      .def(nb::init<>())
+      .def_rw("time_constant", &BodyForceSettings::time_constant)
+      .def_rw("std", &BodyForceSettings::std)
+      .def_rw("turn_std", &BodyForceSettings::turn_std)
+      .def_rw("arm", &BodyForceSettings::arm);
+  nb::class_<BodyForce>(m, "BodyForce", "The states of a force among the parameters of a model.")
+      .def(nb::init<const Basis&, const BodyForceSettings&>(), "basis"_a, "settings"_a)
+      .def_prop_ro("places", &BodyForce::places)
+      .def(
+          "passed",
+          [](const BodyForce& force, Estimate estimate, double seconds) {
+            force.pass(estimate, seconds);
+            return estimate;
+          },
+          "estimate"_a, "seconds"_a, "What is known after some time in which nothing was measured [s].");
   nb::class_<CausalFilterSettings>(m, "CausalFilterSettings")
       .def(nb::init<>())
       .def_rw("prior", &CausalFilterSettings::prior)
       .def_rw("iekf", &CausalFilterSettings::iekf)
-      .def_rw("noise", &CausalFilterSettings::noise);
+      .def_rw("noise", &CausalFilterSettings::noise)
+      .def_rw("force", &CausalFilterSettings::force);
   nb::class_<ChangeSettings>(m, "ChangeSettings")
       .def(nb::init<>())
       .def_rw("detect", &ChangeSettings::detect)

@@ -145,6 +145,14 @@ void bind_segment(nb::module_& m) {
           },
           "sensor"_a, "The same segment, measured by a sensor at this pose in base_link.")
       .def(
+          "with_heading",
+          [](const Segment& segment, double heading) {
+            Segment headed = segment;
+            headed.heading = heading;
+            return headed;
+          },
+          "heading"_a, "The same segment, its first pose headed like this in the frame of the poses [rad].")
+      .def(
           "with_ground",
           [](const Segment& segment, std::shared_ptr<const Ground> ground) {
             Segment tilted = segment;
@@ -164,6 +172,7 @@ void bind_segment(nb::module_& m) {
       .def_ro("start", &Segment::start)
       .def_ro("end", &Segment::end)
       .def_ro("measured", &Segment::measured)
+      .def_ro("heading", &Segment::heading)
       .def_ro("gx", &Segment::gx)
       .def_ro("gy", &Segment::gy)
       .def_prop_ro(

@@ -8,6 +8,7 @@
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
 #include "slipwise/slip/basis.hpp"
+#include "slipwise/slip/force_terms.hpp"
 #include "slipwise/slip/mixed_ahead.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
@@ -42,6 +43,7 @@ void bind_slip(nb::module_& m) {
       .def_prop_ro("name", &Basis::name)
       .def_prop_ro("size", &Basis::size)
       .def_prop_ro("sideways", &Basis::sideways)
+      .def_prop_ro("by_heading", &Basis::by_heading, "Whether a term depends on the heading in the frame of the poses.")
       .def_prop_ro("lon", [](const Basis& b) { return texts(b, Channel::Lon); })
       .def_prop_ro("lat", [](const Basis& b) { return texts(b, Channel::Lat); })
       .def_prop_ro("ang", [](const Basis& b) { return texts(b, Channel::Ang); })
@@ -69,6 +71,18 @@ void bind_slip(nb::module_& m) {
       .def_prop_ro(
           "changes", [](const MixedAhead& mixed) { return mixed.ahead.changes; }, "Of slip at each edge.")
       .def_ro("directions", &MixedAhead::directions, "Independent errors of all stretches, [slip, stretches] each.");
+  nb::enum_<ForceFrame>(m, "ForceFrame").value("Body", ForceFrame::Body).value("World", ForceFrame::World);
+  m.def("with_force", &with_force, "basis"_a, "frame"_a, "The basis with the terms of a force.");
+  m.def(
+      "force_places",
+      [](const Basis& basis) {
+        std::vector<Eigen::Index> places;
+        for (const ForceTerm& term : force_terms(basis)) {
+          places.push_back(term.place);
+        }
+        return places;
+      },
+      "basis"_a, "Places of the terms of a force among the parameters of a basis.");
   m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
   m.def("basis_names", &basis_names, "Names of all bases that ship.");
   m.def(

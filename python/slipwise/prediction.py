@@ -86,6 +86,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
     terrain_ahead: TerrainAhead | None = None,
+    force_age: float = 0.0,
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -102,9 +103,12 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             is known of it.
         ground: what the robot drives on, a `Grade` or an `ElevationMap`; level by default. The path is then
             also one in space, and gravity acts where the model has terms of it.
-        at: the robot's pose at the start in the frame of the ground (x, y [m], yaw [rad]).
+        at: the robot's pose at the start in the frame of the ground, or of the poses that a force was
+            learned in (x, y [m], yaw [rad]).
         terrain_ahead: surfaces along the path, of those that the model remembers. Each step slips as on the
             surface that it is driven on; where that is uncertain, as the mixture, whose covariance says so.
+        force_age: how long before the start the model was learned [s], where a force was learned beside
+            slip: it fades. A day later use `without_force`.
 
     Raises:
         ModelError: the model does not remember a surface ahead.
@@ -134,13 +138,14 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     disturbance = _core.DisturbanceFilter(model.disturbance)
     now = disturbance.now(model.posterior, history, []) if slip_now is None else slip_now
     slip = slip_ahead(terrain_ahead, model)
-    posterior = model.posterior if slip is None else _on_stretches(model, slip)
+    stretches = None if slip is None else _on_stretches(model, slip)
     under = None if ground is None else ground.under(_finite_pose(at))
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
         segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
-        segment = segment.with_ground(under)
+        segment = segment.with_ground(under).with_heading(at[2])
+        posterior = stretches or model.posterior_after(force_age + 0.5 * seconds)
         if known is not None:
             segment = segment.with_measured_actuator(*known)
         if slip is None:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -32,7 +33,11 @@ bool far_apart(double a, double b) { return std::abs(std::log(a / b)) > kSpeedCh
 }  // namespace
 
 CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settings)
-    : model_(std::move(model)), settings_(settings), state_(model_, settings.noise) {
+    : model_(std::move(model)),
+      settings_(settings),
+      state_(model_, settings.noise),
+      force_(model_.basis(), settings.force),
+      force_at_(std::numeric_limits<double>::infinity()) {
   follow({.v = 1.0, .omega = 1.0});
   started_ = false;
   stated_ = Eigen::VectorXd::Ones(model_.size());
@@ -40,9 +45,9 @@ CausalFilter::CausalFilter(MotionModel model, const CausalFilterSettings& settin
 }
 
 void CausalFilter::follow(const ReferenceSpeeds& speeds) {
-  Eigen::VectorXd std = slip_prior_std(model_.basis(), speeds, settings_.prior);
+  Eigen::VectorXd std = slip_std_at(speeds);
   if (!started_) {
-    state_.estimate = before_ = prior_estimate(model_, speeds, settings_.prior);
+    state_.estimate = before_ = prior(speeds);
   } else if (far_apart(speeds.v, speeds_.v) || far_apart(speeds.omega, speeds_.omega)) {
     std::optional<Estimate> changed = change_slip_prior(state_.estimate, slip_std_, std);
     std::optional<Estimate> before = change_slip_prior(before_, slip_std_, std);
@@ -59,9 +64,21 @@ void CausalFilter::follow(const ReferenceSpeeds& speeds) {
   slip_std_ = std::move(std);
 }
 
-Eigen::VectorXd CausalFilter::prior_std() const {
-  Estimate prior = prior_estimate(model_, speeds_, settings_.prior);
-  return prior.covariance.diagonal().cwiseSqrt();
+Estimate CausalFilter::prior(const ReferenceSpeeds& speeds) const {
+  Estimate known = prior_estimate(model_, speeds, settings_.prior);
+  force_.pass(known, -1.0);
+  return known;
+}
+
+Eigen::VectorXd CausalFilter::prior_std() const { return prior(speeds_).covariance.diagonal().cwiseSqrt(); }
+
+/// Time passes for a force from the middle of one segment to that of the next.
+void CausalFilter::pass(const Segment& segment) {
+  if (force_.learned()) {
+    const double middle = 0.5 * (segment.start + segment.end);
+    force_.pass(state_.estimate, middle - force_at_);
+    force_at_ = middle;
+  }
 }
 
 void CausalFilter::forget(double fraction) {
@@ -170,13 +187,19 @@ void CausalFilter::end_refit() {
 
 IekfUpdate CausalFilter::learn(const InputHistory& inputs, const Segment& segment, const ReferenceSpeeds& speeds) {
   follow(speeds);
+  pass(segment);
   refitted_ = false;
   IekfUpdate update = state_.learn(model_, inputs, segment, settings_.noise, settings_.iekf);
-  if (!full_ && !update.at.by_parameter.isZero(0.0)) {
+  // A refit takes all parameters for constant, which a force is not.
+  if (!full_ && !force_.learned() && !update.at.by_parameter.isZero(0.0)) {
     keep(inputs, segment);
   }
   if (settings_.noise.adapt) {
     stated_ = state_.scores.std_factors(before_.covariance, state_.estimate.covariance);
+    // Scores are summed as of what is constant: of a force, which changes, they may tell of more spread, not of less.
+    for (const Eigen::Index place : force_.places()) {
+      stated_[place] = std::max(stated_[place], 1.0);
+    }
   }
   return update;
 }

@@ -55,7 +55,7 @@ std::vector<InputSample> SegmentStream::repeated(const std::vector<InputSample>&
 }
 
 DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<InputSample>& future) const {
-  Segment segment{.start = newest_, .end = newest_ + horizon, .sensor = settings_.sensor};
+  Segment segment{.start = newest_, .end = newest_ + horizon, .sensor = settings_.sensor, .heading = heading_};
   stand_on_ground(segment, true);
   const bool by_wheels = !settings_.from_commands;
   if (!by_wheels) {
@@ -68,7 +68,7 @@ DrivenSegment SegmentStream::segment_ahead(double horizon, const std::vector<Inp
 }
 
 DrivenSegment SegmentStream::stretch(double start, double end, double back) const {
-  Segment segment{.start = start, .end = end, .sensor = settings_.sensor};
+  Segment segment{.start = start, .end = end, .sensor = settings_.sensor, .heading = heading_};
   stand_on_ground(segment, false);
   if (settings_.from_commands) {
     set_actuator_state(segment);

@@ -89,8 +89,9 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
       known.disturbance->follow(*known.motion, slip, segment);
     }
   }
+  const auto motion = aged(known, ahead.segment);
   const auto beginnings =
-      linearize_beginnings(known.motion->model, known.motion->estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
+      linearize_beginnings(motion->model, motion->estimate.mean, ahead.inputs, ahead.segment, kPathPoses);
   PredictedPath path{.start = stream_.newest(),
                      .t = {},
                      .poses = {},
@@ -100,7 +101,7 @@ PredictedPath MotionLearner::predict(const std::vector<InputSample>& future, dou
   std::ranges::transform(beginnings, std::back_inserter(path.t),
                          [](const SegmentLinearization& part) { return part.path.times.back(); });
   path.t.back() = ahead.segment.end;
-  const auto along = known.disturbance->predict_along(*known.motion, slip, beginnings, ahead.segment);
+  const auto along = known.disturbance->predict_along(*motion, slip, beginnings, ahead.segment);
   for (std::size_t i = 0; i < along.size(); ++i) {
     path.students.push_back(student_for(path.t[i] - path.start, known.motion->structure));
     path.poses.push_back(along[i].pose);

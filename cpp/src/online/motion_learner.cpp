@@ -317,6 +317,19 @@ const Knowledge& MotionLearner::known_at(double t) const {
   return known_.front();
 }
 
+/// What was known, where a force was, with the force as it is expected amid a segment.
+std::shared_ptr<const MotionPosterior> MotionLearner::aged(const Knowledge& known, const Segment& segment) const {
+  const BodyForce force(known.motion->model.basis(), settings_.hypotheses.filter.force);
+  if (!force.learned() || !std::isfinite(known.until)) {
+    return known.motion;
+  }
+  MotionPosterior later = *known.motion;
+  const double amid = 0.5 * (segment.start + segment.end);
+  const double spoken = known.until - 0.5 * settings_.stream.segment_length;  // the middle of the last segment
+  force.pass(later.estimate, std::max(amid - spoken, 0.0));
+  return std::make_shared<const MotionPosterior>(std::move(later));
+}
+
 /// The last segments that were complete at `t` [s].
 SegmentList MotionLearner::recent_before(double t) const {
   SegmentList found;
@@ -340,7 +353,7 @@ void MotionLearner::judge(const TargetSegment& target) {
   const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
   const SegmentList recent = recent_before(segment.start);
   const SlipNow& slip = recent_slip_.after(*known.disturbance, known.motion, recent);
-  const auto [expected, nominal] = known.disturbance->predict_both(*known.motion, slip, driven);
+  const auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
   const Eigen::Vector3d measured = segment.measured.vector();
   const Structure structure = known.motion->structure;
   HorizonErrors& errors = errors_[target.horizon];

@@ -232,6 +232,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       reject(Stream::Pose, Reason::NoCourse, pose.t);
       continue;
     }
+    heading_ = timed->pose.yaw;
     if (pose.position) {
       gyro_.see_course(timed->pose);
     }
@@ -279,7 +280,8 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .gx = cut.first.gx,
                   .gy = cut.first.gy,
                   .sensor = settings_.sensor,
-                  .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio}};
+                  .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio},
+                  .heading = cut.first.yaw};
   set_course(segment, cut);
   stand_on_ground(segment, horizon.has_value());
   if (!by_wheels) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -245,6 +246,9 @@ PlanningModel::PlanningModel(const MotionModel& model, const Eigen::Ref<const Ei
     : basis_(model.basis()), limits_(limits) {
   check(limits);
   model.check(parameters);
+  if (basis_.by_heading()) {
+    throw std::invalid_argument("planning knows no heading in the frame of the poses, and a slip term depends on it");
+  }
   alpha_ = parameters.head(model.slip_size());
   actuator_ = model.actuator(parameters);
   actuator_.clock_offset = 0.0;

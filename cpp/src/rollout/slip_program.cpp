@@ -23,6 +23,10 @@ class Compiler {
     if (term.sideways()) {
       return;  // a rollout never drives sideways
     }
+    if (term.by_heading()) {
+      throw std::invalid_argument("the term '" + term.text() +
+                                  "' depends on the heading in the frame of the poses, which rollouts do not know");
+    }
     double fraction = alpha * term.coefficient();
     std::vector<SlipFactor> factors;
     for (const Quantity quantity : term.factors()) {

@@ -2,6 +2,7 @@
 // One pass over the drive steps of a segment: poses, and sums that give the derivative of the last pose.
 #include "slipwise/segment/integrate_segment.hpp"
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -28,7 +29,17 @@ Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd
   return model.learned().sensor_extrinsics ? model.sensor_extrinsics(parameters) : segment.sensor;
 }
 
-BodyGravity gravity_of(const Segment& segment) { return {.gx = segment.gx, .gy = segment.gy}; }
+/// Of a step that begins at `theta`, the heading amid it.
+BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta, bool by_heading,
+                  const BodyGravity* ground) {
+  BodyGravity all = ground != nullptr ? *ground : BodyGravity{.gx = segment.gx, .gy = segment.gy};
+  if (by_heading) {
+    const double amid = segment.heading + theta + 0.5 * step.turn;
+    all.cos_yaw = std::cos(amid);
+    all.sin_yaw = std::sin(amid);
+  }
+  return all;
+}
 
 /// Runge-Kutta of fourth order on a constant twist: Simpson's rule over the heading (thesis 3.1).
 Eigen::Vector2d rk4_displacement(const Eigen::Vector3d& tangent) {
@@ -125,6 +136,25 @@ struct SensitivitySums {
     }
   }
 
+  /// Derivatives of the heading amid a step, before anything of the step is added.
+  struct ByHeading {
+    Eigen::RowVectorXd slip;
+    Eigen::RowVectorXd actuator;
+  };
+  ByHeading heading_amid(const std::optional<LearnedColumns>& step) const {
+    ByHeading amid{slip.row(2), actuator.row(2)};
+    if (step) {
+      amid.actuator += 0.5 * step->row(3);
+    }
+    return amid;
+  }
+
+  /// What follows from the heading amid the step: `rate` is the derivative of the path's start by it.
+  void add_heading(const Eigen::Vector3d& rate, const ByHeading& amid) {
+    slip += rate * amid.slip;
+    actuator += rate * amid.actuator;
+  }
+
   /// Phi(n, 0), carried from the robot to the sensor.
   static Eigen::Matrix3d at_sensor(const Pose2& end, const Pose2& sensor) {
     return sensor_by_robot(end, sensor) * transition(Pose2{}, end);
@@ -207,10 +237,11 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   model.check(parameters);
   const ActuatorModel actuator = model.actuator(parameters);
   const bool by_actuator = kAll && model.actuator_size() > 0;
+  const bool by_heading = model.basis().by_heading();
   const auto alpha = parameters.head(model.slip_size());
   ActuatorSteps drive = by_actuator ? linearize_actuator_steps(inputs, actuator, window_of(segment))
                                     : actuator_steps(inputs, actuator, window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground != nullptr);
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || by_heading);
   const Pose2 sensor = sensor_of(model, parameters, segment);
   std::array<Eigen::Matrix<double, 3, Eigen::Dynamic>, kCoursePoints> at_points;
   GrowingPath path(segment, drive.steps.size());
@@ -222,7 +253,8 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const ActuatorStep& step = drive.steps[k];
     const auto ground = GroundUnder::find(segment, step, path, by_actuator);
-    const PathSlip along{model.basis(), alpha, ground ? ground->step.gravity : gravity_of(segment)};
+    const PathSlip along{model.basis(), alpha,
+                         under(segment, step, path.pose().theta, by_heading, ground ? &ground->step.gravity : nullptr)};
     model.basis().features(slip_state(step, along.gravity), features);
     const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
     const Eigen::Vector3d body = tangent_of(step, slip);
@@ -233,11 +265,16 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
     if (by_actuator) {
       learned = drive.jacobians[k](Eigen::all, model.actuator_places());
     }
+    const auto amid = by_heading ? std::optional(sums.heading_amid(learned)) : std::nullopt;
     if (ground && ground->moved) {
       sums.add_ground(by_tangent * above_by_place(*ground->moved, step, along, body), *ground->moved, before, learned);
     }
     if (ground) {
       by_tangent = (by_tangent * ground->step.level).eval();
+    }
+    if (amid) {
+      const Eigen::Vector3d rate = slip_rate_by_heading(model.basis(), alpha, slip_state(step, along.gravity));
+      sums.add_heading(by_tangent * rate * step.duration, *amid);
     }
     sums.add_slip(model.basis(), by_tangent, features, step.duration);
     if (learned && !learned->isZero(0.0)) {
@@ -295,15 +332,18 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   model.check(parameters);
   check_ahead(ahead, model.slip_size());
   Eigen::VectorXd alpha = parameters.head(model.slip_size());
+  const bool by_heading = model.basis().by_heading();
   double travelled = 0.0;
   ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
-  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || !ahead.empty());
+  const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || by_heading || !ahead.empty());
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
   for (const ActuatorStep& step : drive.steps) {
     const auto ground =
         segment.ground ? std::optional(ground_step(*segment.ground, step, path.pose(), path.time())) : std::nullopt;
-    model.basis().features(slip_state(step, ground ? ground->gravity : gravity_of(segment)), features);
+    const BodyGravity gravity =
+        under(segment, step, path.pose().theta, by_heading, ground ? &ground->gravity : nullptr);
+    model.basis().features(slip_state(step, gravity), features);
     if (!ahead.empty()) {
       alpha = slip_over(ahead, parameters.head(model.slip_size()), travelled, std::abs(step.forward));
     }

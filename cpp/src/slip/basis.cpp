@@ -66,6 +66,7 @@ Basis::Basis(std::string name, std::span<const std::string> lon, std::span<const
   begin_[kChannels] = terms_.size();
   for (const Term& term : terms_) {
     sideways_ = sideways_ || term.sideways();
+    by_heading_ = by_heading_ || term.by_heading();
     coefficients_.push_back(term.coefficient());
     factors_.insert(factors_.end(), term.factors().begin(), term.factors().end());
     factor_end_.push_back(factors_.size());

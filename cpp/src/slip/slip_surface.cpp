@@ -51,6 +51,26 @@ Eigen::Vector3d slip_rate_by_sideways(const Basis& basis, const Eigen::Ref<const
   return derivative;
 }
 
+Eigen::Vector3d slip_rate_by_heading(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                     const SlipState& state) {
+  const SlipQuantities quantities(state);
+  Eigen::Vector3d derivative = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < basis.size(); ++i) {
+    const Term& term = basis.terms()[i];
+    double value = term.coefficient();
+    double by = 0.0;
+    for (const Quantity factor : term.factors()) {
+      const double x = quantities.value[static_cast<std::size_t>(factor)];
+      by *= x;
+      by += factor == Quantity::CosYaw ? -value * state.sin_yaw : 0.0;
+      by += factor == Quantity::SinYaw ? value * state.cos_yaw : 0.0;
+      value *= x;
+    }
+    derivative[static_cast<Eigen::Index>(basis.channel(i))] += alpha[static_cast<Eigen::Index>(i)] * by;
+  }
+  return derivative;
+}
+
 SlipRateLinearization linearize_slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                           const SlipState& state) {
   std::vector<double> features(basis.size());

@@ -27,6 +27,8 @@ constexpr std::array<Spelling, kQuantities> kSpellings{{{"V", Quantity::V},
                                                         {"kappa", Quantity::Curvature},
                                                         {"gx", Quantity::GravityX},
                                                         {"gy", Quantity::GravityY},
+                                                        {"cos(yaw)", Quantity::CosYaw},
+                                                        {"sin(yaw)", Quantity::SinYaw},
                                                         {"Vy", Quantity::SideV},
                                                         {"abs(Vy)", Quantity::AbsSideV},
                                                         {"V3", Quantity::ThirdHarmonic}}};
@@ -65,7 +67,7 @@ int power_of(std::string_view& factor, std::string_view text) {
 }
 
 bool vanishes_when_parked(const std::vector<Quantity>& factors) {
-  return std::ranges::any_of(factors, [](Quantity q) { return q != Quantity::SignV; });
+  return std::ranges::any_of(factors, [](Quantity q) { return q != Quantity::SignV && !is_heading(q); });
 }
 
 std::string spell(double coefficient, const std::vector<Quantity>& factors) {
@@ -128,6 +130,7 @@ Term Term::parse(std::string_view text) {
 }
 
 bool Term::sideways() const { return std::ranges::any_of(factors_, is_sideways); }
+bool Term::by_heading() const { return std::ranges::any_of(factors_, is_heading); }
 
 void SlipQuantities::see_sideways(double v, double vy) {
   const auto side = static_cast<std::size_t>(Quantity::SideV), size = static_cast<std::size_t>(Quantity::AbsSideV),

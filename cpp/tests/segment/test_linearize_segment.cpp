@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "sample_bases.hpp"
 #include "sample_drives.hpp"
 #include "slipwise/segment/integrate_segment.hpp"
+#include "slipwise/slip/force_terms.hpp"
 
 namespace slipwise {
 namespace {
@@ -173,6 +175,35 @@ TEST_CASE("a spin of more than one turn keeps its turns in the prediction") {
   const InputHistory inputs = tests::sampled([](double) { return BodyTwist{0.1, 0.0, 5.0}; }, 0.0, 0.05, 100);
   const auto at = linearize_segment(model, Eigen::Vector2d::Zero(), inputs, {.start = 1.0, .end = 3.0});
   CHECK(at.predicted.theta == doctest::Approx(10.0).epsilon(1e-12));
+}
+
+TEST_CASE("the derivative is exact where a force turns with the map, on level ground and on a hillside") {
+  Segment segment = kSegment;
+  segment.heading = 0.8;
+  for (const auto& ground : {std::shared_ptr<const Ground>{}, std::make_shared<const Ground>(Grade{0.1, -0.05})}) {
+    segment.ground = ground;
+    for (const Case& actuator : sample_chains()) {
+      check_all_drives(with_force(named_basis("drive-9"), ForceFrame::World), actuator, 0.05, segment);
+    }
+  }
+}
+
+TEST_CASE("with wind the path does not depend on the frame that it is seen from, but on where the wind blows") {
+  const MotionModel model(with_force({"none", {}, {}, {}}, ForceFrame::World), {});
+  Eigen::VectorXd wind = Eigen::VectorXd::Zero(model.size());
+  for (const ForceTerm& term : force_terms(model.basis())) {
+    wind[term.place] = term.axis == ForceAxis::WorldX && !term.turning ? 0.1 * term.sign : 0.0;
+  }
+  const InputHistory inputs({0.0}, {BodyTwist{1.0, 0.0, 0.5}});
+  for (const double heading : {0.0, 1.3, -2.0}) {
+    CAPTURE(heading);
+    const Segment segment{.start = 0.0, .end = 4.0, .heading = heading};
+    const Pose2 end = integrate_segment(model, wind, inputs, segment).poses.back();
+    const Pose2 without = integrate_segment(model, Eigen::VectorXd::Zero(model.size()), inputs, segment).poses.back();
+    const Eigen::Vector2d drift = rotation(heading) * Eigen::Vector2d(end.x - without.x, end.y - without.y);
+    CHECK(drift.x() == doctest::Approx(0.4).epsilon(1e-3));  // 0.1 m per metre, 4 m
+    CHECK(drift.y() == doctest::Approx(0.0).scale(1.0).epsilon(1e-3));
+  }
 }
 
 }  // namespace

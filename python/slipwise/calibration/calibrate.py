@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.calibration.estimator_run import run_estimator
+from slipwise.calibration.force_words import force_words
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Progress
@@ -169,6 +170,10 @@ def learned_by(learned: LearnedLog) -> Learned:
 
 def _by_estimator(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
     """Learn with one of the estimators that the learner is compared with."""
+    if settings.body_force.learned:
+        raise SettingsError(
+            "a body force is learned by the average of bases alone", advice=f"estimator = {AVERAGE!r}"
+        )
     if any(run.run.commands is not None and run.run.commands.car is not None for run in windows.drive):
         raise SettingsError(
             "throttle and steering are learned by the average of bases alone",
@@ -246,6 +251,7 @@ def judged_on(
     )
     verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
     if not any(each.spoils for each in found):
+        verdict = replace(verdict, force=force_words(learned.identifiable, settings))
         kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)
         limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=wheels)
         verdict = replace(verdict, advice=(*verdict.advice, *limits))

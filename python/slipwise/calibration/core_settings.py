@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from slipwise import _core
 from slipwise.calibration.settings import Settings
+from slipwise.errors import SettingsError
 
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
 
@@ -35,7 +36,7 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         car: what is taken of a car whose commands are throttle and steering, before it drives.
 
     Raises:
-        SettingsError: a basis or a term is unknown.
+        SettingsError: a basis or a term is unknown, or a force is to be learned beside surfaces.
     """
     core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
     from_commands = input_name == "command"
@@ -43,7 +44,8 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         settings.segment_length(input_name), from_commands=from_commands
     )
     stream.whole_frames, stream.horizons = True, list(horizons)
-    hypotheses.bases, hypotheses.dynamics = settings.bases(), from_commands
+    hypotheses.bases = [settings.body_force.added_to(basis) for basis in settings.bases()]
+    hypotheses.dynamics = from_commands
     hypotheses.clock_offset, hypotheses.sensor_extrinsics = (
         settings.learn_clock_offset,
         settings.sensor_extrinsics.learn,
@@ -54,6 +56,11 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     hypotheses.filter, average = settings.filter_settings(), settings.average_settings()
     if positions:
         _change_prior(hypotheses, straight_side_slip_std=STRAIGHT_SIDE_SLIP)
+    if remember and settings.body_force.learned:
+        raise SettingsError(
+            "a body force and remembered surfaces are not learned together",
+            advice="leave out --memory, or --body-force",
+        )
     if remember:
         surfaces = _core.SurfaceSettings()
         surfaces.remember = True

@@ -108,7 +108,11 @@ def _slopes(name: str) -> bool:
 
 
 def _turns(name: str) -> bool:
-    return ("w" in _terms(name) or "kappa" in _terms(name)) and not _slopes(name)
+    return ("w" in _terms(name) or "kappa" in _terms(name)) and not _slopes(name) and not _headed(name)
+
+
+def _headed(name: str) -> bool:
+    return "yaw" in _terms(name)
 
 
 def _swapped(pair: Confounded) -> Confounded:
@@ -145,13 +149,17 @@ _DRIVES: tuple[tuple[Callable[[str], bool], str], ...] = (
         "Drive straight for longer; turning on the spot cannot show how a sensor is turned",
     ),
     (
+        _headed,
+        "Drive in several directions over the map, forwards and backwards",
+    ),
+    (
         _slopes,
         "Drive up, down and across a slope, with roll and pitch in the log",
     ),
     (lambda n: _turns(n) and "V" in _terms(n), "Drive arcs of both hands at several speeds"),
     (lambda n: _turns(n) and "V" not in _terms(n), "Turn both ways at several yaw rates, in place too"),
     (
-        lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n),
+        lambda n: "V" in _terms(n) and not _turns(n) and "g" not in _terms(n) and not _headed(n),
         "Drive straight at several speeds, forwards and backwards",
     ),
 )

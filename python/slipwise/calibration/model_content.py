@@ -88,6 +88,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         covariance=learned.kept.covariance.tolist(),
         noise=_noise(learned, facts.settings),
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
+        body_force=_body_force(motion, facts.settings),
         range=facts.range,
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
@@ -107,6 +108,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
                 for pair in verdict.confounded
             ],
             timing=verdict.timing,
+            force=verdict.force,
             reservations=list(verdict.reservations),
             contradictions=list(verdict.contradictions),
             held_out=judged.judgement.held_out,
@@ -161,6 +163,18 @@ def _slip_disturbance(posterior: Posterior, segment: float) -> schema.SlipDistur
         for disturbance, weight in zip(law.candidates, law.weights, strict=True)
     ]
     return schema.SlipDisturbanceSection(segment=segment, candidates=candidates)
+
+
+def _body_force(motion: _core.MotionModel, settings: Settings) -> schema.BodyForceSection | None:
+    """The law of the force whose terms the model has."""
+    table = settings.body_force
+    if table.frame == "none" or not motion.slip_size:
+        return None
+    return schema.BodyForceSection(
+        frame=table.frame,
+        time_constant=table.time_constant,
+        std=table.std,
+    )
 
 
 @cache

@@ -37,6 +37,7 @@ class Verdict:
     confounded: tuple[Confounded, ...] = ()  # pairs of parameters that the log can hardly tell apart
     timing: str = ""  # which delay and which clock offset is which
     reservations: tuple[str, ...] = ()  # sentences of a good verdict that qualify it: it is not plainly good
+    force: str = ""  # what pushes the robot beside its slip, where that was learned
     contradictions: tuple[str, ...] = ()  # between poses and inputs: what was learned is no slip
 
     def __str__(self) -> str:

@@ -37,7 +37,7 @@ ESTIMATORS = (AVERAGE, *_core.estimator_names())
 SEGMENT_SECONDS = {"wheel": 1.0, "command": 2.5}  # lag and delay need longer windows to be told from slip
 
 _PRIOR, _IEKF, _NOISE = _core.PriorSettings(), _core.IekfSettings(), _core.NoiseSettings()
-_RULES, _DRIFT = WindowRules(), _core.DriftSettings()
+_RULES, _DRIFT, _FORCE = WindowRules(), _core.DriftSettings(), _core.BodyForceSettings()
 _JOINT = "joint"
 Structure = Literal["joint", "cascaded", "direct", "baseline"]
 
@@ -127,6 +127,33 @@ class SlipDisturbanceTable(_Section):
     learn: bool = True
 
 
+class BodyForceTable(_Section):
+    """A force that acts on the robot beside its wheels: wind, a towed load, a stuck wheel."""
+
+    frame: Literal["none", "body", "world"] = "none"  # what it stays fixed to: the robot, or the poses' frame
+    time_constant: Annotated[float, Field(ge=1.0, le=1e5)] = 600.0  # s, over which it may come and go
+    std: Ratio = _FORCE.std  # m/m of the drift that it causes per distance driven, rad/m of the turn
+
+    @property
+    def learned(self) -> bool:
+        """Whether one is to be learned."""
+        return self.frame != "none"
+
+    def law(self) -> _core.BodyForceSettings:
+        """Return the core's settings; those of no force where none is to be learned."""
+        settings = _core.BodyForceSettings()
+        settings.time_constant = self.time_constant if self.learned else 0.0
+        settings.std = settings.turn_std = self.std
+        return settings
+
+    def added_to(self, basis: _core.Basis) -> _core.Basis:
+        """Return a basis with the terms of the force, where one is to be learned."""
+        if not self.learned:
+            return basis
+        body = self.frame == "body"
+        return _core.with_force(basis, _core.ForceFrame.Body if body else _core.ForceFrame.World)
+
+
 class ChangeTable(_Section):
     """Finding a change of terrain."""
 
@@ -175,6 +202,7 @@ class Settings(_Section):
     noise: NoiseTable = NoiseTable()
     auto: AutoTable = AutoTable()
     slip_disturbance: SlipDisturbanceTable = SlipDisturbanceTable()
+    body_force: BodyForceTable = BodyForceTable()
     change: ChangeTable = ChangeTable()
     smoothing: SmoothingTable = SmoothingTable()
     vehicle: VehicleTable = VehicleTable()
@@ -211,6 +239,7 @@ class Settings(_Section):
         )
         noise.adapt = table.adapt
         settings.prior, settings.iekf, settings.noise = prior, iekf, noise
+        settings.force = self.body_force.law()
         return settings
 
     def average_settings(self) -> _core.ModelAverageSettings:
@@ -220,14 +249,17 @@ class Settings(_Section):
         settings.change = change
         return settings
 
-    def choosing(self, basis: str | None, estimator: str | None) -> Settings:
-        """Return these settings with another basis or estimator, where one is given.
+    def choosing(self, basis: str | None, estimator: str | None, body_force: str | None = None) -> Settings:
+        """Return these settings with another basis or estimator, or a force in a frame, where one is given.
 
         Raises:
-            SettingsError: there is no such estimator.
+            SettingsError: there is no such estimator or frame.
         """
         given = {"basis": basis, "estimator": estimator}
-        chosen = make_settings(self.model_dump() | {key: name for key, name in given.items() if name})
+        content = self.model_dump() | {key: name for key, name in given.items() if name}
+        if body_force:
+            content["body_force"]["frame"] = body_force
+        chosen = make_settings(content)
         return chosen.model_copy(update={"live": self.live})
 
     def bases(self) -> list[_core.Basis]:

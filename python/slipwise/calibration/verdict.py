@@ -38,6 +38,7 @@ class Identified:
     confounded: tuple[Confounded, ...] = ()
     timing: str = ""
     from_log: str = "the log"  # that the parameters were learned from
+    force: str = ""  # what pushes the robot beside its slip
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,8 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
         known.confounded,
         "" if contradicted else known.timing,
         () if fault else reservations,
-        tuple(each.sentence for each in contradicted),
+        force="" if contradicted else known.force,
+        contradictions=tuple(each.sentence for each in contradicted),
     )
 
 

@@ -10,6 +10,7 @@ import typer
 
 from slipwise.cli.options import (
     Basis,
+    BodyForce,
     Estimator,
     Input,
     Json,
@@ -41,6 +42,7 @@ def calibrate(
     basis: Basis = None,
     settings: SettingsFile = None,
     estimator: Estimator = None,
+    body_force: BodyForce = None,
     smooth: Annotated[
         bool,
         typer.Option(
@@ -79,6 +81,7 @@ def calibrate(
       slipwise calibrate drive.mcap --pose-topic /rtk/odom --input command
       slipwise calibrate monday.csv tuesday.csv.gz --basis odd-even-10 --no-report
       slipwise calibrate drive.csv --estimator delayed-state --basis drive-5 --smooth
+      slipwise calibrate towing.mcap --body-force body
       slipwise calibrate two_minutes.mcap --prior fleet/fleet.yaml
       slipwise calibrate --memory sand.csv asphalt.csv -o monday.yaml
       slipwise calibrate --memory monday.yaml tuesday.csv -o tuesday.yaml --terrain sand
@@ -97,8 +100,8 @@ def calibrate(
     from slipwise.reporting.session import report_calibration
 
     out = Output(json)
-    named = settings or basis or estimator
-    chosen = chosen_settings(settings, basis, estimator) if named or not memory else None
+    named = settings or basis or estimator or body_force
+    chosen = chosen_settings(settings, basis, estimator, body_force) if named or not memory else None
     read = (*logs, *log_options.files, settings, prior, *label_files(terrain))
     refuse_unwritable(output, report, out.written_file, inputs=read)
     asked = Asked(

@@ -55,6 +55,7 @@ def _identified(source: Calibration | Model) -> Identified:
         tuple(content.verdict.not_identifiable),
         tuple(content.verdict.advice),
         timing=content.verdict.timing,
+        force=content.verdict.force,
         from_log="the log" if calibrated else "the log that they were learned from",
     )
 

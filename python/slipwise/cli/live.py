@@ -15,6 +15,7 @@ import typer
 from slipwise.cli.memory_options import BEGIN_WITH_NOTHING
 from slipwise.cli.options import (
     Basis,
+    BodyForce,
     Input,
     Seed,
     SettingsFile,
@@ -49,6 +50,7 @@ def live(
     seed: Seed = 1,
     input_name: Input = None,
     basis: Basis = None,
+    body_force: BodyForce = None,
     settings: SettingsFile = None,
     name: Annotated[str | None, optional("NAME", "Of the node; default slipwise.")] = None,
     vehicle: Annotated[str | None, optional("NAME", "Whose model it is; the cache goes by it.")] = None,
@@ -133,8 +135,8 @@ def live(
         "terrain_topic": terrain_topic,
         "cache": cache and str(cache), "input": input_name and input_name.value, "apply": apply,
     }  # fmt: skip
-    chosen = live_settings(chosen_settings(settings, basis), given)
-    chosen = with_memory(chosen, chosen=bool(settings or basis))
+    chosen = live_settings(chosen_settings(settings, basis, body_force=body_force), given)
+    chosen = with_memory(chosen, chosen=bool(settings or basis or body_force))
     begun = Path(chosen.live.memory) if isinstance(chosen.live.memory, str) else None
     to_file = None if results is None or str(results) == "-" else results
     refuse_unwritable(output, record, to_file, inputs=(replay, settings, model, begun, *log_options.files))

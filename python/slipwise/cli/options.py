@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 GRADE_HELP = "Ground that falls by SLOPE towards DOWNHILL, both in degrees, 0 along x."
 
 
+class ForceFrame(StrEnum):
+    """What a force that is learned beside slip stays fixed to."""
+
+    body = "body"
+    world = "world"
+
+
 class InputName(StrEnum):
     """What a model is learned from."""
 
@@ -58,6 +65,15 @@ Estimator = Annotated[
         "NAME",
         "How to learn: average (the default, weighs bases by how well they predict), iekf, "
         "delayed-state, ekf-thesis, gradient-descent; batch fits all windows at once, off-line.",
+    ),
+]
+BodyForce = Annotated[
+    ForceFrame | None,
+    typer.Option(
+        "--body-force",
+        show_default=False,
+        help="Also learn a force beside slip: fixed to the robot (body: a towed load, a stuck wheel) or to "
+        "the map (world: wind). Settings: [body_force].",
     ),
 ]
 SettingsFile = Annotated[Path | None, optional("FILE.toml", "Settings of learning.", "--settings")]
@@ -163,15 +179,19 @@ def takes_log_options(command: Callable[..., int]) -> Callable[..., int]:
     return wrapper
 
 
-def chosen_settings(file: Path | None, basis: str | None, estimator: str | None = None) -> Settings:
+def chosen_settings(
+    file: Path | None, basis: str | None, estimator: str | None = None, body_force: str | None = None
+) -> Settings:
     """Return the settings of a file, or the defaults, with what is given replaced.
 
     Raises:
-        SettingsError: the file, the basis or the estimator is wrong.
+        SettingsError: the file, the basis, the estimator or the frame of a force is wrong.
     """
     from slipwise.calibration import Settings, load_settings
 
-    settings = (load_settings(file) if file is not None else Settings()).choosing(basis, estimator)
+    settings = (load_settings(file) if file is not None else Settings()).choosing(
+        basis, estimator, body_force
+    )
     settings.bases()
     return settings
 

@@ -72,6 +72,8 @@ def show_verdict(output: Output, verdict: Verdict | VerdictSection, next_step: S
         output.line(f"  {advice}")
     if verdict.timing:
         output.line(f"  {verdict.timing}")
+    if verdict.force:
+        output.line(f"  {verdict.force}")
 
 
 def verdict_label(verdict: Verdict | VerdictSection) -> tuple[str, str]:

@@ -17,6 +17,7 @@ from slipwise.export.options import ExportOptions
 from slipwise.export.origin import origin_lines
 from slipwise.export.parameter_file import ParameterFile, Value
 from slipwise.export.robot_localization import robot_localization
+from slipwise.models.body_force import without_force
 from slipwise.models.model import Model
 
 
@@ -99,6 +100,7 @@ def export_model(
         SettingsError: there is no such target.
     """
     made = find_target(target)
+    model = without_force(model)
     model.refuse_throttle("exported files")
     model.refuse_sideways("exported files")
     if not force:

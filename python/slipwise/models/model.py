@@ -196,6 +196,18 @@ class Model:
                 advice="calibrate with --basis full-linear-6 or another without Vy",
             )
 
+    def refuse_heading(self, what: str) -> None:
+        """Refuse a use that knows no heading over the map where a force of the model depends on it.
+
+        Raises:
+            ModelError: it does.
+        """
+        if self.motion.basis.by_heading:
+            raise ModelError(
+                f"{what} know no heading over the map, and a force of this model depends on it",
+                advice="use without_force(model), or calibrate with --body-force body",
+            )
+
     def refuse_throttle(self, what: str) -> None:
         """Refuse a use that takes speeds and yaw rates where the model takes throttle and steering.
 
@@ -254,6 +266,17 @@ class Model:
         scale = np.array(self.content.noise.variance_scale)
         return _core.MotionPosterior(self.motion, estimate, self.prior_std, self.noise, scale)
 
+    def posterior_after(self, seconds: float) -> _core.MotionPosterior:
+        """The same some time later [s]: a force that was learned beside slip may have gone meanwhile."""
+        section, now = self.content.body_force, self.posterior
+        if section is None:
+            return now
+        law = _core.BodyForceSettings()
+        law.time_constant = section.time_constant
+        law.std = law.turn_std = section.std
+        later = _core.BodyForce(self.motion.basis, law).passed(now.estimate, seconds)
+        return _core.MotionPosterior(now.model, later, now.prior_std, now.noise, now.noise_scale)
+
     @cached_property
     def disturbance(self) -> _core.DisturbanceModel:
         """The slip disturbance about the parameters; without any candidate where that was not learned."""
@@ -290,7 +313,9 @@ class Model:
             f"# slipwise motion model, schema {SCHEMA_VERSION}; SI units; slip adds to the commanded twist.\n"
         )
         content = self.content.model_dump(mode="json")
-        for key in ("surfaces", "labels", "car"):
+        if not content["verdict"]["force"]:
+            del content["verdict"]["force"]
+        for key in ("surfaces", "labels", "car", "body_force"):
             if not content[key]:
                 del content[key]
         for surface in content.get("surfaces", ()):

@@ -99,6 +99,14 @@ class SlipDisturbanceSection(_Section):
         return self
 
 
+class BodyForceSection(_Section):
+    """A force that was learned beside slip: some terms are its, and hold for the end of the log."""
+
+    frame: Literal["body", "world"]  # what it stays fixed to: the robot, or the frame of the poses
+    time_constant: Positive  # over which it comes and goes [s]
+    std: Positive  # of the drift that it causes per distance driven [m/m], and of the turn [rad/m]
+
+
 class Range(_Section):
     """What the robot did in the log; the model is not known to hold beyond it."""
 
@@ -153,6 +161,7 @@ class VerdictSection(_Section):
     advice: list[str] = []
     confounded: list[Confounded] = []
     timing: str = ""  # which delay and which clock offset is which
+    force: str = ""  # what pushes the robot beside its slip, where that was learned
     reservations: list[str] = []  # sentences that qualify a good verdict
     contradictions: list[str] = []  # between the poses and the inputs of the log: what was learned is no slip
     held_out: HeldOut | None = None
@@ -296,6 +305,7 @@ class ModelFile(_Section):
     slip_disturbance: SlipDisturbanceSection | None = (
         None  # about the parameters; None: it was not looked for
     )
+    body_force: BodyForceSection | None = None
     range: Range
     weights: dict[str, NotNegative] = {}
     provenance: Provenance

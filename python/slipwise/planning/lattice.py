@@ -163,6 +163,7 @@ def _check(options: LatticeOptions) -> None:
 
 
 def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _core.TrajectoryPlanner:
+    model.refuse_heading("lattices")
     settings = _core.TrajectorySettings()
     settings.cruise = settings.end_speed = options.speed
     settings.longest, settings.straight_end, settings.guesses = options.longest, True, 3

@@ -66,6 +66,7 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
         SettingsError: samples of slip on surfaces ahead are asked for.
     """
     rng = np.random.Generator(np.random.PCG64(seed))
+    model.refuse_heading("controllers")
     slip = slip_ahead(terrain_ahead, model)
     if slip is not None:
         if samples:

@@ -98,6 +98,7 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     parameters, ahead = (model.mean, None) if slip is None else (slip.parameters(model), slip.in_core)
     try:
         model.refuse_throttle("rollouts")
+        model.refuse_heading("rollouts")
         program = _core.RolloutProgram(model.motion, parameters, dt, begin.ground, model.limits, ahead)
         _core.rollout_batch(
             program,
@@ -152,6 +153,7 @@ def check_threads(threads: int) -> None:
 def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
     model.refuse_throttle("rollouts")
+    model.refuse_heading("rollouts")
     slip = slip_ahead(start.terrain_ahead, model)
     scale = np.array(model.content.noise.variance_scale) if slip is None else slip.variance_scale
     parameters, covariance = model.mean, model.covariance

@@ -99,6 +99,7 @@ class Planner:
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
         settings = options.to_core(self.limits)
+        model.refuse_heading("trajectories")
         try:
             self._core = _core.TrajectoryPlanner(
                 model.motion, model.mean, self.limits.to_core(), settings, state.to_core(), model.limits

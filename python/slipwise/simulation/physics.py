@@ -18,6 +18,7 @@ from slipwise.logs.log import Inputs
 from slipwise.simulation.engine import load_mujoco
 from slipwise.simulation.hillside import gravity_on, seen_from_above
 from slipwise.simulation.land_tamer import LandTamer, mjcf, wheel_names
+from slipwise.simulation.push import Push, StuckWheel
 from slipwise.simulation.traction_law import TractionLaw, traction_force
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import ForceLaw, TyreForceTerrain, TyreLaw, tyre_force
@@ -47,6 +48,8 @@ class World:
     traction: TractionLaw = TractionLaw()
     change: TerrainChange | None = None
     grade: Grade | None = None  # of a hillside; level where there is none
+    push: Push | None = None  # on the hull
+    stuck: StuckWheel | None = None
 
     @property
     def force_law(self) -> ForceLaw | None:
@@ -153,6 +156,8 @@ def run_physics(
     change, tyres = world.change, physics.tyres
     changes_at = math.ceil(change.t * sampling.rate - 1e-9) if change is not None else sampling.count
     targets = wheel_targets(world.vehicle, commands, sampling)[:, np.arange(len(names)) % 2]
+    _block(targets, world, sampling)
+    push, hull = world.push, model.body("hull").id
     position = np.empty((sampling.count, model.nq))
     velocity = np.empty((sampling.count, model.nv))
     for sample in range(sampling.count):
@@ -161,12 +166,34 @@ def run_physics(
             tyres.law = partial(tyre_force, change.law)
         for target in targets[sample * sampling.steps : (sample + 1) * sampling.steps]:
             data.ctrl = target
+            if push is not None:
+                push.apply(data, hull, sample / sampling.rate)
             physics.advance()
         if progress is not None and (sample % 100 == 99 or sample == sampling.count - 1):
             progress((sample + 1) / sampling.count)
     spins = np.array([model.joint(f"spin_{name}").dofadr[0] for name in names])
-    truth = planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, velocity[:, spins])
+    rates = _at_encoders(velocity[:, spins], world, sampling)
+    truth = planar_truth(np.arange(sampling.count) / sampling.rate, position, velocity, rates)
     return truth if world.grade is None else seen_from_above(truth, position, world.grade)
+
+
+def _block(targets: NDArray[np.float64], world: World, sampling: Sampling) -> None:
+    """Ask a stuck wheel to stand, in place; its drive is stronger than the friction of the ground."""
+    if world.stuck is not None:
+        first = math.ceil(world.stuck.start * sampling.rate - 1e-9) * sampling.steps
+        targets[first:, world.stuck.column(world.vehicle)] = 0.0
+
+
+def _at_encoders(spins: NDArray[np.float64], world: World, sampling: Sampling) -> NDArray[np.float64]:
+    """What encoders measure, [M, wheels]: that of a stuck wheel sits in another one of its side."""
+    if world.stuck is None:
+        return spins
+    column = world.stuck.column(world.vehicle)
+    other = column + 2 if column + 2 < spins.shape[1] else column - 2
+    first = math.ceil(world.stuck.start * sampling.rate - 1e-9)
+    measured = spins.copy()
+    measured[first:, column] = spins[first:, other]
+    return measured
 
 
 def _stepper(mujoco: Any, model: Any, data: Any, tyres: TyreForceTerrain | None) -> Callable[[], None]:

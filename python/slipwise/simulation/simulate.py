@@ -16,6 +16,7 @@ from slipwise.simulation.drive import DRIVES
 from slipwise.simulation.land_tamer import LandTamer
 from slipwise.simulation.perturbation import Perturbation, perturbed_truth
 from slipwise.simulation.physics import TERRAINS, Progress, Sampling, TerrainChange, World, run_physics
+from slipwise.simulation.push import Push, StuckWheel
 from slipwise.simulation.traction_law import TractionLaw
 from slipwise.simulation.truth import Truth
 from slipwise.simulation.tyre_force import TyreLaw
@@ -50,6 +51,8 @@ class Scenario:
     pose_delay: float = 0.0  # [s] by which the stamps of poses are late, as seen on the clock of the commands
     grade: Grade | None = None  # of a hillside, with poses in space; level where there is none
     std_tilt: float = 0.003  # [rad] of a measured roll or pitch on a hillside
+    push: Push | None = None  # wind, a towed load; without it nothing pushes
+    stuck: StuckWheel | None = None  # a wheel that drags
 
 
 @dataclass(frozen=True)
@@ -99,6 +102,8 @@ def _drive(scenario: Scenario, commands: Inputs, seed: int, progress: Progress |
             scenario.traction,
             scenario.change,
             scenario.grade,
+            scenario.push,
+            scenario.stuck,
         )
         return run_physics(world, commands, sampling, progress=progress)
     times = np.arange(sampling.count) / sampling.rate

@@ -84,6 +84,11 @@ start = 1.0
 end = 2.0
 columns = {}
 
+[body_force]
+frame = "none"
+time_constant = 90.0
+std = 0.02
+
 [vehicle]
 wheel_separation = 1.08
 
@@ -113,6 +118,8 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
     assert settings.rules() == WindowRules(0.4, sensor=(1.5, -0.2, 0.1))
     assert settings.segment_length("wheel") == settings.segment_length("command") == 1.5
     core = settings.filter_settings()
+    force = core.force
+    assert (force.time_constant, force.std, force.turn_std) == (0.0, 0.02, 0.02)  # none is learned
     assert (core.prior.slip_fraction, core.prior.time_constant, core.prior.delay) == (0.2, 0.5, 0.2)
     assert core.prior.clock_offset_std == 0.1
     assert core.prior.sensor.vector().tolist() == [1.5, -0.2, 0.1]
@@ -157,7 +164,7 @@ def test_every_key_is_accepted_and_reaches_its_place(tmp_path: Path) -> None:
 
 def test_there_are_few_enough_keys_to_read() -> None:
     learning = {key for key in key_paths(Settings().model_dump()) if not key.startswith("log.")}
-    assert len(learning) <= 30
+    assert len(learning) <= 33
 
 
 def test_every_key_set_still_calibrates(tmp_path: Path) -> None:

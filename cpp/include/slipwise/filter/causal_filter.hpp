@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "slipwise/filter/body_force.hpp"
 #include "slipwise/filter/causal_filter_settings.hpp"
 #include "slipwise/filter/filter_refit.hpp"
 #include "slipwise/filter/filter_state.hpp"
@@ -59,7 +60,7 @@ class CausalFilter {
   Eigen::VectorXd prior_std() const;
   /// Of slip, [slip], at other speeds.
   Eigen::VectorXd slip_std_at(const ReferenceSpeeds& speeds) const {
-    return slip_prior_std(model_.basis(), speeds, settings_.prior);
+    return force_.prior_std(slip_prior_std(model_.basis(), speeds, settings_.prior));
   }
   /// Learned factor of the noise variances of (x, y, theta).
   Eigen::Vector3d noise_scale() const { return state_.noise_scale.value(); }
@@ -70,11 +71,13 @@ class CausalFilter {
   static void archive(Self& self, Archive& a) {
     a(self.model_, self.settings_, self.speeds_, self.started_, self.state_, self.before_, self.kept_, self.next_refit_,
       self.full_);
-    a(self.slip_std_, self.stated_, self.refit_, self.refitted_);
+    a(self.slip_std_, self.stated_, self.refit_, self.refitted_, self.force_, self.force_at_);
   }
 
  private:
   void follow(const ReferenceSpeeds& speeds);
+  Estimate prior(const ReferenceSpeeds& speeds) const;
+  void pass(const Segment& segment);
   void keep(const InputHistory& inputs, const Segment& segment);
   void end_refit();
   void start_from_here();
@@ -99,6 +102,8 @@ class CausalFilter {
   Eigen::VectorXd stated_;  ///< factors of the standard deviations, as the scores show them
   std::optional<Refit> refit_;
   bool refitted_ = false;
+  BodyForce force_;
+  double force_at_;  ///< [s] middle of the segment that spoke of it last
 };
 
 /// Covariance of a predicted chart: parameters, slip noise and, where `with_pose_noise`, the two measured poses.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Settings of a causal filter: prior, update and noise.
+// Settings of a causal filter: prior, update, noise, and a force that acts on the robot.
 #pragma once
 
+#include "slipwise/filter/body_force.hpp"
 #include "slipwise/filter/iekf.hpp"
 #include "slipwise/filter/noise_scale.hpp"
 #include "slipwise/filter/prior.hpp"
@@ -12,6 +13,7 @@ struct CausalFilterSettings {
   PriorSettings prior = {};
   IekfSettings iekf = {};
   NoiseSettings noise = {};
+  BodyForceSettings force = {};
 };
 
 }  // namespace slipwise

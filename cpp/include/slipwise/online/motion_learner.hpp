@@ -204,6 +204,7 @@ class MotionLearner {
   void publish(const DrivenSegment& segment);
   void judge(const TargetSegment& target);
   const Knowledge& known_at(double t) const;
+  std::shared_ptr<const MotionPosterior> aged(const Knowledge& known, const Segment& segment) const;
   SegmentList recent_before(double t) const;
   std::vector<DrivenSegment> complete_now() const;
   Knowledge now_known(double until) const;

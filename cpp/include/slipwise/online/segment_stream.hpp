@@ -125,7 +125,7 @@ class SegmentStream {
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
-    a(self.chords_, self.position_last_, self.gyro_);
+    a(self.chords_, self.position_last_, self.gyro_, self.heading_);
   }
 
  private:
@@ -187,6 +187,7 @@ class SegmentStream {
   ChordFinder chords_;
   GyroBuffer gyro_;
   bool position_last_ = false;  ///< whether the last pose was a position alone
+  double heading_ = 0.0;        ///< of the last pose that was accepted [rad]
 };
 
 }  // namespace slipwise

@@ -11,10 +11,12 @@
 
 namespace slipwise {
 
-/// Body-frame gravity [m/s^2], zero on flat terrain.
+/// Body-frame gravity [m/s^2], zero on flat terrain, and the heading in the frame of the poses.
 struct BodyGravity {
   double gx = 0.0;
   double gy = 0.0;
+  double cos_yaw = 1.0;
+  double sin_yaw = 0.0;
 };
 
 /// What slip along a path follows from.
@@ -27,8 +29,13 @@ struct PathSlip {
 /// The mean drive over a step, which its slip depends on.
 inline SlipState slip_state(const ActuatorStep& step, const BodyGravity& gravity) {
   const double rate = step.duration > 0.0 ? 1.0 / step.duration : 0.0;
-  return {
-      .v = step.forward * rate, .omega = step.turn * rate, .gx = gravity.gx, .gy = gravity.gy, .vy = step.left * rate};
+  return {.v = step.forward * rate,
+          .omega = step.turn * rate,
+          .gx = gravity.gx,
+          .gy = gravity.gy,
+          .vy = step.left * rate,
+          .cos_yaw = gravity.cos_yaw,
+          .sin_yaw = gravity.sin_yaw};
 }
 
 /// The same for a step that has no duration yet gains some with the parameters: its integrals grow with its twist.
@@ -41,7 +48,9 @@ SlipState slip_state_gained(const Jacobian& jacobian, const BodyGravity& gravity
           .omega = jacobian.row(3).dot(jacobian.row(0)) * per_duration,
           .gx = gravity.gx,
           .gy = gravity.gy,
-          .vy = jacobian.row(2).dot(jacobian.row(0)) * per_duration};
+          .vy = jacobian.row(2).dot(jacobian.row(0)) * per_duration,
+          .cos_yaw = gravity.cos_yaw,
+          .sin_yaw = gravity.sin_yaw};
 }
 
 /// (u_body + du) dt of derivations/model.md.

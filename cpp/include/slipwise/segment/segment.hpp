@@ -40,6 +40,7 @@ struct Segment {
   std::optional<std::array<Chord, 2>> chords = {};
   /// Between positions, where a gyro measured the turn and not the chords: its standard deviation [rad].
   std::optional<double> gyro_std = {};
+  double heading = 0.0;  ///< of the first pose in the frame of the poses [rad]; forces fixed there depend on it
 };
 
 }  // namespace slipwise

@@ -20,6 +20,10 @@ Eigen::Vector3d slip_rate(const Basis& basis, const Eigen::Ref<const Eigen::Vect
 Eigen::Matrix<double, 3, 2> slip_rate_by_drive(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                                const SlipState& state);
 
+/// Slopes of the slip rates by the heading in the frame of the poses [1/rad].
+Eigen::Vector3d slip_rate_by_heading(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
+                                     const SlipState& state);
+
 /// Slopes of the slip rates by the sideways speed.
 Eigen::Vector3d slip_rate_by_sideways(const Basis& basis, const Eigen::Ref<const Eigen::VectorXd>& alpha,
                                       const SlipState& state);

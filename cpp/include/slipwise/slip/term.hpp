@@ -14,7 +14,8 @@ namespace slipwise {
 
 /// What a slip term may be made of; the body-frame gravity (gx, gy) [m/s^2] is zero on flat terrain.
 /// Vy is the speed to the left. V3 is sqrt(V^2 + Vy^2) sin(3 theta) with theta the direction of travel to the x axis:
-/// what three omni wheels at equal angles make of the direction.
+/// what three omni wheels at equal angles make of the direction. CosYaw and SinYaw are of the heading in the frame of
+/// the poses: what a force that is fixed there, such as wind, does to the robot depends on them.
 enum class Quantity : std::uint8_t {
   V,
   Omega,
@@ -24,20 +25,25 @@ enum class Quantity : std::uint8_t {
   Curvature,
   GravityX,
   GravityY,
+  CosYaw,
+  SinYaw,
   SideV,
   AbsSideV,
   ThirdHarmonic
 };
-inline constexpr std::size_t kQuantities = 11;
+inline constexpr std::size_t kQuantities = 13;
 inline bool is_sideways(Quantity quantity) { return quantity >= Quantity::SideV; }
+inline bool is_heading(Quantity quantity) { return quantity == Quantity::CosYaw || quantity == Quantity::SinYaw; }
 
 /// The state that slip depends on.
 struct SlipState {
-  double v = 0.0;      ///< [m/s]
-  double omega = 0.0;  ///< [rad/s]
-  double gx = 0.0;     ///< gravity along the robot's x axis, positive when it points downhill [m/s^2]
-  double gy = 0.0;     ///< gravity along the robot's y axis [m/s^2]
-  double vy = 0.0;     ///< [m/s], of a robot that drives sideways
+  double v = 0.0;        ///< [m/s]
+  double omega = 0.0;    ///< [rad/s]
+  double gx = 0.0;       ///< gravity along the robot's x axis, positive when it points downhill [m/s^2]
+  double gy = 0.0;       ///< gravity along the robot's y axis [m/s^2]
+  double vy = 0.0;       ///< [m/s], of a robot that drives sideways
+  double cos_yaw = 1.0;  ///< of the heading in the frame of the poses
+  double sin_yaw = 0.0;
 };
 
 /// The quantities of one state, computed once for all terms, with their derivatives by v and omega.
@@ -64,9 +70,21 @@ inline SlipQuantities::SlipQuantities(const SlipState& state) {
       v != 0.0 || w != 0.0 || state.vy != 0.0 ? 1.0 : 0.0;  // a robot parked on a derivative does not drift
   const double norm = v * v + kCurvatureSpeed * kCurvatureSpeed;
   const double per_w = v / norm;
-  value = {v, w, std::abs(v), std::abs(w), sign(v), w * per_w, state.gx * moving, state.gy * moving, 0.0, 0.0, 0.0};
-  by_v = {1.0, 0.0, sign(v), 0.0, 0.0, w * (1.0 - 2.0 * v * per_w) / norm, 0.0, 0.0, 0.0, 0.0, 0.0};
-  by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0, 0.0, 0.0, 0.0};
+  value = {v,
+           w,
+           std::abs(v),
+           std::abs(w),
+           sign(v),
+           w * per_w,
+           state.gx * moving,
+           state.gy * moving,
+           state.cos_yaw,
+           state.sin_yaw,
+           0.0,
+           0.0,
+           0.0};
+  by_v = {1.0, 0.0, sign(v), 0.0, 0.0, w * (1.0 - 2.0 * v * per_w) / norm, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  by_omega = {0.0, 1.0, 0.0, sign(w), 0.0, per_w, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   if (state.vy != 0.0) {
     see_sideways(v, state.vy);
   }
@@ -96,6 +114,8 @@ class Term {
 
   /// Whether a quantity of driving sideways is among the factors.
   bool sideways() const;
+  /// Whether the heading in the frame of the poses is.
+  bool by_heading() const;
 
   double value(const SlipQuantities& q) const;
   TermValue linearize(const SlipQuantities& q) const;

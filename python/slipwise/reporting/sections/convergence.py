@@ -73,8 +73,10 @@ def _values(contents: Contents) -> str:
         f"Identified: known to {100.0 * IDENTIFIED_FRACTION:.0f} % of the value, or known to be negligible."
     )
     pairs = ", ".join(map(str, contents.calibration.verdict.confounded))
+    said = contents.calibration.verdict.force
+    force = paragraph(said) if said else ""
     confounded = paragraph(f"Confounded parameters (correlation of their errors): {pairs}.") if pairs else ""
-    return html + paragraph(f"{note} {contents.calibration.verdict.timing}".strip()) + confounded
+    return html + paragraph(f"{note} {contents.calibration.verdict.timing}".strip()) + force + confounded
 
 
 def _alarms(contents: Contents, history: History) -> str:
