@@ -13,12 +13,16 @@ from numpy.typing import NDArray
 
 from slipwise.fleet.empirical_bayes import FleetPrior, fleet_prior
 from slipwise.fleet.random_walk import Walk, random_walk
+from slipwise.fleet.scatter import shared_scatter
 
 Floats = NDArray[np.float64]
 
 FALSE_DISCOVERIES = 0.05  # of all alarms, over vehicles and parameters
+#: Of the rate: a worn wheel shows little by little, a robot that is odd mostly by far.
+WEIGHTS = {"drift": 3.0, "odd": 1.0}
 STUDENT_DOF = 4.0  # of robots of a type, against one odd one
 FEWEST_LOGS = 4  # of a vehicle, for its drift
+TREND = 0.75  # weight of the trend's chance beside that of the random walk: most that wears, wears evenly
 DAY = 86400.0  # s
 
 
@@ -59,44 +63,69 @@ def findings_of(table: Mapping[str, NDArray[Any]]) -> tuple[ParameterFindings, .
     """
     if not table:
         return ()
-    found = [_parameter(table, name) for name in sorted(set(table["parameter"].tolist()))]
-    alarms = iter(discoveries([finding.chance for each in found for finding in each.findings]))
+    groups = rows_by_parameter(table)
+    found = [_parameter(table, name, groups[name]) for name in sorted(groups)]
+    tests = [finding for each in found for finding in each.findings]
+    weights = [WEIGHTS[finding.kind] for finding in tests]
+    alarms = iter(discoveries([finding.chance for finding in tests], weights))
     return tuple(
         replace(each, findings=tuple(replace(finding, alarm=next(alarms)) for finding in each.findings))
         for each in found
     )
 
 
-def discoveries(chances: Sequence[float], rate: float = FALSE_DISCOVERIES) -> list[bool]:
-    """Return which tests are alarms at a false-discovery rate (Benjamini and Hochberg 1995)."""
+def rows_by_parameter(table: Mapping[str, NDArray[Any]]) -> dict[str, dict[str, NDArray[np.int64]]]:
+    """Return the rows of each parameter and vehicle, both in order; each row is looked at once."""
+    groups: dict[str, dict[str, list[int]]] = {}
+    names, vehicles = table["parameter"].tolist(), table["vehicle"].tolist()
+    for row, (name, vehicle) in enumerate(zip(names, vehicles, strict=True)):
+        groups.setdefault(name, {}).setdefault(vehicle, []).append(row)
+    return {
+        name: {vehicle: np.array(of[vehicle]) for vehicle in sorted(of)}
+        for name, of in sorted(groups.items())
+    }
+
+
+def discoveries(chances: Sequence[float], weights: Sequence[float] | None = None) -> list[bool]:
+    """Return which tests are alarms at the false-discovery rate (Benjamini and Hochberg 1995).
+
+    Args:
+        chances: p-values.
+        weights: how much of the rate each test is given, chosen without the data; only their ratios count
+            (Genovese, Roeder and Wasserman 2006).
+    """
     if not chances:
         return []
-    ordered = np.sort(chances)
-    limits = rate * np.arange(1, len(ordered) + 1) / len(ordered)
+    given = np.ones(len(chances)) if weights is None else np.asarray(weights, dtype=np.float64)
+    weighted = np.asarray(chances, dtype=np.float64) * np.mean(given) / given
+    ordered = np.sort(weighted)
+    limits = FALSE_DISCOVERIES * np.arange(1, len(ordered) + 1) / len(ordered)
     below = np.flatnonzero(ordered <= limits)
     largest = ordered[below[-1]] if len(below) else -1.0
-    return [chance <= largest for chance in chances]
+    return [bool(chance <= largest) for chance in weighted]
 
 
-def _parameter(table: Mapping[str, NDArray[Any]], name: str) -> ParameterFindings:
-    rows = np.flatnonzero(table["parameter"] == name)
-    vehicles = sorted(set(table["vehicle"][rows].tolist()))
-    estimate, std, drifts = np.empty(len(vehicles)), np.empty(len(vehicles)), []
-    for place, vehicle in enumerate(vehicles):
-        mine = rows[table["vehicle"][rows] == vehicle]
+def _parameter(
+    table: Mapping[str, NDArray[Any]], name: str, rows: Mapping[str, NDArray[np.int64]]
+) -> ParameterFindings:
+    vehicles = list(rows)
+    estimate, std = np.empty(len(vehicles)), np.empty(len(vehicles))
+    lines: dict[str, tuple[_Line, Walk | None]] = {}
+    for place, (vehicle, mine) in enumerate(rows.items()):
         value, sigma = table["value"][mine].astype(float), table["std"][mine].astype(float)
         estimate[place], std[place] = pooled(value, sigma)
         if len(mine) >= FEWEST_LOGS:
-            drift = _drift(table["start"][mine].astype(float) / DAY, value, sigma)
-            if drift is not None:
-                drifts.append(_with_walk(Finding(vehicle, name, "drift", *drift), _walk(table, mine)))
+            line = _line(table["start"][mine].astype(float) / DAY, value, sigma)
+            if line is not None:
+                lines[vehicle] = line, _walk(table, mine)
     prior = (
         fleet_prior(estimate[:, None], std[:, None, None] ** 2, dof=STUDENT_DOF)
         if len(vehicles) > 1
         else None
     )
+    drifts = _drifts(name, lines)
     odd = [] if prior is None else _odd(name, vehicles, (estimate, std), prior)
-    unit = str(table["unit"][rows[0]])
+    unit = str(table["unit"][min(int(mine[0]) for mine in rows.values())])
     return ParameterFindings(name, unit, tuple(vehicles), estimate, std, prior, (*odd, *drifts))
 
 
@@ -127,12 +156,18 @@ def _odd(
     return found
 
 
-def _drift(days: Floats, values: Floats, stds: Floats) -> tuple[float, float, float] | None:
-    """Return the trend per 30 days, its deviation and its p-value; None without time between logs.
+@dataclass(frozen=True)
+class _Line:
+    """A vehicle's values over days, by weighted least squares."""
 
-    The scatter of the logs about the line counts where it is larger than the logs say themselves; only then
-    is the test Student's, since only then is a variance estimated.
-    """
+    slope: float  # per day
+    std: float  # of the slope, if logs differ as they say
+    excess: float  # variance of the logs about the line, in units of what they say
+    freedom: int
+
+
+def _line(days: Floats, values: Floats, stds: Floats) -> _Line | None:
+    """Return the line through a vehicle's logs; None without time between them."""
     weight = stds**-2.0
     centre = np.average(days, weights=weight)
     moment = float(np.sum(weight * (days - centre) ** 2))
@@ -142,11 +177,29 @@ def _drift(days: Floats, values: Floats, stds: Floats) -> tuple[float, float, fl
     slope = float(np.sum(weight * (days - centre) * (values - level))) / moment
     left = values - level - slope * (days - centre)
     freedom = len(days) - 2
-    excess = float(np.sum(weight * left**2)) / freedom
-    std = math.sqrt(max(1.0, excess) / moment)
-    z = slope / std
-    chance = _two_sided(z, float(freedom)) if excess > 1.0 else math.erfc(abs(z) / math.sqrt(2.0))
-    return 30.0 * slope, 30.0 * std, chance
+    return _Line(slope, moment**-0.5, float(np.sum(weight * left**2)) / freedom, freedom)
+
+
+def _drifts(name: str, lines: Mapping[str, tuple[_Line, Walk | None]]) -> list[Finding]:
+    """Test the trend and the walk of each vehicle.
+
+    The scatter of the logs about their line, that of all vehicles considered, counts where it is larger than
+    the logs say themselves; only then is the test Student's, since only then is a variance estimated.
+    """
+    if not lines:
+        return []
+    shared, freedoms = shared_scatter(
+        np.array([line.excess for line, _ in lines.values()]),
+        np.array([float(line.freedom) for line, _ in lines.values()]),
+    )
+    found = []
+    for (vehicle, (line, walk)), excess, freedom in zip(lines.items(), shared, freedoms, strict=True):
+        std = line.std * math.sqrt(max(1.0, float(excess)))
+        z = line.slope / std
+        chance = _two_sided(z, float(freedom)) if excess > 1.0 else math.erfc(abs(z) / math.sqrt(2.0))
+        finding = Finding(vehicle, name, "drift", 30.0 * line.slope, 30.0 * std, chance)
+        found.append(_with_walk(finding, walk))
+    return found
 
 
 def _with_walk(finding: Finding, walk: Walk | None) -> Finding:
@@ -154,7 +207,7 @@ def _with_walk(finding: Finding, walk: Walk | None) -> Finding:
         return finding
     return replace(
         finding,
-        chance=_combined((finding.chance, walk.chance)),
+        chance=_combined((finding.chance, walk.chance), (TREND, 1.0 - TREND)),
         walk=math.sqrt(1000.0 * walk.rate),
         now=walk.level,
         now_std=walk.level_std,
@@ -169,13 +222,13 @@ def _walk(table: Mapping[str, NDArray[Any]], mine: NDArray[Any]) -> Walk | None:
     return random_walk(middle, table["value"][order].astype(float), table["std"][order].astype(float))
 
 
-def _combined(chances: Sequence[float]) -> float:
+def _combined(chances: Sequence[float], weights: Sequence[float]) -> float:
     """Return the chance of tests that may depend on each other, taken together (Liu and Xie 2020).
 
     A chance above 0.9 counts as 0.9: at the edge of what is possible it is 1 too often.
     """
-    angle = float(np.mean([math.tan((0.5 - min(chance, 0.9)) * math.pi) for chance in chances]))
-    return max(0.5 - math.atan(angle) / math.pi, 0.0)
+    tangents = [math.tan((0.5 - min(chance, 0.9)) * math.pi) for chance in chances]
+    return max(0.5 - math.atan(float(np.dot(weights, tangents))) / math.pi, 0.0)
 
 
 def _two_sided(z: float, dof: float) -> float:

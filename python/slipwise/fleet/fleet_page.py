@@ -10,7 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from slipwise.fleet.findings import FALSE_DISCOVERIES, FEWEST_LOGS, Finding, ParameterFindings
+from slipwise.fleet.findings import (
+    FALSE_DISCOVERIES,
+    FEWEST_LOGS,
+    Finding,
+    ParameterFindings,
+    rows_by_parameter,
+)
 from slipwise.reporting.figure import Figure, axis, baseline_label, numbers
 from slipwise.reporting.markup import bullets, missing, number, table
 from slipwise.reporting.page import Part, page_of
@@ -23,12 +29,14 @@ FEWEST_POINTS = 20  # of a vehicle that are drawn of one parameter
 MOST_ROWS = 500  # of unusable logs that are listed
 
 Columns = Mapping[str, NDArray[Any]]
+Rows = Mapping[str, NDArray[np.int64]]  # of one parameter, by vehicle
 
 
 def fleet_page(
     columns: Columns, findings: Sequence[ParameterFindings], unusable: Sequence[Mapping[str, Any]]
 ) -> str:
     """Return one self-contained HTML page that works offline."""
+    rows = rows_by_parameter(columns) if columns else {}
     parts = (
         Part(
             "The fleet", "What was learned of how many logs.", bullets(summary(columns, findings, unusable))
@@ -43,14 +51,14 @@ def fleet_page(
             "Vehicles side by side",
             "Logs with two standard deviations, evenly thinned where there are many, and what the fleet "
             "expects of its next robot.",
-            "".join(_side_by_side(columns, each).html() for each in findings)
+            "".join(_side_by_side(columns, each, rows[each.parameter]).html() for each in findings)
             or missing("There is no log that could be used."),
             folded=True,
         ),
         Part(
             "Over time",
             "The same values by the day of the log.",
-            "".join(_over_time(columns, each).html() for each in findings)
+            "".join(_over_time(columns, each, rows[each.parameter]).html() for each in findings)
             or missing("There is no log that could be used."),
             folded=True,
         ),
@@ -101,12 +109,12 @@ def _alarm_row(finding: Finding, unit: str) -> tuple[str, ...]:
     return finding.vehicle, finding.parameter, what, size, std, number(finding.chance), walk, now
 
 
-def _side_by_side(columns: Columns, found: ParameterFindings) -> Figure:
-    traces = [
-        _points(columns, found, vehicle, place)
-        | {"x": [baseline_label(vehicle)] * int(_rows(columns, found, vehicle).size)}
-        for place, vehicle in enumerate(found.vehicles)
-    ]
+def _side_by_side(columns: Columns, found: ParameterFindings, rows: Rows) -> Figure:
+    traces = []
+    for place, vehicle in enumerate(found.vehicles):
+        drawn = _drawn(rows[vehicle], len(found.vehicles))
+        label = baseline_label(vehicle)
+        traces.append(_points(columns, drawn, vehicle, place) | {"x": [label] * len(drawn)})
     if found.prior is not None:
         mean = float(found.prior.mean[0])
         spread = TWO_SIGMA * float(np.sqrt(found.prior.new_robot[0, 0]))
@@ -125,12 +133,13 @@ def _side_by_side(columns: Columns, found: ParameterFindings) -> Figure:
     return _figure("vehicles", found, traces, axis("", type="category"))
 
 
-def _over_time(columns: Columns, found: ParameterFindings) -> Figure:
+def _over_time(columns: Columns, found: ParameterFindings, rows: Rows) -> Figure:
     traces = []
     for place, vehicle in enumerate(found.vehicles):
-        start = columns["start"][_rows(columns, found, vehicle)].astype(float)
+        drawn = _drawn(rows[vehicle], len(found.vehicles))
+        start = columns["start"][drawn].astype(float)
         days = [datetime.fromtimestamp(t, UTC).strftime("%Y-%m-%d %H:%M:%S") for t in start.tolist()]
-        traces.append(_points(columns, found, vehicle, place) | {"x": days})
+        traces.append(_points(columns, drawn, vehicle, place) | {"x": days})
     layout = axis("day", type="date")
     return _figure("time", found, traces, layout)
 
@@ -147,14 +156,12 @@ def _figure(key: str, found: ParameterFindings, traces: list[dict[str, Any]], x:
     )
 
 
-def _rows(columns: Columns, found: ParameterFindings, vehicle: str) -> NDArray[np.int64]:
-    """Return the rows of one vehicle and parameter, evenly thinned where they are many."""
-    rows = np.flatnonzero((columns["parameter"] == found.parameter) & (columns["vehicle"] == vehicle))
-    return rows[thinned(len(rows), max(FEWEST_POINTS, CURVE_POINTS // len(found.vehicles)))]
+def _drawn(rows: NDArray[np.int64], vehicles: int) -> NDArray[np.int64]:
+    """Return the rows of one vehicle and parameter that are drawn, evenly thinned where they are many."""
+    return rows[thinned(len(rows), max(FEWEST_POINTS, CURVE_POINTS // vehicles))]
 
 
-def _points(columns: Columns, found: ParameterFindings, vehicle: str, place: int) -> dict[str, Any]:
-    rows = _rows(columns, found, vehicle)
+def _points(columns: Columns, rows: NDArray[np.int64], vehicle: str, place: int) -> dict[str, Any]:
     return {
         "type": "scatter",
         "mode": "markers",

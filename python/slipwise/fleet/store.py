@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import json
 import re
+from collections import Counter
 from dataclasses import asdict
 from pathlib import Path
 from sys import intern
@@ -39,6 +40,7 @@ COLUMNS = (
 )
 PARTS = "vehicle=*/month=*/*.parquet"  # not those in the making, which lie in hidden folders
 AT_ONCE = 500  # files
+MOST_KNOWN = 4000  # logs that the prior is made of, so that the driver's memory stays bounded
 _KEY = re.compile(r"[0-9a-f]{16}-[0-9a-f]{16}")
 _OF_LOG = ("key", "log", "log_sha256", "settings_sha256", "version", "start", "seconds", "distance")
 _OF_VERDICT = ("input", "good", "verdict")
@@ -111,19 +113,22 @@ class Store:
         Some files are read at once, and a text is there once: thousands of logs take little memory.
         """
         paths = sorted((self.folder / ROWS).glob(PARTS))
-        columns: dict[str, list[Any]] = {name: [] for name in COLUMNS}
-        for first in range(0, len(paths), AT_ONCE):
-            for name, values in _read(paths[first : first + AT_ONCE]).items():
-                columns[name].extend(values)
-        if not columns["key"]:
+        parts = [_read(paths[first : first + AT_ONCE]) for first in range(0, len(paths), AT_ONCE)]
+        parts = [part for part in parts if len(part["key"])]
+        if not parts:
             return {}
+        columns = {name: np.concatenate([part[name] for part in parts]) for name in COLUMNS}
         order = np.lexsort((columns["parameter"], columns["start"], columns["vehicle"]))
-        return {name: _column(values)[order] for name, values in columns.items()}
+        return {name: values[order] for name, values in columns.items()}
 
-    def knowledge(self) -> list[tuple[str, LogKnowledge]]:
-        """Return what each log says in the terms of every basis, with its vehicle; passes damaged files."""
+    def knowledge(self, most: int = MOST_KNOWN) -> list[tuple[str, LogKnowledge]]:
+        """Return what each log says in the terms of every basis, with its vehicle; passes damaged files.
+
+        Args:
+            most: logs; of more, each vehicle has equally many, drawn by the hash that names them.
+        """
         found = []
-        for path in sorted((self.folder / KNOWLEDGE).glob("vehicle=*/*.json")):
+        for path in _spread(self.folder / KNOWLEDGE, most):
             with contextlib.suppress(ValueError, OSError):
                 text = path.read_text(encoding="utf-8")
                 found.append((unquote(path.parent.name.removeprefix("vehicle=")), knowledge_from(text)))
@@ -137,11 +142,24 @@ class Store:
         return sorted(found, key=lambda entry: str(entry["log"]))
 
 
+def _spread(folder: Path, most: int) -> list[Path]:
+    """Return the files of all vehicles, in order; of more than `most`, equally many of each vehicle."""
+    paths = sorted(folder.glob("vehicle=*/*.json"))
+    if len(paths) <= most:
+        return paths
+    place = Counter[str]()  # of a file among those of its vehicle
+    ordered: list[tuple[int, Path]] = []
+    for path in paths:
+        ordered.append((place[path.parent.name], path))
+        place[path.parent.name] += 1
+    return sorted(path for _, path in sorted(ordered)[:most])
+
+
 def _text_hash(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _read(paths: list[Path]) -> dict[str, list[Any]]:
+def _read(paths: list[Path]) -> dict[str, NDArray[Any]]:
     """Return the columns of some logs; vehicle and month are in the names of their folders."""
     import pyarrow as pa
     import pyarrow.dataset as dataset
@@ -151,15 +169,11 @@ def _read(paths: list[Path]) -> dict[str, list[Any]]:
     files = dataset.dataset(list(map(str, paths)), format="parquet", partitioning=partitioned)
     table = files.to_table(list(COLUMNS))
     return {
-        name: list(map(intern, table[name].to_pylist()))
+        name: np.array(list(map(intern, table[name].to_pylist())), dtype=object)
         if pa.types.is_string(table[name].type)
-        else table[name].to_pylist()
+        else table[name].to_numpy()
         for name in COLUMNS
     }
-
-
-def _column(values: list[Any]) -> NDArray[Any]:
-    return np.array(values, dtype=object if isinstance(values[0], str) else None)
 
 
 def _write(path: Path, learned: LogRows) -> None:

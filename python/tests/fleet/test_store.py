@@ -51,3 +51,13 @@ def test_file_of_another_kind_or_in_the_making_is_no_key(tmp_path: Path) -> None
     in_the_making.parent.mkdir()
     in_the_making.touch()
     assert store.keys() == {"0123456789abcdef-0123456789abcdef"}
+
+
+def test_of_too_many_logs_each_vehicle_has_equally_many(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    for vehicle, logs in (("one", 6), ("two", 2), ("three", 1)):
+        for k in range(logs):
+            text = '{"input": "wheel", "kept": "joint", "structures": {}}'
+            store.add(sample_rows(vehicle=vehicle, key=f"{k:016x}-{0:016x}", knowledge=text))
+    assert len(store.knowledge()) == 9
+    assert sorted(vehicle for vehicle, _ in store.knowledge(5)) == ["one", "one", "three", "two", "two"]

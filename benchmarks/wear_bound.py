@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: Apache-2.0
+"""How often a wheel that wears is found by `slipwise fleet`, beside the most that any test could find.
+
+    python benchmarks/wear_bound.py --fleets 300
+
+Eight vehicles drive a log a day for 30 days; the first one's wheel wears evenly by 1 %. A log's estimate is
+normal about the truth with a standard deviation that it states, and every vehicle has a level of its own that
+nobody knows. Then the slope of least squares is all that the logs say of wear, and by Neyman and Pearson
+no test finds it more often than the one that takes slopes beyond a limit. The limit is that at which 5 % of
+fleets without wear raise an alarm. The tests of `findings_of` share these 5 % with those for odd robots,
+have to find scatter out themselves, and look for random walks, too.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from statistics import NormalDist
+
+import numpy as np
+from numpy.typing import NDArray
+
+from slipwise.fleet import findings_of
+
+Floats = NDArray[np.float64]
+
+VEHICLES, DAYS = 8, 30
+WEAR = 0.01  # over the thirty days
+FALSE_ALARMS = 0.05  # of fleets in which nothing happens
+BETWEEN = 0.02  # standard deviation of vehicles
+SECONDS = 86400.0  # of a day
+
+
+def best(sigma: float, *, direction_known: bool) -> float:
+    """Return the chance of the best test to find the wear, where a log is good to `sigma`."""
+    normal = NormalDist()
+    off = sigma / float(np.sqrt(np.sum((np.arange(DAYS) - 0.5 * (DAYS - 1)) ** 2)))  # of the slope
+    each = 1.0 - (1.0 - FALSE_ALARMS) ** (1.0 / VEHICLES)
+    limit = normal.inv_cdf(1.0 - (each if direction_known else 0.5 * each))
+    size = WEAR / DAYS / off
+    wrong_way = 0.0 if direction_known else normal.cdf(-limit - size)
+    return 1.0 - normal.cdf(limit - size) + wrong_way
+
+
+def alarms_of(random: np.random.Generator, sigma: float, wear: float) -> set[tuple[str, str]]:
+    """Return vehicle and kind of the alarms in one fleet, whose first vehicle wears."""
+    days = np.arange(DAYS, dtype=np.float64)
+    names = [f"robot-{k}" for k in range(VEHICLES)]
+    level = random.normal(-0.1, BETWEEN, (VEHICLES, 1))
+    values = level + sigma * random.standard_normal((VEHICLES, DAYS))
+    values[0] += wear * days / DAYS
+    table = {
+        "vehicle": np.repeat(names, DAYS),
+        "parameter": np.full(values.size, "lon.V"),
+        "unit": np.full(values.size, "-"),
+        "value": values.ravel(),
+        "std": np.full(values.size, sigma),
+        "start": np.tile(1.7e9 + SECONDS * days, VEHICLES),
+        "distance": np.full(values.size, 500.0),
+    }
+    (found,) = findings_of(table)
+    return {(finding.vehicle, finding.kind) for finding in found.findings if finding.alarm}
+
+
+def main() -> int:
+    """Print the share of fleets in which the wear is found."""
+    plain = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=plain)
+    parser.add_argument("--fleets", type=int, default=200)
+    parser.add_argument("--noise", type=float, nargs="+", default=[0.003, 0.004, 0.005])
+    asked = parser.parse_args()
+    print("noise  found  quiet fleets that alarm  best, either direction  best, known direction")
+    for sigma in asked.noise:
+        random = np.random.default_rng(1)
+        worn = [("robot-0", "drift") in alarms_of(random, sigma, WEAR) for _ in range(asked.fleets)]
+        quiet = [bool(alarms_of(random, sigma, 0.0)) for _ in range(asked.fleets)]
+        bounds = (best(sigma, direction_known=known) for known in (False, True))
+        print(f"{sigma:g}  {np.mean(worn):.3f}  {np.mean(quiet):.3f}  ", *(f"{each:.3f}" for each in bounds))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
