@@ -14,6 +14,9 @@ import atheris
 READERS = (  # loaded when they are needed otherwise, too late to be instrumented
     *(
         "slipwise.logs.bag",
+        "slipwise.logs.flight_log",
+        "slipwise.logs.foxglove_file",
+        "slipwise.logs.pose_file",
         "slipwise.logs.tidy",
         "slipwise.models",
         "slipwise.planning",

@@ -3,8 +3,11 @@
 
 from __future__ import annotations
 
+import functools
 import gzip
+import importlib.util
 import io
+import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +20,9 @@ from rosbags.rosbag1 import Writer as Writer1
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_typestore
+
+# What the tests write autopilots' and Foxglove's logs with, by the libraries of these formats.
+sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "tests"))
 
 SECOND = 1_000_000_000
 EPOCH = 1_700_000_000 * SECOND
@@ -139,6 +145,58 @@ def _model() -> bytes:
         return (Path(folder) / "model.yaml").read_bytes()
 
 
+def _flight(kind: str) -> bytes:
+    import sample_flights
+
+    with tempfile.TemporaryDirectory() as folder:
+        write = getattr(sample_flights, f"write_{kind}")
+        written: Path = write(Path(folder) / "drive", sample_flights.made_flight(1.5, 20.0))
+        return written.read_bytes()
+
+
+def _foxglove(kind: str) -> bytes:
+    import sample_foxglove
+
+    with tempfile.TemporaryDirectory() as folder:
+        return sample_foxglove.WRITERS[kind](Path(folder) / "drive.mcap", ROWS).read_bytes()
+
+
+def _times() -> bytes:
+    return "".join(f"{0.1 * k:.1f}\n" for k in range(ROWS)).encode()
+
+
+def _kitti() -> bytes:
+    return "".join(f"1 0 0 {0.1 * k:.1f} 0 1 0 0 0 0 1 0\n" for k in range(ROWS)).encode()
+
+
+def _gpx() -> bytes:
+    points = "".join(
+        f'<trkpt lat="{48.0 + 1e-6 * k:.6f}" lon="9.0"><ele>300.0</ele>'
+        f"<time>2024-05-01T12:00:{0.5 * k:04.1f}Z</time></trkpt>\n"
+        for k in range(ROWS)
+    )
+    head = '<?xml version="1.0" encoding="UTF-8"?>\n<gpx version="1.1"><trk><trkseg>\n'
+    return f"{head}{points}</trkseg></trk></gpx>\n".encode()
+
+
+def _nmea() -> bytes:
+    lines = []
+    for k in range(ROWS):
+        clock = f"1200{0.5 * k:05.2f}"
+        lines.append(f"$GPGGA,{clock},4800.{100 * k:05d},N,00900.00000,E,4,12,0.6,300.0,M,48.0,M,,")
+        lines.append(f"$GPRMC,{clock},A,4800.{100 * k:05d},N,00900.00000,E,0.5,0.0,010524,,,A")
+    return with_sums("\r\n".join(lines).encode())
+
+
+def with_sums(text: bytes) -> bytes:
+    """Return sentences of NMEA with the sums that they should have, whatever stands there."""
+    found = []
+    for line in text.splitlines():
+        body = line.partition(b"*")[0]
+        found.append(b"%s*%02X\r\n" % (body, functools.reduce(lambda a, b: a ^ b, body[1:], 0)))
+    return b"".join(found)
+
+
 def _pgm(kind: str) -> bytes:
     if kind == "P2":
         return b"P2\n# by hand\n6 4\n255\n" + b" ".join([b"254"] * 24) + b"\n"
@@ -160,5 +218,25 @@ _SEEDS: dict[str, tuple[Callable[[], bytes], ...]] = {
     "map": (_MAP.encode,),
     "image": (lambda: _pgm("P2"), lambda: _pgm("P5")),
     "settings": (_SETTINGS.encode,),
+    "kitti": (_kitti,),
+    "kitti-times": (_times,),
+    "gpx": (_gpx,),
+    "nmea": (_nmea,),
+    "nmea-checked": (_nmea,),
+    "bin": (lambda: _flight("dataflash"),),
+    "tlog": (lambda: _flight("tlog"),),
+    "ulg": (lambda: _flight("ulog"),),
+    "foxglove": (lambda: _foxglove("ros-json"), lambda: _foxglove("foxglove-json")),
+    "protobuf": (lambda: _foxglove("protobuf"), lambda: _foxglove("transforms")),
 }
-TARGETS = tuple(_SEEDS)
+#: Libraries without which a kind of file can be neither written nor read.
+_NEEDED = {
+    "bin": ("pymavlink",),
+    "tlog": ("pymavlink",),
+    "ulg": ("pyulog",),
+    "foxglove": ("mcap_protobuf", "pytest"),
+    "protobuf": ("mcap_protobuf", "foxglove", "pytest"),
+}
+TARGETS = tuple(
+    name for name in _SEEDS if all(importlib.util.find_spec(need) for need in _NEEDED.get(name, ()))
+)

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from seeds import with_sums
 
 from slipwise.errors import SlipwiseError
 from slipwise.logs import LogOptions, open_log, save_log
@@ -21,6 +22,17 @@ _ENDINGS = {
     "map": ".yaml",
     "image": ".pgm",
     "settings": ".toml",
+    "kitti": ".txt",
+    "nmea-checked": ".nmea",
+    "kitti-times": "_times.txt",
+    "foxglove": ".mcap",
+    "protobuf": ".mcap",
+}
+_ROWS = 30  # of the seeds of KITTI
+_BESIDE = {  # by target: a file that the one that is read needs
+    "map": ("map.pgm", b"P5\n6 4\n255\n" + bytes([254] * 24)),
+    "kitti": ("input_times.txt", b"".join(b"%.1f\n" % (0.1 * k) for k in range(_ROWS))),
+    "kitti-times": ("input.txt", b"".join(b"1 0 0 %.1f 0 1 0 0 0 0 1 0\n" % (0.1 * k) for k in range(_ROWS))),
 }
 _CONVERTED = 7  # every so many logs are written again too
 
@@ -35,8 +47,11 @@ class Target:
         self._path = Path(self._folder.name) / f"input{_ENDINGS.get(name, '.' + name)}"
         self._read = _READERS.get(name, _read_log)
         warnings.simplefilter("error", RuntimeWarning)
-        if name == "map":
-            (self._path.parent / "map.pgm").write_bytes(b"P5\n6 4\n255\n" + bytes([254] * 24))
+        self._own = {self._path.name}
+        if name in _BESIDE:
+            beside, content = _BESIDE[name]
+            (self._path.parent / beside).write_bytes(content)
+            self._own.add(beside)
 
     def run(self, data: bytes) -> str:
         """Read the bytes; return what a plain refusal said, or nothing.
@@ -53,7 +68,7 @@ class Target:
                 raise AssertionError("a refusal is one line") from error
             return line
         finally:
-            left = {item.name for item in self._path.parent.iterdir()} - {"map.pgm", self._path.name}
+            left = {item.name for item in self._path.parent.iterdir()} - self._own
             if left:
                 raise AssertionError(f"files are left behind: {left}")
         return ""
@@ -74,6 +89,23 @@ def _read_log(path: Path) -> None:
             open_log(written)
         finally:
             written.unlink(missing_ok=True)
+
+
+def _read_poses(path: Path) -> None:
+    from slipwise.logs.left_out import Tally
+    from slipwise.logs.pose_file import read_pose_file
+
+    stream = read_pose_file(path, {}, Tally()).stream
+    assert np.isfinite(stream.t).all()
+
+
+def _read_checked(path: Path) -> None:
+    path.write_bytes(with_sums(path.read_bytes()))
+    _read_poses(path)
+
+
+def _read_times(path: Path) -> None:
+    _read_poses(path.with_name("input.txt"))
 
 
 def _learn(path: Path) -> None:
@@ -114,6 +146,11 @@ def _read_settings(path: Path) -> None:
 
 _READERS: dict[str, Callable[[Path], None]] = {
     "calibrate": _learn,
+    "kitti": _read_poses,
+    "kitti-times": _read_times,
+    "gpx": _read_poses,
+    "nmea": _read_poses,
+    "nmea-checked": _read_checked,
     "model": _read_model,
     "map": _read_map,
     "image": _read_image,

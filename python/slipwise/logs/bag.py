@@ -34,6 +34,7 @@ from slipwise.logs.messages import (
     TF,
     TWIST,
     WHEEL_VALUES,
+    WRONG_CONTENT,
     SampleCollector,
     Samples,
 )
@@ -105,7 +106,10 @@ def collect_transforms(bag: BagFile, options: LogOptions) -> TransformCollector:
         decoded = bag.decode(message)
         if decoded is not None:
             static = message.topic.endswith("static")
-            transforms.add(decoded, message.received_ns, static=static)
+            try:
+                transforms.add(decoded, message.received_ns, static=static)
+            except WRONG_CONTENT as error:
+                bag.count_bad(message, error)
     return transforms
 
 
@@ -124,7 +128,11 @@ def _with_joints(bag: BagFile, advice: str, options: LogOptions) -> str:
     """Add to the advice which joints of the first joint state look like wheels."""
     topics = {topic.name for topic in bag.topics if topic.type == JOINT_STATE}
     first = next((state for message in bag.messages(topics) if (state := bag.decode(message))), None)
-    return advice if first is None else f"{advice} ({sides_text(tuple(first.name), options)})"
+    return (
+        advice
+        if first is None
+        else f"{advice} ({sides_text(tuple(map(str, getattr(first, 'name', ()))), options)})"
+    )
 
 
 def _told_of_bag(error: LogError, path: Path, topics: Sequence[Topic], tally: Tally) -> LogError:
@@ -145,13 +153,16 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
         collectors[role] = collector
         consumers.setdefault(topic.name, []).append(collector.add)
     if any(topic.name == RUN_TOPIC and topic.type == RUN_TYPE for topic in bag.topics):
-        consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, message.data))]
+        consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, str(message.data)))]
     for message in bag.messages(set(consumers)):
         decoded = bag.decode(message)
         if decoded is None:
             continue
         for consume in consumers[message.topic]:
-            consume(decoded, message.received_ns)
+            try:
+                consume(decoded, message.received_ns)
+            except WRONG_CONTENT as error:
+                bag.count_bad(message, error)
     return _Collected(
         {role: collector.result() for role, collector in collectors.items()},
         transforms,

@@ -119,11 +119,15 @@ class BagFile:
         try:
             return read(message.data, message.type)
         except Exception as error:  # a damaged message can fail in any way
-            _log.debug("a message of %s cannot be decoded: %s", message.topic, error)
-            reason = f"messages of {message.topic} that cannot be decoded as {message.type}"
-            where = f"{self._path.name}, received at {message.received_ns / 1e9:.3f} s"
-            self._tally.add("bad-message", reason, count=1, where=where)
+            self.count_bad(message, error)
             return None
+
+    def count_bad(self, message: RawMessage, error: Exception, kind: str = "") -> None:
+        """Count a message that is not what its type, or the schema that is named, promises."""
+        _log.debug("a message of %s cannot be decoded: %s", message.topic, error)
+        reason = f"messages of {message.topic} that cannot be decoded as {kind or message.type}"
+        where = f"{self._path.name}, received at {message.received_ns / 1e9:.3f} s"
+        self._tally.add("bad-message", reason, count=1, where=where)
 
     def _open_folder(self, path: Path, files: Sequence[Path]) -> bool:
         """Open a rosbag2 folder by its metadata; say whether that went well, else its files may still do."""

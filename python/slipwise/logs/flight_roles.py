@@ -72,13 +72,16 @@ def yaw_from_heading(heading: Floats) -> Floats:
 def wheels_from_distances(
     topic: str, t: Floats, left: Floats, right: Floats, separation: float
 ) -> FlightStream | None:
-    """Return the wheels' twist, until the next stamp, from the distances [N] in m that they travelled."""
+    """Return the wheels' twist, until the next stamp, from the distances [N] in m that they travelled.
+
+    Between a stamp and one that is not later there is no twist.
+    """
     order = np.concatenate([[True], np.diff(t) > 0.0])
     t, left, right = t[order], left[order], right[order]
-    if len(t) < 2:
-        return None
     steps = np.diff(t)
-    v, omega = twist_from_wheels(
-        np.diff(left) / steps, np.diff(right) / steps, wheel_radius=1.0, wheel_separation=separation
-    )
-    return FlightStream(topic, t[:-1], {"v": v, "omega": omega})
+    later = steps > 0.0
+    if not later.any():
+        return None
+    left_speed, right_speed = np.diff(left)[later] / steps[later], np.diff(right)[later] / steps[later]
+    v, omega = twist_from_wheels(left_speed, right_speed, wheel_radius=1.0, wheel_separation=separation)
+    return FlightStream(topic, t[:-1][later], {"v": v, "omega": omega})

@@ -112,10 +112,7 @@ class FoxgloveFile(BagFile):
         try:
             return as_ros(schema, decoder(message.data))
         except Exception as error:  # a damaged message can fail in any way
-            _log.debug("a message of %s cannot be decoded: %s", message.topic, error)
-            reason = f"messages of {message.topic} that cannot be decoded as {schema}"
-            where = f"{self._path.name}, received at {message.received_ns / 1e9:.3f} s"
-            self._tally.add("bad-message", reason, count=1, where=where)
+            self.count_bad(message, error, schema)
             return None
 
     def _open(self, file: Path) -> None:

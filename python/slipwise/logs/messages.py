@@ -107,6 +107,24 @@ WHEEL_VALUES: dict[str, Callable[[Any], Values]] = {
 IMU_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _imu_values}
 
 
+#: What a message raises that was decoded without a definition of its type, as JSON is.
+WRONG_CONTENT = (AttributeError, IndexError, OverflowError, TypeError, ValueError)
+
+
+def stamp_of(header: Any) -> int:
+    """Return the stamp [ns] of a header whose frame has a name.
+
+    Raises:
+        Exception: one of `WRONG_CONTENT`.
+    """
+    if not isinstance(header.frame_id, str):
+        raise TypeError("a frame's name is a text")
+    stamp = int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
+    if abs(stamp) >= 1 << 63:
+        raise OverflowError("an impossible stamp")
+    return stamp
+
+
 class SampleCollector:
     """Collects one topic's messages through one of the functions above."""
 
@@ -119,16 +137,20 @@ class SampleCollector:
         self._frame_ids: dict[str, int] = {}
 
     def add(self, message: Any, received_ns: int) -> None:
-        """Take one message."""
-        self._rows.append(self._values(message))
-        self._received.append(received_ns)
+        """Take one message, or nothing of it.
+
+        Raises:
+            Exception: one of `WRONG_CONTENT`: it lacks a field or holds something else than a number there.
+        """
+        row = tuple(map(float, self._values(message)))
+        stamp, frame = 0, 0
         if self._has_header:
-            header = message.header
-            self._stamps.append(header.stamp.sec * 1_000_000_000 + header.stamp.nanosec)
-            self._frames.append(self._frame_ids.setdefault(header.frame_id, len(self._frame_ids)))
-        else:
-            self._stamps.append(0)
-            self._frames.append(0)
+            stamp = stamp_of(message.header)
+            frame = self._frame_ids.setdefault(message.header.frame_id, len(self._frame_ids))
+        self._rows.append(row)
+        self._received.append(received_ns)
+        self._stamps.append(stamp)
+        self._frames.append(frame)
 
     def result(self) -> Samples:
         """Return all that was collected."""

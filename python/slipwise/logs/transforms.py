@@ -11,6 +11,7 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.log import Floats, Ints
+from slipwise.logs.messages import stamp_of
 from slipwise.logs.rotation import product, rotate
 
 _FIXED = ("map", "world", "mocap", "utm")
@@ -40,12 +41,17 @@ class TransformCollector:
         self._static: set[Edge] = set()
 
     def add(self, message: Any, received_ns: int, *, static: bool) -> None:
-        """Take one message; transforms without a stamp are dated by when they were received."""
+        """Take one message; transforms without a stamp are dated by when they were received.
+
+        Raises:
+            Exception: one of `WRONG_CONTENT`, at the first transform that is none.
+        """
         for transform in message.transforms:
+            stamp = stamp_of(transform.header)
             edge = (transform.header.frame_id.strip("/"), transform.child_frame_id.strip("/"))
-            stamp = transform.header.stamp.sec * 1_000_000_000 + transform.header.stamp.nanosec
             p, q = transform.transform.translation, transform.transform.rotation
-            row = (p.x, p.y, p.z, q.x, q.y, q.z, q.w)
+            x, y, z, qx, qy, qz, qw = map(float, (p.x, p.y, p.z, q.x, q.y, q.z, q.w))
+            row = (x, y, z, qx, qy, qz, qw)
             self._edges.setdefault(edge, []).append((stamp or received_ns, row))
             if static:
                 self._static.add(edge)

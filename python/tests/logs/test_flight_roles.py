@@ -39,3 +39,12 @@ def test_a_twist_holds_until_the_next_distance() -> None:
     np.testing.assert_allclose(stream.columns["v"], [1.5, 2.0])
     np.testing.assert_allclose(stream.columns["omega"], [2.0, 0.0], atol=1e-12)
     assert wheels_from_distances("W", t[:1], t[:1], t[:1], 0.5) is None
+
+
+def test_stamps_that_go_back_give_no_twist_there() -> None:
+    t = np.array([5.0, 3.0, 5.0, 6.0])
+    found = wheels_from_distances("wheels", t, np.arange(4.0), np.arange(4.0), 0.5)
+    assert found is not None
+    assert found.t.tolist() == [5.0]
+    assert found.columns["v"].tolist() == [1.0]
+    assert wheels_from_distances("wheels", np.array([5.0, 3.0, 5.0]), t[:3], t[:3], 0.5) is None

@@ -4,139 +4,34 @@
 from __future__ import annotations
 
 import contextlib
-import io
-import json
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from sample_foxglove import (
+    COUNT,
+    PERIOD,
+    START,
+    STILL,
+    TURN,
+    TWIST,
+    WRITERS,
+    Writer,
+    place,
+    pose_of,
+    stamp,
+    write_ros_json,
+    writer_module,
+)
 
 from slipwise.errors import LogError
 from slipwise.logs import Log, LogOptions, open_log
 from slipwise.logs.foxglove_file import has_other_schemas
 from slipwise.logs.survey import survey_log
 
-writer_module = pytest.importorskip("mcap.writer")
 pytest.importorskip("mcap_protobuf")
-
-START, PERIOD, COUNT = 1_700_000_000_000_000_000, 50_000_000, 400  # ns, ns, messages
-TURN = 0.3  # rad/s, to the left, at 1 m/s
-TWIST = "geometry_msgs/Twist"
-STILL = {name: {"x": 0.0, "y": 0.0, "z": 0.0} for name in ("linear", "angular")}
-ANY = json.dumps({"type": "object"}).encode()
-
-
-def place(k: int) -> tuple[float, float, float]:
-    yaw = TURN * k * PERIOD / 1e9
-    return float(np.sin(yaw) / TURN), float((1.0 - np.cos(yaw)) / TURN), float(yaw)
-
-
-def pose_of(k: int) -> dict[str, Any]:
-    x, y, yaw = place(k)
-    orientation = {"x": 0.0, "y": 0.0, "z": float(np.sin(yaw / 2)), "w": float(np.cos(yaw / 2))}
-    return {"position": {"x": x, "y": y, "z": 0.0}, "orientation": orientation}
-
-
-def stamp(k: int, names: tuple[str, str]) -> dict[str, int]:
-    return dict(zip(names, divmod(START + k * PERIOD, 1_000_000_000), strict=True))
-
-
-class Writer:
-    """Writes an MCAP file with the library of the format."""
-
-    def __init__(self, **options: Any) -> None:
-        self.file = io.BytesIO()
-        self.mcap = writer_module.Writer(self.file, **options)
-        self.mcap.start()
-
-    def channel(self, topic: str, schema: str, *, kind: str = "json", definition: bytes = ANY) -> int:
-        encoding = "jsonschema" if kind == "json" else kind
-        number = self.mcap.register_schema(schema, encoding, definition)
-        return int(self.mcap.register_channel(topic, kind, number))
-
-    def add(self, channel: int, k: int, content: dict[str, Any] | bytes) -> None:
-        data = content if isinstance(content, bytes) else json.dumps(content).encode()
-        self.mcap.add_message(channel, START + k * PERIOD, data, START + k * PERIOD)
-
-    def write(self, path: Path) -> Path:
-        self.mcap.finish()
-        path.write_bytes(self.file.getvalue())
-        return path
-
-
-def write_ros_json(path: Path) -> Path:
-    """Odometry and twists as JSON under the names of ROS."""
-    made = Writer()
-    poses = made.channel("/rtk/odom", "nav_msgs/msg/Odometry")
-    commands = made.channel("/cmd_vel", "geometry_msgs/Twist")
-    for k in range(COUNT):
-        header = {"stamp": stamp(k, ("sec", "nanosec")), "frame_id": "map"}
-        pose = {"pose": pose_of(k), "covariance": [0.01] * 36}
-        made.add(poses, k, {"header": header, "child_frame_id": "base_link", "pose": pose, "twist": {}})
-        zero = {"x": 0.0, "y": 0.0, "z": 0.0}
-        made.add(commands, k, {"linear": zero | {"x": 1.0}, "angular": zero | {"z": TURN}})
-    return made.write(path)
-
-
-def write_foxglove_json(path: Path, *, transforms: bool = False) -> Path:
-    """Poses in Foxglove's schema, or transforms, and twists of ROS."""
-    made = Writer()
-    poses = made.channel(
-        "/tf" if transforms else "/pose", f"foxglove.{'FrameTransforms' if transforms else 'PoseInFrame'}"
-    )
-    commands = made.channel("/cmd_vel", "geometry_msgs/TwistStamped")
-    for k in range(COUNT):
-        pose = pose_of(k)
-        time = {"timestamp": stamp(k, ("sec", "nsec"))}
-        if transforms:
-            names = {"parent_frame_id": "map", "child_frame_id": "base_link"}
-            moved = {"translation": pose["position"], "rotation": pose["orientation"]}
-            made.add(poses, k, {"transforms": [time | names | moved]})
-        else:
-            made.add(poses, k, time | {"frame_id": "map", "pose": pose})
-        twist = {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": TURN}}
-        header = {"stamp": stamp(k, ("sec", "nanosec")), "frame_id": ""}
-        made.add(commands, k, {"header": header, "twist": twist})
-    return made.write(path)
-
-
-def write_protobuf(path: Path) -> Path:
-    """Poses as protobuf by Foxglove's own library, beside twists in JSON."""
-    foxglove = pytest.importorskip("foxglove")
-    from foxglove import messages
-    from foxglove.channels import PoseInFrameChannel
-
-    context = foxglove.Context()
-    with foxglove.open_mcap(str(path), context=context):
-        poses = PoseInFrameChannel("/pose", context=context)
-        schema = foxglove.Schema(name="geometry_msgs/Twist", encoding="jsonschema", data=ANY)
-        commands = foxglove.Channel("/cmd_vel", schema=schema, message_encoding="json", context=context)
-        for k in range(COUNT):
-            nanoseconds, pose = START + k * PERIOD, pose_of(k)
-            made = messages.Pose(
-                position=messages.Vector3(**pose["position"]),
-                orientation=messages.Quaternion(**pose["orientation"]),
-            )
-            time = messages.Timestamp(*divmod(nanoseconds, 1_000_000_000))
-            poses.log(messages.PoseInFrame(timestamp=time, frame_id="map", pose=made), log_time=nanoseconds)
-            twist = {"linear": {"x": 1.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": TURN}}
-            commands.log(json.dumps(twist).encode(), log_time=nanoseconds)
-    return path
-
-
-def write_transforms(path: Path) -> Path:
-    return write_foxglove_json(path, transforms=True)
-
-
-WRITERS: dict[str, Callable[[Path], Path]] = {
-    "ros-json": write_ros_json,
-    "foxglove-json": write_foxglove_json,
-    "transforms": write_transforms,
-    "protobuf": write_protobuf,
-}
 
 
 @pytest.fixture(params=WRITERS)
@@ -208,6 +103,47 @@ def test_a_message_that_lacks_a_field_is_left_out_and_counted(tmp_path: Path) ->
     (entry,) = log.left_out
     assert (entry.kind, entry.count) == ("bad-message", 2)
     assert "/pose that cannot be decoded as foxglove.PoseInFrame" in entry.reason
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"orientation": {"x": 0.0, "y": 0.0, "z": 0.0}},
+        {"position": {"x": "far", "y": 0.0, "z": 0.0}},
+        {"position": {"x": None, "y": 0.0, "z": 0.0}},
+        {"position": {"x": 10**400, "y": 0.0, "z": 0.0}},
+        {"position": [1.0, 2.0, 3.0]},
+    ],
+)
+def test_a_message_that_holds_something_else_than_numbers_is_left_out_whole(
+    tmp_path: Path, wrong: dict[str, Any]
+) -> None:
+    made = Writer()
+    poses, commands = made.channel("/pose", "foxglove.PoseInFrame"), made.channel("/cmd", TWIST)
+    for k in range(20):
+        made.add(commands, k, STILL)
+        pose = pose_of(k) | (wrong if k == 3 else {})
+        made.add(poses, k, {"timestamp": stamp(k, ("sec", "nsec")), "frame_id": "map", "pose": pose})
+    log = open_log(made.write(tmp_path / "drive.mcap"))
+    assert len(log.runs[0].poses) == 19
+    (entry,) = log.left_out
+    assert (entry.kind, entry.count) == ("bad-message", 1)
+
+
+def test_transforms_whose_frames_have_no_names_are_left_out(tmp_path: Path) -> None:
+    path = WRITERS["transforms"](tmp_path / "drive.mcap")
+    whole = open_log(path)
+    made = Writer()
+    poses, commands = made.channel("/tf", "foxglove.FrameTransforms"), made.channel("/cmd", TWIST)
+    for k in range(COUNT):
+        made.add(commands, k, STILL)
+        pose, frame = pose_of(k), 7 if k == 5 else "map"
+        moved = {"translation": pose["position"], "rotation": pose["orientation"]}
+        names = {"parent_frame_id": frame, "child_frame_id": "base_link"}
+        made.add(poses, k, {"transforms": [{"timestamp": stamp(k, ("sec", "nsec"))} | names | moved]})
+    log = open_log(made.write(tmp_path / "other.mcap"))
+    assert len(log.runs[0].poses) == len(whole.runs[0].poses) - 1
+    assert [entry.kind for entry in log.left_out] == ["bad-message"]
 
 
 def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Path) -> None:
