@@ -89,6 +89,28 @@ def test_one_parameter_is_that_of_statsmodels() -> None:
         assert prior.mean_covariance[0, 0] == pytest.approx(expected.var_eff_w_re, rel=0.01)
 
 
+@pytest.mark.slow
+def test_mean_of_robots_that_are_not_equally_sure_is_that_of_statsmodels() -> None:
+    """Given the variance between robots, the mean is weighted least squares on a constant."""
+    models = pytest.importorskip("statsmodels.regression.linear_model")
+    random = np.random.default_rng(9)
+    stds = random.uniform(0.01, 0.08, 15)
+    values = random.normal(-0.1, 0.05, 15) + stds * random.standard_normal(15)
+    prior = fleet_prior(values[:, None], stds[:, None, None] ** 2)
+    weights = 1.0 / (stds**2 + prior.between[0, 0])
+    fit = models.WLS(values, np.ones(15), weights=weights).fit()
+    assert prior.mean[0] == pytest.approx(fit.params[0], rel=1e-6)
+    assert prior.mean_covariance[0, 0] == pytest.approx(fit.normalized_cov_params[0, 0], rel=1e-6)
+
+    def restricted(between: float) -> float:
+        w = 1.0 / (stds**2 + between)
+        off = values - np.sum(w * values) / np.sum(w)
+        return float(0.5 * np.sum(np.log(w)) - 0.5 * np.log(np.sum(w)) - 0.5 * np.sum(w * off**2))
+
+    best = restricted(prior.between[0, 0])
+    assert best >= max(restricted(factor * prior.between[0, 0]) for factor in (0.8, 0.9, 1.1, 1.25))
+
+
 def test_a_guess_counts_as_two_robots_and_leaves_no_covariance() -> None:
     values = np.random.default_rng(8).multivariate_normal([0.0, 0.0], [[1.0, 0.9], [0.9, 1.0]], 4)
     prior = fleet_prior(values, np.full((4, 2, 2), 0.0) + 1e-10 * np.eye(2), guess=np.array([0.5, 0.5]))
