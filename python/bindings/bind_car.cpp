@@ -22,12 +22,14 @@ void bind_car(nb::module_& m) {
   nb::class_<CarPrior>(m, "CarPrior", "What is taken of a car before it drives: straight curves.")
       .def(
           "__init__",
-          [](CarPrior* self, double top_speed, double curvature) {
-            new (self) CarPrior{.top_speed = top_speed, .curvature = curvature};
+          [](CarPrior* self, double top_speed, double curvature, std::optional<CarCurves> held) {
+            new (self) CarPrior{.top_speed = top_speed, .curvature = curvature, .held = std::move(held)};
           },
-          "top_speed"_a, "curvature"_a)
+          "top_speed"_a, "curvature"_a, "held"_a.none(),
+          "Held curves are taken by predictions in place of those that are learned meanwhile.")
       .def_ro("top_speed", &CarPrior::top_speed)
-      .def_ro("curvature", &CarPrior::curvature);
+      .def_ro("curvature", &CarPrior::curvature)
+      .def_ro("held", &CarPrior::held);
   nb::class_<KnotCurve>(m, "KnotCurve", "A function that is straight between its knots.")
       .def(
           "__init__",

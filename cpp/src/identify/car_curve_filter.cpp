@@ -211,6 +211,11 @@ CarCurveFilter::CarCurveFilter(const CarPrior& prior)
   set_curves();
 }
 
+CarCurveFilter::CarCurveFilter(const CarPrior& prior, const CarCurves& known) : CarCurveFilter(prior) {
+  curves_ = known;
+  known_ = true;
+}
+
 void CarCurveFilter::start_run(double t) {
   ramps_ = Eigen::MatrixXd::Zero(kThrottleRamps, std::ssize(kLags));
   drags_ = Eigen::VectorXd::Zero(std::ssize(kLags));
@@ -302,7 +307,7 @@ void CarCurveFilter::learn(const Means& means, const BodyTwist& twist) {
   const CarState now{.speed = twist.v, .steering = observers_.front().steering};
   turn_rest_.learn(until_, twist.omega - car_twist(curves_, now).omega, kTurnNoise);
   sideways_.learn(until_, twist.vy, kSpeedNoise);
-  if (++learned_ % kSolveEvery == 0) {
+  if (++learned_ % kSolveEvery == 0 && !known_) {
     set_curves();
   }
 }

@@ -30,7 +30,10 @@ BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
 }  // namespace
 
 CarStream::CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after)
-    : sensor_(sensor), given_(unknown_after), filter_(prior) {
+    : sensor_(sensor), given_(unknown_after), filter_(prior), held_(prior.held) {
+  if (held_) {
+    follower_.emplace(prior, *held_);
+  }
   known_.push_back({.until = -kNever, .curves = filter_.curves(), .straight = filter_.straight()});
 }
 
@@ -74,7 +77,11 @@ void CarStream::push_command(const InputSample& command, double latency) {
 
 void CarStream::push_pose(const MeasuredPose& pose) {
   if (!since_) {
-    filter_.start_run(given_.empty() ? pose.t : std::min(pose.t, given_.first()));
+    const double begin = given_.empty() ? pose.t : std::min(pose.t, given_.first());
+    filter_.start_run(begin);
+    if (follower_) {
+      follower_->start_run(begin);
+    }
   }
   const double seconds = since_ ? pose.t - since_->t : 0.0;
   const bool joined = since_ && pose.frame == since_->frame && seconds <= kLongest;
@@ -83,15 +90,19 @@ void CarStream::push_pose(const MeasuredPose& pose) {
   }
   const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
   const InputHistory commands = given_.slice(filter_.until(), pose.t, SliceKind::Commands);
+  std::optional<BodyTwist> measured;
   if (joined && given) {
     const Pose2 moved = between({since_->x, since_->y, since_->yaw}, {pose.x, pose.y, pose.yaw});
     const Eigen::Vector3d twist = adjoint(sensor_) * log(moved) / seconds;
-    const BodyTwist measured{.v = twist.x(), .vy = twist.y(), .omega = twist.z()};
-    filter_.follow(commands, pose.t, &measured);
-    motions_.push_back(filter_.motion());
+    measured = {.v = twist.x(), .vy = twist.y(), .omega = twist.z()};
+  }
+  filter_.follow(commands, pose.t, measured ? &*measured : nullptr);
+  if (follower_) {
+    follower_->follow(commands, pose.t, measured ? &*measured : nullptr);
+  }
+  if (measured) {
+    motions_.push_back((follower_ ? *follower_ : filter_).motion());
     known_.push_back({.until = pose.t, .curves = filter_.curves(), .straight = filter_.straight()});
-  } else {
-    filter_.follow(commands, pose.t, nullptr);
   }
   since_ = pose;
 }
@@ -114,7 +125,7 @@ InputHistory CarStream::inputs(double start, double end, double known, const std
     }
   }
   const InputHistory commands = given_.slice(start - kLookBack, end, SliceKind::Commands, future);
-  const InputHistory twists = car_twists(known_at(known).curves, commands, span);
+  const InputHistory twists = car_twists(held_ ? *held_ : known_at(known).curves, commands, span);
   std::vector<double> t;
   std::vector<BodyTwist> twist;
   for (std::size_t i = 0; i < twists.size(); ++i) {

@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -96,6 +97,39 @@ TEST_CASE("a segment's twists do not depend on what was measured after what may 
     ++compared;
   }
   CHECK(compared > 8);
+}
+
+/// How far the twists of a segment end from where it was measured to end [m and rad].
+double missed(const DrivenSegment& driven) {
+  const InputHistory& inputs = driven.inputs;
+  Pose2 at;
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    const double from = std::max(inputs.time(k), driven.segment.start);
+    const double to = k + 1 < inputs.size() ? std::min(inputs.time(k + 1), driven.segment.end) : driven.segment.end;
+    if (to > from) {
+      const BodyTwist twist = inputs.sample(k);
+      at = compose(at, exp((to - from) * Eigen::Vector3d(twist.v, twist.vy, twist.omega)));
+    }
+  }
+  return (at.vector() - driven.segment.measured.vector()).norm();
+}
+
+TEST_CASE("held curves drive the segments that are cut without them, and need not be learned first") {
+  const std::vector runs{drive(40.0)};
+  StreamSettings settings = car_settings();
+  const CutRuns learned = cut_segments(settings, runs);
+  settings.car->held = true_car();
+  const CutRuns held = cut_segments(settings, runs);
+  REQUIRE(held.segments.size() == learned.segments.size());
+  REQUIRE(held.segments.size() > 10);
+  double of_held = 0.0, of_learned = 0.0;
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(held.segments[i].segment.start == learned.segments[i].segment.start);
+    of_held += missed(held.segments[i]);
+    of_learned += missed(learned.segments[i]);
+  }
+  CHECK(of_held < 0.2 * of_learned);
+  CHECK(missed(held.segments.front()) < 0.01);
 }
 
 TEST_CASE("poses that come late by less than the latency change nothing") {

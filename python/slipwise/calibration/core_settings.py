@@ -94,4 +94,4 @@ def _change_prior(hypotheses: _core.HypothesisSettings, **numbers: float) -> Non
 def car_of(settings: Settings) -> _core.CarPrior | None:
     """Return what is taken of a car commanded by throttle and steering, where the settings name one."""
     car = settings.log_options().car
-    return None if car is None else _core.CarPrior(car.top_speed, car.curvature)
+    return None if car is None else _core.CarPrior(car.top_speed, car.curvature, None)

@@ -131,10 +131,15 @@ def choose_input(log: Log) -> str:
     return next(iter(_input_names(log)), "wheel")
 
 
-def collect_windows(drive: tuple[PreparedRun, ...], length: float, rules: WindowRules) -> WindowSet:
-    """Cut all runs into windows of `length` [s]."""
+def collect_windows(
+    drive: tuple[PreparedRun, ...],
+    length: float,
+    rules: WindowRules,
+    held: _core.CarCurves | None = None,
+) -> WindowSet:
+    """Cut all runs into windows of `length` [s]; `held` curves say what throttle and steering do."""
     settings = rules.stream_settings(length, from_commands=drive[0].input_name == "command")
-    cut = cut_windows([run.run for run in drive], settings)
+    cut = cut_windows([run.run for run in drive], settings, held)
     return WindowSet(
         length=length,
         drive=drive,

@@ -12,7 +12,7 @@ from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.plain import baseline_predictor, model_predictor, vendor_predictor
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.predictors import Predictor, predict_all
-from slipwise.calibration.prepared_run import WindowSet
+from slipwise.calibration.prepared_run import WindowSet, collect_windows
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import SIDEWAYS_BASES, SLOPE_BASES
 from slipwise.errors import SettingsError
@@ -69,7 +69,7 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
     special = {
         "none": MethodInfo(_plain, "the kinematic baseline: no slip, no lag"),
         "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
-        "model": MethodInfo(_by(_model), "the model file as it is"),
+        "model": MethodInfo(_model, "the model file as it is"),
         "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
         "slip-ratio-ekf": MethodInfo(
             _by(lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows)),
@@ -136,11 +136,23 @@ def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
     return tuple(replace(predictions, method=name) for predictions in learned.predictions)
 
 
-def _refuse_car(model: Model) -> None:
-    if model.car is not None:
+def _driven_by(model: Model, contest: Contest) -> tuple[WindowSet, ...]:
+    """Return the targets; throttle and steering go through the model's curves, not those learned meanwhile.
+
+    Raises:
+        SettingsError: the log has no throttle and steering.
+    """
+    if model.car is None:
+        return contest.targets
+    drive = contest.windows.drive
+    if car_prior([run.run for run in drive]) is None:
         raise SettingsError(
-            "a model of throttle and steering is not judged as it is", advice="auto learns it again, causally"
+            "the model takes throttle and steering, and the log has none",
+            where="--model",
+            advice="give --vehicle dart or another with throttle_steering, and columns throttle and steering",
         )
+    rules = contest.settings.rules()
+    return tuple(collect_windows(drive, targets.length, rules, model.car) for targets in contest.targets)
 
 
 def _plain(_: str, contest: Contest) -> tuple[Predictions, ...]:
@@ -186,11 +198,11 @@ def _vendor(name: str, contest: Contest) -> Predictor:
     return vendor_predictor(contest.vendor_wheel_separation_multiplier, contest.settings)
 
 
-def _model(name: str, contest: Contest) -> Predictor:
+def _model(name: str, contest: Contest) -> tuple[Predictions, ...]:
     if name not in contest.models:
         raise SettingsError(
             f"the method {name} needs a model file", where="--methods", advice="give --model FILE"
         )
-    _refuse_car(contest.models[name])
-    causal = name not in contest.learned_from_this
-    return replace(model_predictor(contest.models[name]), method=name, causal=causal)
+    model, causal = contest.models[name], name not in contest.learned_from_this
+    predictor = replace(model_predictor(model), method=name, causal=causal)
+    return predict_all(predictor, contest.windows, _driven_by(model, contest))

@@ -30,9 +30,9 @@ class CarCommands:
     top_speed: float  # m/s, at full throttle
     curvature: float  # 1/m, at full steering
 
-    def prior(self) -> _core.CarPrior:
-        """Return what is taken before a car drives, as the core has it."""
-        return _core.CarPrior(self.top_speed, self.curvature)
+    def prior(self, held: _core.CarCurves | None = None) -> _core.CarPrior:
+        """Return what is taken before a car drives, as the core has it; `held` curves stay."""
+        return _core.CarPrior(self.top_speed, self.curvature, held)
 
     def between(self, part: slice) -> CarCommands:
         """Return the commands of some rows."""

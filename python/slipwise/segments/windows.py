@@ -104,19 +104,22 @@ def _between(rows: Floats, since: float, until: float) -> Floats:
     return rows[first:last]
 
 
-def car_prior(runs: Sequence[Run]) -> _core.CarPrior | None:
+def car_prior(runs: Sequence[Run], held: _core.CarCurves | None = None) -> _core.CarPrior | None:
     """Return what is taken of a car before it drives, where throttle and steering were commanded."""
     cars = (run.commands.car for run in runs if run.commands is not None)
-    return next((car.prior() for car in cars if car is not None), None)
+    return next((car.prior(held) for car in cars if car is not None), None)
 
 
-def cut_windows(runs: Sequence[Run], settings: _core.StreamSettings) -> Windows:
+def cut_windows(
+    runs: Sequence[Run], settings: _core.StreamSettings, held: _core.CarCurves | None = None
+) -> Windows:
     """Cut runs into segments, each as soon after the last as the poses and rules allow.
 
     No segment depends on a pose measured after its end, so that a log cut off at any time has the same
-    segments until then.
+    segments until then. Throttle and steering go through `held` curves where these are given, otherwise
+    through those that were known before each segment; the segments are the same.
     """
-    settings.car = car_prior(runs) if settings.from_commands else None
+    settings.car = car_prior(runs, held) if settings.from_commands else None
     cut = _core.cut_segments(settings, [recording_of(run) for run in runs])
     segments = tuple(driven.segment for driven in cut.segments)
     measured = [segment.measured.vector() for segment in segments]

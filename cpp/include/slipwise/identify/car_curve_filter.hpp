@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <deque>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,8 @@ namespace slipwise {
 struct CarPrior {
   double top_speed = 4.0;  ///< at full throttle [m/s]
   double curvature = 2.0;  ///< at full steering [1/m]
+  /// What predictions take in place of what is learned meanwhile: a model as it is. Gates see what is learned.
+  std::optional<CarCurves> held = {};
 };
 
 /// Least squares of increments that are not negative, for several lags side by side; the lag that predicts best counts.
@@ -94,6 +97,8 @@ class CarCurveFilter {
  public:
   CarCurveFilter() : CarCurveFilter(CarPrior{}) {}
   explicit CarCurveFilter(const CarPrior& prior);
+  /// One that follows a car by known curves, and learns how it is set right alone.
+  CarCurveFilter(const CarPrior& prior, const CarCurves& known);
 
   /// Another run begins: the car stands; what was learned stays.
   void start_run(double t);
@@ -134,6 +139,7 @@ class CarCurveFilter {
   ConstantGain gain_, turn_gain_;  ///< of the throttle [m/s], of throttle times steering [rad/s]
   BodyTwist held_{};               ///< the last measured twist
   std::size_t learned_ = 0;        ///< twists
+  bool known_ = false;             ///< the curves; not saved, since what is saved learns
 };
 
 }  // namespace slipwise

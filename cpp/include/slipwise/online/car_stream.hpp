@@ -32,8 +32,8 @@ class CarStream {
   /// Drops what is not needed after `t` [s].
   void drop_before(double t);
 
-  /// Twists over [start, end] [s] and some seconds before, by the curves that were known at `known` [s]. The speed at
-  /// the start is what poses until then tell.
+  /// Twists over [start, end] [s] and some seconds before, by the held curves or those known at `known` [s]. The speed
+  /// at the start is what poses until then tell.
   InputHistory inputs(double start, double end, double known, const std::vector<InputSample>& future = {}) const;
   /// The same of a kinematic bicycle with the constant gains that fitted best until `known` [s].
   InputHistory baseline(double start, double end, double known) const;
@@ -58,6 +58,8 @@ class CarStream {
   Pose2 sensor_;
   InputBuffer given_;
   CarCurveFilter filter_;
+  std::optional<CarCurves> held_;           ///< of a model as it is; not saved, since what is saved learns
+  std::optional<CarCurveFilter> follower_;  ///< of the car by those
   std::deque<KnownCurves> known_;
   std::deque<KnownMotion> motions_;
   std::optional<MeasuredPose> since_;  ///< where the twist begins that is being measured
