@@ -180,10 +180,10 @@ void bind_mppi(nb::module_& m) {
   nb::class_<Mppi>(m, "Mppi", "Model predictive path integral control through learned models.")
       .def(
           "__init__",
-          [](Mppi* self, const Motions& models, const MppiSettings& settings) {
-            new (self) Mppi(programs_of(models, settings.period), settings);
+          [](Mppi* self, const Motions& models, const MppiSettings& settings, std::optional<CarCurves> car) {
+            new (self) Mppi(programs_of(models, settings.period), settings, std::move(car));
           },
-          "models"_a, "settings"_a)
+          "models"_a, "settings"_a, "car"_a.none())
       .def(
           "step",
           [](Mppi& self, const Pose2& pose, std::pair<double, double> drive, const Rows<2>& past,
@@ -194,8 +194,11 @@ void bind_mppi(nb::module_& m) {
           },
           "pose"_a, "drive"_a, "past"_a, "reference"_a, "map"_a.none(), "One iteration from the last plan.")
       .def(
-          "adopt", [](Mppi& self, const Motions& models) { self.adopt(programs_of(models, self.settings().period)); },
-          "models"_a, "Drives through other models from the next step on; the last plan stays.")
+          "adopt",
+          [](Mppi& self, const Motions& models, std::optional<CarCurves> car) {
+            self.adopt(programs_of(models, self.settings().period), std::move(car));
+          },
+          "models"_a, "car"_a.none(), "Drives through other models from the next step on; the last plan stays.")
       .def("reset", [](Mppi& self, double v, double omega) { self.reset({.v = v, .omega = omega}); }, "v"_a, "omega"_a);
 }
 

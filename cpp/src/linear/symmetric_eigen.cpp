@@ -7,6 +7,9 @@
 namespace slipwise {
 
 SymmetricEigen symmetric_eigen(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  if (matrix.size() == 0) {  // of a model without terms; the solver reads a first entry
+    return {};
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
   return {solver.eigenvalues(), solver.eigenvectors()};
 }

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "slipwise/rollout/car_batch.hpp"
+
 namespace slipwise {
 namespace {
 
@@ -71,9 +73,10 @@ void MppiSettings::check() const {
   }
 }
 
-Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings)
+Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings, std::optional<CarCurves> car)
     : models_(std::move(models)),
       settings_((settings.check(), settings)),
+      car_(std::move(car)),
       noise_v_(settings.rollouts, correlation(settings), settings.seed),
       noise_omega_(settings.rollouts, correlation(settings), settings.seed + 0x5bd1e995U),
       plan_(settings.periods),
@@ -89,8 +92,10 @@ Mppi::Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings)
   }
 }
 
-void Mppi::adopt(std::vector<RolloutProgram> models) {
+void Mppi::adopt(std::vector<RolloutProgram> models, std::optional<CarCurves> car) {
   check_models(models, settings_);
+  need(car.has_value() == car_.has_value(), "models of throttle and steering do not take the place of others");
+  car_ = std::move(car);
   models_ = std::move(models);
 }
 
@@ -137,11 +142,17 @@ void Mppi::sample(const DriveCommand& last) {
 void Mppi::drive(const RolloutProgram& model, const MppiState& state, const MppiReference& reference,
                  const Costmap* map) {
   const std::size_t count = settings_.rollouts;
-  const RolloutBatch<float> batch{.rollouts = count,
-                                  .periods = settings_.periods,
-                                  .commands = {v_.data(), omega_.data(), 1, static_cast<std::ptrdiff_t>(count)},
-                                  .starts = {&state.start, 1},
-                                  .past = state.past};
+  RolloutBatch<float> batch{.rollouts = count,
+                            .periods = settings_.periods,
+                            .commands = {v_.data(), omega_.data(), 1, static_cast<std::ptrdiff_t>(count)},
+                            .starts = {&state.start, 1},
+                            .past = state.past};
+  CarBatch<float> twists;
+  if (car_) {
+    twists = car_batch(*car_, batch, settings_.period);
+    batch.commands = {twists.v.data(), twists.omega.data(), 1, static_cast<std::ptrdiff_t>(count)};
+    batch.past = twists.past;
+  }
   const RolloutOutputs<float> outputs{.x = x_.data(),
                                       .y = y_.data(),
                                       .theta = theta_.data(),
@@ -242,7 +253,8 @@ MppiResult Mppi::step(const MppiState& state, const MppiReference& reference, co
     need(map_value(*map, state.start.pose) < settings_.costs.lethal,
          "the robot starts inside an obstacle; free it first, or check its pose and the map");
   }
-  const DriveCommand last = state.past.empty() ? state.start.drive : state.past.back();
+  const DriveCommand unsent = car_ ? DriveCommand{} : state.start.drive;
+  const DriveCommand last = state.past.empty() ? unsent : state.past.back();
   if (planned_) {
     std::ranges::rotate(plan_, plan_.begin() + 1);
     plan_.back() = plan_[periods - 2];

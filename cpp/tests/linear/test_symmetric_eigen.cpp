@@ -17,6 +17,11 @@ TEST_CASE("eigenvalues rise, eigenvectors are orthonormal, and together they are
   CHECK((eigen.vectors * eigen.values.asDiagonal() * eigen.vectors.transpose() - a).norm() < 1e-13);
 }
 
+TEST_CASE("a matrix without rows has no eigenvalues, and its root is one") {
+  CHECK(symmetric_eigen(Eigen::MatrixXd(0, 0)).values.size() == 0);
+  CHECK(covariance_root(Eigen::MatrixXd(0, 0)).size() == 0);
+}
+
 TEST_CASE("the root of a covariance gives it back, singular or slightly negative by rounding too") {
   Eigen::Matrix3d full;
   full << 4.0, 1.0, 0.5, 1.0, 2.0, -0.3, 0.5, -0.3, 1.0;

@@ -129,7 +129,7 @@ TEST_CASE("held curves drive the segments that are cut without them, and need no
     of_learned += missed(learned.segments[i]);
   }
   CHECK(of_held < 0.2 * of_learned);
-  CHECK(missed(held.segments.front()) < 0.01);
+  CHECK(missed(held.segments.front()) < 0.05);
 }
 
 TEST_CASE("poses that come late by less than the latency change nothing") {

@@ -11,6 +11,7 @@ from slipwise.errors import SettingsError
 from slipwise.models.model import Model
 from slipwise.planning.rollout import check_threads, checked_commands, uncertain
 from slipwise.planning.start import Start
+from slipwise.planning.throttle import behind_curves
 
 
 def sample_futures(  # noqa: PLR0913  (all but the first three are options)
@@ -30,7 +31,8 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
 
     Args:
         model: a learned model.
-        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`.
+        commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; of a car that is
+            commanded by throttle and steering, these.
         dt: time that a command is held [s].
         samples: how many futures to draw of each rollout.
         seed: where the random numbers start, at least 0.
@@ -38,7 +40,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
         threads: the results are the same bytes for any number.
 
     Raises:
-        ModelError: the model does not remember a surface ahead.
+        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
         SettingsError: as for `rollout`, and when there is no sample or the seed is negative.
     """
     numbers = np.asarray(checked_commands(commands, np.float64))
@@ -48,7 +50,7 @@ def sample_futures(  # noqa: PLR0913  (all but the first three are options)
             f"{samples} samples from seed {seed} cannot be drawn",
             advice="use at least 1 sample, and a seed from 0",
         )
-    begin = Start() if start is None else start
+    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
     rollouts, periods = numbers.shape[:2]
     result = np.empty((3, samples, periods, rollouts))
     try:

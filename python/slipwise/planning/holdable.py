@@ -50,8 +50,11 @@ def curvature_map(
         curvatures: how many, between the limits of both sides.
 
     Raises:
+        ModelError: the model takes throttle and steering, or its slip depends on a sideways speed.
         SettingsError: too few speeds or curvatures.
     """
+    model.refuse_throttle("maps of what can be held")
+    model.refuse_sideways("maps of what can be held")
     if speeds < 1 or curvatures < 2:
         raise SettingsError(
             "the map needs a speed and two curvatures", advice="such as speeds=20, curvatures=41"

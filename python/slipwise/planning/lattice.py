@@ -164,6 +164,8 @@ def _check(options: LatticeOptions) -> None:
 
 def _steady_planner(model: Model, options: LatticeOptions, limits: Limits) -> _core.TrajectoryPlanner:
     model.refuse_heading("lattices")
+    model.refuse_throttle("lattices")
+    model.refuse_sideways("lattices")
     settings = _core.TrajectorySettings()
     settings.cruise = settings.end_speed = options.speed
     settings.longest, settings.straight_end, settings.guesses = options.longest, True, 3

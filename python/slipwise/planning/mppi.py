@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +33,7 @@ class Motion:
     limits: _core.CommandLimits | None = None  # of the drive, in front of its delay and lag
     grade: Grade | None = None  # of the ground in the frame of the reference; level where there is none
     slip_ahead: _core.MixedAhead | None = None  # on surfaces from the robot's place on, where it changes
+    car: _core.CarCurves | None = None  # in front of all, where commands are throttle and steering
 
 
 def baseline_motion() -> Motion:
@@ -62,9 +63,10 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
     of the surfaces from the robot's place on; `Controller.adopt` takes what is ahead as the robot goes.
 
     Raises:
-        ModelError: the model does not remember a surface ahead.
+        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
         SettingsError: samples of slip on surfaces ahead are asked for.
     """
+    model.refuse_sideways("controllers")
     rng = np.random.Generator(np.random.PCG64(seed))
     model.refuse_heading("controllers")
     slip = slip_ahead(terrain_ahead, model)
@@ -75,14 +77,23 @@ def learned_motions(  # noqa: PLR0913  (all but the first are options)
                 where="samples",
                 advice="leave them out, or draw futures by `sample_futures`",
             )
-        return [Motion(model.motion, slip.parameters(model), model.limits, grade, slip.in_core)]
-    drawn = rng.multivariate_normal(model.mean, model.covariance_over(seconds), size=samples, method="eigh")
-    return [Motion(model.motion, parameters, model.limits, grade) for parameters in (model.mean, *drawn)]
+        return [Motion(model.motion, slip.parameters(model), model.limits, grade, slip.in_core, model.car)]
+    drawn = np.zeros((samples, 0))  # of a model without terms
+    if len(model.mean):
+        spread = model.covariance_over(seconds)
+        drawn = rng.multivariate_normal(model.mean, spread, size=samples, method="eigh")
+    return [
+        Motion(model.motion, parameters, model.limits, grade, car=model.car)
+        for parameters in (model.mean, *drawn)
+    ]
 
 
 @dataclass(frozen=True)
 class MppiOptions:
-    """Settings of the controller; the defaults suit a robot of a metre at a metre per second."""
+    """Settings of the controller; the defaults suit a robot of a metre at a metre per second.
+
+    Of a car commanded by throttle and steering, speeds are throttles and yaw rates steerings; see `for_car`.
+    """
 
     rollouts: int = 2048
     periods: int = 56
@@ -103,6 +114,19 @@ class MppiOptions:
     smoothness: float = 0.05  # per squared fraction of the largest change of a command
     obstacle: float = 1.0  # per cost of the map and second
     seed: int = 1
+
+    def for_car(self) -> MppiOptions:
+        """Return the options with limits and noise for throttle and steering, which have no units."""
+        return replace(
+            self,
+            highest_speed=1.0,
+            lowest_speed=0.0,
+            yaw_rate=1.0,
+            acceleration=2.0,
+            yaw_acceleration=4.0,
+            speed_std=0.15,
+            yaw_rate_std=0.4,
+        )
 
     def to_core(self) -> _core.MppiSettings:
         """Return the options as the core takes them."""
@@ -152,6 +176,18 @@ def _as_core(motions: list[Motion]) -> list[_InCore]:
     ]
 
 
+def _car_of(motions: list[Motion], options: MppiOptions) -> _core.CarCurves | None:
+    """Return the curves of a car in front of all motions, None where they take speeds."""
+    car = motions[0].car if motions else None
+    if any((motion.car is None) != (car is None) for motion in motions):
+        raise SettingsError("models of throttle and of speeds do not mix", where="controller's motions")
+    if car is not None and max(options.highest_speed, -options.lowest_speed, options.yaw_rate) > 1.0:
+        raise SettingsError(
+            "throttle and steering are at most 1", where="controller options", advice="use options.for_car()"
+        )
+    return car
+
+
 def _sent(command: tuple[float, float]) -> Floats:
     values = np.asarray(command, dtype=np.float64)
     if values.shape != (2,) or not np.isfinite(values).all():
@@ -183,7 +219,7 @@ class Controller:
         self.reference, self.options = reference, options
         self._obstacles = obstacles  # keeps the cells
         try:
-            self._core = _core.Mppi(_as_core(motions), options.to_core())
+            self._core = _core.Mppi(_as_core(motions), options.to_core(), _car_of(motions, options))
         except (ValueError, TypeError, OverflowError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller options") from problem
         self._past = np.zeros((0, 2))
@@ -195,14 +231,14 @@ class Controller:
             SettingsError: there is no motion, or one has no sense.
         """
         try:
-            self._core.adopt(_as_core(motions))
+            self._core.adopt(_as_core(motions), _car_of(motions, self.options))
         except (ValueError, TypeError) as problem:
             raise SettingsError(str(problem).splitlines()[0], where="controller's motions") from problem
 
     def command(
         self, pose: Pose, drive: tuple[float, float], *, last: tuple[float, float] | None = None
     ) -> tuple[float, float]:
-        """Return the next command (v [m/s], omega [rad/s]); call it once per period.
+        """Return the next command (v [m/s], omega [rad/s], or throttle, steering); call it once per period.
 
         Args:
             pose: of the robot now, in the frame of the reference.

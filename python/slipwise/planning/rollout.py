@@ -16,6 +16,7 @@ from slipwise.models.model import Model
 from slipwise.planning.costmap import Costmap
 from slipwise.planning.device import gpu_of
 from slipwise.planning.start import Start
+from slipwise.planning.throttle import behind_curves
 from slipwise.prediction import student_at
 from slipwise.terrain_ahead import slip_ahead
 
@@ -61,7 +62,8 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
 
     Args:
         model: a learned model. Commands are of the kind that it was learned from, as speed and yaw rate;
-            those of a car with a steering angle are v and v tan(angle) / wheelbase.
+            those of a car with a steering angle are v and v tan(angle) / wheelbase. Those of a
+            model of throttle and steering are these, in [-1, 1], as the past of the start is.
         commands: [N, K, 2] speed [m/s] and yaw rate [rad/s], each held for `dt`; see `command_buffer`.
         dt: time that a command is held [s].
         start: where the rollouts start; by default at rest in the origin.
@@ -78,13 +80,13 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
             results are copied; threads and level do not matter to it; a covariance is the processor's.
 
     Raises:
-        ModelError: the model does not remember a surface ahead.
+        ModelError: the model does not remember a surface ahead, or its slip depends on a sideways speed.
         SettingsError: the batch is empty, a command is not finite, something does not fit the rest, or
             there is no such device; it says why.
     """
     numbers = checked_commands(commands, dtype)
     check_threads(threads)
-    begin = Start() if start is None else start
+    numbers, begin = behind_curves(model, numbers, dt, Start() if start is None else start)
     wanted = _wanted(outputs, costmap)
     rollouts, periods = numbers.shape[:2]
     buffers = {
@@ -97,7 +99,6 @@ def rollout(  # noqa: PLR0913  (all but the first three have defaults)
     slip = slip_ahead(begin.terrain_ahead, model)
     parameters, ahead = (model.mean, None) if slip is None else (slip.parameters(model), slip.in_core)
     try:
-        model.refuse_throttle("rollouts")
         model.refuse_heading("rollouts")
         program = _core.RolloutProgram(model.motion, parameters, dt, begin.ground, model.limits, ahead)
         _core.rollout_batch(
@@ -152,7 +153,6 @@ def check_threads(threads: int) -> None:
 
 def uncertain(model: Model, dt: float, start: Start, horizon: float) -> _core.UncertainModel:
     """Return the model with its learned uncertainty, grown for `horizon` [s], for the core."""
-    model.refuse_throttle("rollouts")
     model.refuse_heading("rollouts")
     slip = slip_ahead(start.terrain_ahead, model)
     scale = np.array(model.content.noise.variance_scale) if slip is None else slip.variance_scale

@@ -19,6 +19,15 @@ GroundOfRollouts = tuple[float, float, float, float]  # gx, gy [m/s^2], rise alo
 
 
 @dataclass(frozen=True, eq=False)
+class StartRows:
+    """A start for each of S rollouts, or one for all."""
+
+    pose: Floats  # [S, 3]
+    drive: Floats  # [S, 2]
+    past: Floats  # [S, P, 2]
+
+
+@dataclass(frozen=True, eq=False)
 class Start:
     """One start for all rollouts, or one each."""
 
@@ -40,6 +49,15 @@ class Start:
         Raises:
             SettingsError: a shape does not fit, or a number is not finite.
         """
+        rows = self.rows(rollouts)
+        return _core.StartList(np.hstack((rows.pose, rows.drive)), np.ascontiguousarray(rows.past))
+
+    def rows(self, rollouts: int) -> StartRows:
+        """Check the start against the number of rollouts and return it as rows.
+
+        Raises:
+            SettingsError: a shape does not fit, or a number is not finite.
+        """
         pose, drive = _rows("pose", self.pose, 3), _rows("drive", self.drive, 2)
         starts = max(len(pose), len(drive))
         past = np.zeros((1, 0, 2)) if self.past is None else _past(self.past)
@@ -48,8 +66,11 @@ class Start:
             raise SettingsError(
                 f"there are {starts} starts for {rollouts} rollouts", advice="give one start, or one each"
             )
-        joined = np.hstack((_repeated("pose", pose, starts), _repeated("drive", drive, starts)))
-        return _core.StartList(joined, np.ascontiguousarray(_repeated("past", past, starts)))
+        return StartRows(
+            _repeated("pose", pose, starts),
+            _repeated("drive", drive, starts),
+            _repeated("past", past, starts),
+        )
 
 
 def _rows(name: str, values: ArrayLike, width: int) -> Floats:

@@ -84,6 +84,7 @@ class Planner:
             above.
 
     Raises:
+        ModelError: the model takes throttle and steering, or its slip depends on a sideways speed.
         SettingsError: limits, options or state contradict each other.
     """
 
@@ -96,6 +97,8 @@ class Planner:
         state: DriveState = AT_REST,
         ground: Ground | None = None,
     ) -> None:
+        model.refuse_throttle("planned trajectories")
+        model.refuse_sideways("planned trajectories")
         self.limits = limits_of(model) if limits is None else limits
         self.ground = ground
         settings = options.to_core(self.limits)

@@ -43,6 +43,8 @@ ANY_LENGTH = {
     "TerrainClassifier.answers current",
     "BayesianRegression.__init__ weight_std",
     "BayesianRegression.predict_rows features",
+    "CarCurves.rollouts commands",
+    "CarCurves.rollouts past",
     "CostmapView.__init__ cells",
     "WheelRecord.__init__ wheels",
     "DynamicsFilter.predict inputs",

@@ -105,7 +105,7 @@ def _record() -> _core.WheelRecord:
 def _mppi() -> _core.Mppi:
     settings = _core.MppiSettings()
     settings.rollouts, settings.periods = 16, 8
-    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)], settings)
+    return _core.Mppi([(_model(), np.full(SIZE, 0.01), None, (0.0, 0.0), None)], settings, None)
 
 
 def _drive_start() -> _core.ActuatorState:

@@ -15,7 +15,7 @@ from slipwise.export import export_model
 from slipwise.logs import Log, LogOptions
 from slipwise.models.car import car_section, core_car
 from slipwise.models.schema import KnotCurveSection
-from slipwise.planning.rollout import rollout
+from slipwise.planning import Planner, curvature_map, lattice_primitives
 
 
 @pytest.fixture(scope="module")
@@ -77,5 +77,6 @@ def test_predict_takes_throttle_and_steering(model: sw.Model) -> None:
 def test_what_takes_speeds_refuses_such_a_model(model: sw.Model) -> None:
     with pytest.raises(ModelError, match="throttle and steering"):
         export_model(model, "c-header", name="car", force=True)
-    with pytest.raises(ModelError, match="throttle and steering"):
-        rollout(model, np.zeros((1, 4, 2)), 0.1)
+    for use in (Planner, curvature_map, lattice_primitives):
+        with pytest.raises(ModelError, match="throttle and steering"):
+            use(model)

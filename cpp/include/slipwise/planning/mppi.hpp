@@ -4,9 +4,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "slipwise/actuator/car_curves.hpp"
 #include "slipwise/planning/coloured_noise.hpp"
 #include "slipwise/rollout/rollout_batch.hpp"
 
@@ -74,7 +76,9 @@ class Mppi {
  public:
   /// The models differ in their parameters: the mean, and samples where risk counts.
   /// \throws std::invalid_argument without a model, or where one has another period than the settings.
-  Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings);
+  /// With a `car`, commands are throttle (v) and steering (omega), in [-1, 1] as limits say, and go through its curves
+  /// first.
+  Mppi(std::vector<RolloutProgram> models, const MppiSettings& settings, std::optional<CarCurves> car = {});
 
   /// One iteration from the last plan, moved on by a period; at first from the last command, held. `map` is null where
   /// there are no obstacles.
@@ -83,7 +87,7 @@ class Mppi {
   MppiResult step(const MppiState& state, const MppiReference& reference, const Costmap* map);
   /// Drives through other models from the next step on; the last plan stays.
   /// \throws std::invalid_argument without a model, or where one has another period than the settings.
-  void adopt(std::vector<RolloutProgram> models);
+  void adopt(std::vector<RolloutProgram> models, std::optional<CarCurves> car = {});
   /// Forgets the last plan; the next begins with this command, held.
   void reset(const DriveCommand& command);
 
@@ -98,6 +102,7 @@ class Mppi {
 
   std::vector<RolloutProgram> models_;
   MppiSettings settings_;
+  std::optional<CarCurves> car_;
   ColouredNoise noise_v_, noise_omega_;
   std::vector<DriveCommand> plan_;  // [periods]
   bool planned_ = false;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rollouts of a car commanded by throttle and steering: what its curves make of each command, for a rollout of twists
+// (derivations/car-commands.md).
+#pragma once
+
+#include <vector>
+
+#include "slipwise/actuator/car_curves.hpp"
+#include "slipwise/rollout/rollout_batch.hpp"
+
+namespace slipwise {
+
+/// Mean twists in place of commands.
+template <typename Scalar>
+struct CarBatch {
+  std::vector<Scalar> v;           ///< [periods * rollouts] [m/s], rollouts side by side
+  std::vector<Scalar> omega;       ///< [rad/s]
+  std::vector<DriveCommand> past;  ///< of each start
+};
+
+/// What a car does over each period of a batch whose commands are throttle (v) and steering (omega), those of the past
+/// too. A start's drive is what it does then (v, omega). Its steering has followed the past; without any, it stands
+/// where the drive's yaw rate asks for it. Over the past, the speed is taken as that of the start.
+template <typename Scalar>
+CarBatch<Scalar> car_batch(const CarCurves& car, const RolloutBatch<Scalar>& batch, double period);
+
+extern template CarBatch<float> car_batch(const CarCurves&, const RolloutBatch<float>&, double);
+extern template CarBatch<double> car_batch(const CarCurves&, const RolloutBatch<double>&, double);
+
+}  // namespace slipwise

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rollouts of a car do what its curves do under a held command, from where it is.
+#include "slipwise/rollout/car_batch.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace slipwise {
+namespace {
+
+constexpr double kPeriod = 0.1;
+constexpr std::size_t kPeriods = 30;
+
+CarCurves car() {
+  return {.speed = {.at = {-1.0, 0.0, 0.2, 1.0}, .value = {-1.0, 0.0, 0.0, 3.0}, .std = {}},
+          .curvature = {.at = {-1.0, 1.0}, .value = {-1.5, 1.5}, .std = {}},
+          .lag = 0.4,
+          .steering_lag = 0.15,
+          .cornering_drag = 0.1,
+          .understeer = 0.05};
+}
+
+CarBatch<double> driven(const std::vector<double>& throttle, const std::vector<double>& steering,
+                        const RolloutStart& start, const std::vector<DriveCommand>& past) {
+  const RolloutBatch<double> batch{.rollouts = throttle.size() / kPeriods,
+                                   .periods = kPeriods,
+                                   .commands = {throttle.data(), steering.data(), kPeriods, 1},
+                                   .starts = {&start, 1},
+                                   .past = past};
+  return car_batch(car(), batch, kPeriod);
+}
+
+TEST_CASE("from rest each period has the mean twist of the car's curves") {
+  const std::vector<double> throttle(kPeriods, 0.6), steering(kPeriods, 0.5);
+  const auto found = driven(throttle, steering, {}, {{.v = 0.0, .omega = 0.0}});
+  std::vector<double> t;
+  std::vector<BodyTwist> commands;
+  for (std::size_t k = 0; k < kPeriods; ++k) {
+    t.push_back(kPeriod * static_cast<double>(k));
+    commands.push_back({.v = 0.6, .vy = 0.0, .omega = 0.5});
+  }
+  const InputHistory twists = car_twists(car(), {t, commands}, {.start = 0.0, .end = kPeriod * kPeriods});
+  double along = 0.0, turned = 0.0;
+  for (std::size_t k = 0; k < twists.size(); ++k) {
+    const double end = k + 1 < twists.size() ? twists.time(k + 1) : kPeriod * kPeriods;
+    along += twists.sample(k).v * (end - twists.time(k));
+    turned += twists.sample(k).omega * (end - twists.time(k));
+  }
+  double v = 0.0, omega = 0.0;
+  for (std::size_t k = 0; k < kPeriods; ++k) {
+    v += kPeriod * found.v[k];
+    omega += kPeriod * found.omega[k];
+  }
+  CHECK(v == doctest::Approx(along).epsilon(1e-3));
+  CHECK(omega == doctest::Approx(turned).epsilon(1e-3));
+}
+
+TEST_CASE("a car that turns goes on turning where its steering is held, though nothing is known of the past") {
+  const CarState held{.speed = 1.2, .steering = 0.4};
+  const BodyTwist now = car_twist(car(), held);
+  const RolloutStart start{.pose = {}, .drive = {.v = now.v, .omega = now.omega}};
+  const std::vector<double> throttle(kPeriods, 0.6), steering(kPeriods, 0.4);
+  const auto found = driven(throttle, steering, start, {});
+  CHECK(found.past.empty());
+  CHECK(found.v[0] == doctest::Approx(1.2).epsilon(0.05));
+  CHECK(found.omega[0] / found.v[0] == doctest::Approx(now.omega / now.v).epsilon(0.02));
+}
+
+TEST_CASE("steering sent before is still on its way, and twists of the past have the speed of the start") {
+  const RolloutStart start{.pose = {}, .drive = {.v = 1.0, .omega = 0.0}};
+  const std::vector<double> throttle(kPeriods, 0.5), steering(kPeriods, 0.0);
+  const std::vector<DriveCommand> past{{.v = 0.5, .omega = 0.0}, {.v = 0.5, .omega = 1.0}};
+  const auto found = driven(throttle, steering, start, past);
+  REQUIRE(found.past.size() == 2);
+  CHECK(found.past[0].omega == doctest::Approx(0.0));
+  CHECK(found.past[1].v == doctest::Approx(1.0));
+  CHECK(found.past[1].omega > 0.3);
+  CHECK(found.omega[0] > 0.2);
+  CHECK(found.omega[kPeriods - 1] == doctest::Approx(0.0).epsilon(1e-3));
+}
+
+TEST_CASE("rollouts lie side by side and do not touch each other; numbers that do not fit are refused") {
+  std::vector<double> throttle(2 * kPeriods, 0.6), steering(2 * kPeriods, 0.0);
+  for (std::size_t k = kPeriods; k < 2 * kPeriods; ++k) {
+    throttle[k] = -1.0;
+  }
+  const auto both = driven(throttle, steering, {}, {});
+  const auto one = driven({throttle.begin(), throttle.begin() + kPeriods}, steering, {}, {});
+  for (std::size_t k = 0; k < kPeriods; ++k) {
+    CHECK(both.v[2 * k] == one.v[k]);
+    CHECK(both.v[2 * k + 1] < 0.0);
+  }
+  const std::array<RolloutStart, 3> starts{};
+  const RolloutBatch<double> batch{.rollouts = 2,
+                                   .periods = kPeriods,
+                                   .commands = {throttle.data(), steering.data(), kPeriods, 1},
+                                   .starts = starts};
+  CHECK_THROWS_AS(car_batch(car(), batch, kPeriod), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipwise

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Rollouts and the controller drive a car by throttle and steering, as `predict` says that it goes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from sample_cars import true_car, write_car_log
+from sample_models import Made, make_model
+
+import slipwise as sw
+from slipwise import _core
+from slipwise.errors import ModelError, SettingsError
+from slipwise.logs import LogOptions
+from slipwise.planning import Controller, MppiOptions, ReferencePath, learned_motions
+from slipwise.planning.futures import sample_futures
+from slipwise.planning.rollout import rollout
+from slipwise.planning.start import Start
+
+DT, PERIODS = 0.05, 40
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory: pytest.TempPathFactory) -> sw.Model:
+    path = write_car_log(tmp_path_factory.mktemp("car") / "car.csv", 120.0)
+    return sw.calibrate(sw.open_log(path, options=LogOptions(vehicle="dart"))).model
+
+
+def driving() -> np.ndarray:
+    """Three rollouts of throttle and steering [3, K, 2]."""
+    commands = np.zeros((3, PERIODS, 2))
+    commands[0], commands[1] = (0.5, 0.3), (0.7, -0.6)
+    commands[2] = np.repeat([(0.3, 0.5), (0.8, -0.9), (0.1, 0.2), (0.6, 0.0)], PERIODS // 4, axis=0)
+    return commands
+
+
+def test_rollouts_from_rest_end_where_predict_says(model: sw.Model) -> None:
+    commands = driving()
+    found = rollout(model, commands, DT, start=Start(past=np.zeros((10, 2))), covariance=True)
+    assert found.path is not None
+    assert found.covariance is not None
+    t = DT * np.arange(PERIODS)
+    for k, rows in enumerate(commands):
+        given = np.vstack(([-1.0, 0.0, 0.0], np.column_stack((t, rows))))
+        ahead = sw.predict(model, given, horizon=DT * PERIODS, start=0.0)
+        assert found.path[:, -1, k] == pytest.approx(ahead.poses[-1], abs=5e-3)
+        std = np.sqrt(found.covariance[[0, 2], -1, k].sum())
+        assert std == pytest.approx(np.sqrt(np.trace(ahead.covariance[-1, :2, :2])), rel=0.15)
+
+
+def test_each_rollout_starts_as_its_car_drives(model: sw.Model) -> None:
+    commands = np.tile([0.5, 0.3], (2, PERIODS, 1))
+    start = Start(drive=[(0.0, 0.0), (1.5, 0.6)], past=np.tile([0.5, 0.3], (2, 10, 1)))
+    path = rollout(model, commands, DT, start=start, dtype=np.float32).path
+    assert path is not None
+    assert path.dtype == np.float32
+    moved = np.hypot(path[0, 9], path[1, 9])
+    assert moved[1] == pytest.approx(0.75, abs=0.05)
+    assert moved[0] < 0.5 * moved[1]
+
+
+def test_futures_of_a_car_spread_about_its_rollouts(model: sw.Model) -> None:
+    start = Start(past=np.zeros((4, 2)))
+    drawn = sample_futures(model, driving(), DT, samples=50, seed=1, start=start)
+    path = rollout(model, driving(), DT, start=start, dtype=np.float64).path
+    assert path is not None
+    assert drawn.mean(axis=1)[:2, -1] == pytest.approx(path[:2, -1], abs=0.05)
+    assert drawn.std(axis=1)[:2, -1].max() > 1e-3
+
+
+def test_speeds_in_place_of_throttle_are_refused(model: sw.Model) -> None:
+    with pytest.raises(SettingsError, match="within"):
+        rollout(model, 2.0 * np.ones((1, 4, 2)), DT)
+    with pytest.raises(SettingsError, match="at most 1"):
+        Controller(learned_motions(model), circle())
+    mixed = [*learned_motions(model), replace(learned_motions(model)[0], car=None)]
+    with pytest.raises(SettingsError, match="do not mix"):
+        Controller(mixed, circle(), options=MppiOptions().for_car())
+
+
+def test_slip_of_a_sideways_speed_is_refused_where_there_is_none() -> None:
+    sideways = make_model(Made(basis=_core.named_basis("omni-8"), values={"lat.Vy": -0.1}))
+    for use in (
+        lambda: rollout(sideways, np.zeros((1, 4, 2)), DT),
+        lambda: sample_futures(sideways, np.zeros((1, 4, 2)), DT, samples=1, seed=1),
+        lambda: learned_motions(sideways),
+        lambda: sw.planning.Planner(sideways),
+    ):
+        with pytest.raises(ModelError, match="sideways"):
+            use()
+
+
+def circle() -> ReferencePath:
+    around = np.linspace(-0.5 * np.pi, 1.5 * np.pi, 181)
+    return ReferencePath(1.5 * np.column_stack((np.cos(around), 1.0 + np.sin(around))), 1.0)
+
+
+def beside(motions: list, seconds: float = 7.0) -> float:
+    """Drive the true car round a circle; how far beside it it was after two seconds [m]."""
+    options = replace(MppiOptions(rollouts=256, periods=24, period=0.05, risk=0.0), seed=3).for_car()
+    reference = circle()
+    controller = Controller(motions, reference, options=options)
+    pose, drive, left = _core.Pose2(0.0, 0.0, 0.0), (0.0, 0.0), []
+    past = np.zeros((1, 0))
+    for k in range(round(seconds / DT)):
+        command = controller.command(tuple(pose.vector().tolist()), drive)
+        past = np.append(past, [command])
+        t = DT * np.arange(len(past) // 2)
+        told = past.reshape(-1, 2)
+        history = _core.InputHistory(t, told[:, 0].copy(), np.zeros(len(t)), told[:, 1].copy())
+        _, v, _, omega = true_car().twists(history, float(t[-1]), None).rows()[0].tolist()
+        pose = _core.compose(pose, _core.exp(DT * np.array([v, 0.0, omega])))
+        drive = (v, omega)
+        if k * DT > 2.0:
+            x, y = pose.vector()[:2].tolist()
+            left.append(abs(np.hypot(x, y - 1.5) - 1.5))
+    return float(np.mean(left))
+
+
+def test_the_controller_keeps_a_car_on_its_circle_by_the_curves_that_were_learned(model: sw.Model) -> None:
+    motions = learned_motions(model)
+    assert motions[0].car is not None
+    straight = _core.KnotCurve([-1.0, 1.0], [-4.0, 4.0], [0.0, 0.0])
+    turning = _core.KnotCurve([-1.0, 1.0], [-2.0, 2.0], [0.0, 0.0])
+    nominal = replace(motions[0], car=_core.CarCurves(straight, turning, 0.0, 0.0, 0.0, 0.0))
+    learned = beside(motions)
+    assert learned < 0.06
+    assert learned < 0.6 * beside([nominal])
