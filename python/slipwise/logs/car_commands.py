@@ -56,5 +56,7 @@ def _recording(run: Run, where: str) -> _core.Recording:
                 advice = "it must be in [-1, 1]; --command-scale divides it"
                 raise LogError(what, where=where, advice=advice)
         commands = np.column_stack((given.t, given.v, given.vy, given.omega))
-    measured = np.column_stack((poses.t, poses.x, poses.y, poses.yaw, poses.frame.astype(np.float64)))
+    # The direction of the path looks ahead; where there is no heading, the core takes courses of its own.
+    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
+    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame.astype(np.float64)))
     return _core.Recording(commands, none, np.empty((0, 3)), measured)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from sample_cars import commands, write_car_log
 
 from slipwise.errors import LogError
 from slipwise.logs import LogOptions, open_log
+from slipwise.logs.car_commands import with_car_commands
 from slipwise.logs.log import Inputs
 
 
@@ -44,6 +46,25 @@ def test_a_command_is_taken_by_what_was_known_before_it(tmp_path: Path) -> None:
     long, short = car_inputs(whole), car_inputs(part)
     assert np.array_equal(long.v[:600], short.v)
     assert np.array_equal(long.omega[:600], short.omega)
+
+
+def test_the_direction_of_the_path_reaches_no_command_where_only_positions_are_known(tmp_path: Path) -> None:
+    path = write_car_log(tmp_path / "car.csv", 40.0)
+    rows = [line.rpartition(",")[0] for line in path.read_text().splitlines()]
+    path.write_text("\n".join(rows) + "\n")
+    options = LogOptions(vehicle="dart")
+    log = open_log(path, options=options)
+    (run,) = log.runs
+    assert run.commands is not None
+    assert run.commands.car is not None
+    assert run.poses.course
+    told = Inputs(run.commands.t, run.commands.car.throttle, run.commands.vy, run.commands.car.steering)
+    turned = replace(run, commands=told, poses=replace(run.poses, yaw=run.poses.yaw + 1.0))
+    (again,) = with_car_commands(replace(log, runs=(turned,)), options).runs
+    assert again.commands is not None
+    assert np.array_equal(again.commands.v, run.commands.v)
+    assert np.array_equal(again.commands.omega, run.commands.omega)
+    assert float(np.abs(run.commands.v).max()) > 0.5
 
 
 def test_a_cut_log_keeps_its_commands_beside_their_stamps(tmp_path: Path) -> None:
