@@ -10,22 +10,27 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from slipwise.calibration import calibrate
+from slipwise.calibration.from_prior import KnownFleet
+from slipwise.calibration.new_robot import new_robot_knowledge
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.excitation import (
     VEHICLES,
     CommandSpace,
+    Excitation,
     ExcitationOptions,
     Knowledge,
     Move,
     command_inputs,
     design_drive,
     drawn_robots,
+    lessons_of,
     prior_knowledge,
 )
 from slipwise.excitation.information import (
@@ -90,30 +95,50 @@ def area_table(side: float) -> dict[str, dict[str, float]]:
     rows = {}
     for name, vehicle in VEHICLES.items():
         knowledge = prior_knowledge(vehicle.space)
-        options = ExcitationOptions(area=(side, side), radius=vehicle.radius)
-        drive = design_drive(knowledge, vehicle.space, options)
-        judge = WorstPrediction(prediction_jacobians(knowledge, vehicle.space.grid(7), 2.0))
-        told = [information(each, options.std) for each in move_jacobians(knowledge, drive.moves, 1.0)]
-        before = judge.sigmas(prior_information(knowledge))
-        after = judge.sigmas(prior_information(knowledge) + np.sum(told, axis=0))
-        x, y = drive.start
-        rooms = []
-        for robot in drawn_robots(knowledge, 1000, seed=2026).paths(command_periods(drive.moves, PERIOD)):
-            left, right = x + robot[0].min(), side - x - robot[0].max()
-            below, above = y + robot[1].min(), side - y - robot[1].max()
-            rooms.append(min(left, right, below, above) - vehicle.radius)
-        rows[name] = {
-            "moves": len(drive.moves),
-            "seconds": drive.seconds,
-            "fastest": max(abs(move.v) for move in drive.moves),
-            "yaw before": before[0],
-            "yaw after": after[0],
-            "position before": before[1],
-            "position after": after[1],
-            "robots outside": int(np.sum(np.array(rooms) < 0.0)),
-            "least room": float(min(rooms)),
-        }
+        drive = design_drive(
+            knowledge, vehicle.space, ExcitationOptions(area=(side, side), radius=vehicle.radius)
+        )
+        robots = drawn_robots(knowledge, 1000, seed=2026).paths(command_periods(drive.moves, PERIOD))
+        rows[name] = _row(drive, robots)
     return rows
+
+
+def fleet_table(file: Path, vehicle: str, sides: Sequence[float]) -> dict[str, dict[str, float]]:
+    """Return the same by area, of a fleet's prior, and of a thousand robots drawn from it basis by basis."""
+    prior, rows = KnownFleet.load(file), {}
+    known = VEHICLES[vehicle]
+    for side in sides:
+        options = ExcitationOptions(area=(side, side), radius=known.radius)
+        drive = design_drive(new_robot_knowledge(prior), known.space, options)
+        robots = drawn_robots(drive.knowledge, 1000, seed=2026)
+        rows[f"{vehicle}, {side:g} m"] = _row(drive, robots.paths(command_periods(drive.moves, PERIOD)))
+    return rows
+
+
+def _row(drive: Excitation, paths: np.ndarray) -> dict[str, float]:
+    lessons, radius = lessons_of(drive), drive.options.radius
+    (x, y), (width, depth) = drive.start, drive.options.area or (np.inf, np.inf)
+    rooms = np.min(
+        [
+            x + paths[:, 0].min(axis=1),
+            width - x - paths[:, 0].max(axis=1),
+            y + paths[:, 1].min(axis=1),
+            depth - y - paths[:, 1].max(axis=1),
+        ],
+        axis=0,
+    )
+    return {
+        "moves": len(drive.moves),
+        "seconds": drive.seconds,
+        "fastest": max(abs(move.v) for move in drive.moves),
+        "yaw before": lessons[0].yaw,
+        "yaw after": lessons[-1].yaw,
+        "position before": lessons[0].position,
+        "position after": lessons[-1].position,
+        "robots": len(paths),
+        "robots outside": int(np.sum(rooms < radius)),
+        "least room": float(rooms.min()) - radius,
+    }
 
 
 def physics_table(seeds: int) -> dict[str, dict[str, tuple[float, float]]]:
@@ -170,19 +195,26 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--area", type=float, default=8.0, help="side of the square [m]")
     parser.add_argument("--seeds", type=int, default=6, help="of MuJoCo's drives")
-    parser.add_argument("--only", choices=("design", "area", "physics"), help="make this table alone")
+    parser.add_argument(
+        "--only", choices=("design", "area", "physics", "fleet"), help="make this table alone"
+    )
     parser.add_argument("-o", "--output", type=Path, help="JSON file")
+    parser.add_argument("--prior", type=Path, help="fleet.yaml of `slipwise fleet`: also its robots")
+    parser.add_argument("--vehicle", default="warthog", help="of that fleet")
+    parser.add_argument("--areas", type=float, nargs="+", default=[8.0, 20.0], help="for these [m]")
     given = parser.parse_args()
     makers = {
         "design": design_table,
         "area": lambda: area_table(given.area),
         "physics": lambda: physics_table(given.seeds),
     }
+    if given.prior is not None:
+        makers["fleet"] = lambda: fleet_table(given.prior, given.vehicle, given.areas)
     tables = {name: make() for name, make in makers.items() if given.only in (None, name)}
     for row, counts in tables.get("design", {}).items():
         cells = "  ".join(f"{n}: {yaw:.4f} rad {position:.3f} m" for n, (yaw, position) in counts.items())
         print(f"{row:<22} {cells}")
-    for row, numbers in tables.get("area", {}).items():
+    for row, numbers in (tables.get("area", {}) | tables.get("fleet", {})).items():
         print(f"{row:<12}", "  ".join(f"{name} {value:.3g}" for name, value in numbers.items()))
     for test, methods in tables.get("physics", {}).items():
         for row, (position, heading) in methods.items():

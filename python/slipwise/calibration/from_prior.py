@@ -85,7 +85,7 @@ def calibrate_from(
         return calibrate(log, input=input, settings=settings, progress=progress), None
     if prior is None:
         return _learned(log, input or choose_input(log), settings, progress=progress)
-    start = _start(prior)
+    start = start_of(prior)
     input_name = input or start.input
     begun = _learned(log, input_name, settings, begin=(start, str(prior.path)), progress=progress)
     fresh = _learned(log, input_name, settings)
@@ -209,7 +209,12 @@ def _known(
     return _core.KnownBefore(posterior, structure, [surface], (0.0, 0.0))
 
 
-def _start(prior: KnownFleet) -> StartPrior:
+def start_of(prior: KnownFleet) -> StartPrior:
+    """Return what learning begins with.
+
+    Raises:
+        ModelError: fewer than two robots could be used.
+    """
     if prior.content.start is None:
         raise ModelError(
             "this fleet says nothing of the next robot: fewer than two robots could be used",

@@ -99,16 +99,18 @@ def _structure(
     return StructureKnowledge((v, omega), known, names, learned_robot)
 
 
-def robot_model(structure: int, hypotheses: _core.HypothesisSettings) -> _core.MotionModel:
-    """Return a model of a structure without slip: its parameters are what is the robot's."""
-    none = _core.Basis("none", [], [], [])
+def robot_model(
+    structure: int, hypotheses: _core.HypothesisSettings, slip: _core.Basis | None = None
+) -> _core.MotionModel:
+    """Return a model of a structure, by default without slip: its parameters are what is the robot's."""
+    basis = _core.Basis("none", [], [], []) if slip is None else slip
     if structure == CASCADED:
-        model = _core.MotionModel.with_response(none, hypotheses.clock_offset)
+        model = _core.MotionModel.with_response(basis, hypotheses.clock_offset)
     elif structure == DIRECT:
-        model = _core.MotionModel.with_delays(none)
+        model = _core.MotionModel.with_delays(basis)
     else:
         dynamics = hypotheses.dynamics
-        model = _core.MotionModel(none, dynamics, hypotheses.clock_offset and not dynamics)
+        model = _core.MotionModel(basis, dynamics, hypotheses.clock_offset and not dynamics)
     return model.with_extrinsics(hypotheses.sensor_extrinsics)
 
 

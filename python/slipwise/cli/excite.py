@@ -25,6 +25,9 @@ def excite(
     model: Annotated[
         Path | None, optional("FILE", "What is known already; the learner's prior by default.")
     ] = None,
+    prior: Annotated[
+        Path | None, optional("FILE", "What a fleet knows of its next robot, by `slipwise fleet`.")
+    ] = None,
     speed: Annotated[
         float | None, optional("M/S", "Speed limit; the vehicle's or the model's range.")
     ] = None,
@@ -74,6 +77,7 @@ def excite(
       slipwise excite --area 8x8 --minutes 1 --vehicle husky
       slipwise excite --area 20x10 --minutes 2 --speed 1.5 --yaw-rate 1 --radius 0.7 -o first
       slipwise excite --area 8x8 --vehicle husky --model model.yaml -o second
+      slipwise excite --area 8x8 --vehicle husky --prior fleet/fleet.yaml
       slipwise excite --vehicle husky --speed 0.5 --drive --dead-man /joy --pose-topic /odometry/filtered
     """  # noqa: D301
     from dataclasses import replace
@@ -98,10 +102,11 @@ def excite(
         )  # fmt: skip
         driven.check()
     refuse_unwritable(
-        *files.values(), None if driven is None else driven.log, out.written_file, inputs=[model]
+        *files.values(), None if driven is None else driven.log, out.written_file, inputs=[model, prior]
     )
     robot = _vehicle(vehicle)
-    space, knowledge = _known(model, robot, {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral})
+    given = {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral}
+    space, knowledge = _known((model, prior), robot, given)
     options = ExcitationOptions(area=area_of(area, "--area"), minutes=minutes, hold=hold, pause=pause)
     size = radius if radius is not None else robot.radius if robot is not None else options.radius
     options = replace(options, radius=size)
@@ -129,14 +134,19 @@ def _vehicle(name: str | None) -> Vehicle | None:
 
 
 def _known(
-    model: Path | None, vehicle: Vehicle | None, given: dict[str, float | None]
+    files: tuple[Path | None, Path | None], vehicle: Vehicle | None, given: dict[str, float | None]
 ) -> tuple[CommandSpace, Knowledge]:
-    """Return the limits of the commands and what is known before the drive."""
+    """Return the limits of the commands and what is known before the drive, of a model or a fleet's prior."""
+    from slipwise.calibration.from_prior import KnownFleet
+    from slipwise.calibration.new_robot import new_robot_knowledge
     from slipwise.errors import SettingsError
     from slipwise.excitation import CommandSpace, knowledge_of, prior_knowledge
     from slipwise.models import load_model
     from slipwise.planning import limits_of
 
+    model, prior = files
+    if model is not None and prior is not None:
+        raise SettingsError("a model of this robot takes the place of its fleet's prior", where="--prior")
     learned = None if model is None else load_model(model)
     limits: dict[str, float] = {}
     if learned is not None and vehicle is None:
@@ -152,6 +162,8 @@ def _known(
             advice="give --vehicle, or --speed, --yaw-rate and --radius",
         )
     space = CommandSpace(**limits)
+    if prior is not None:
+        return space, new_robot_knowledge(KnownFleet.load(prior))
     return space, prior_knowledge(space) if learned is None else knowledge_of(learned)
 
 

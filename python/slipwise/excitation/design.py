@@ -42,6 +42,7 @@ FRACTIONS = (
 )
 AREA_FRACTIONS = (1.0, 0.8, 0.6, 0.45)  # of the area, while choosing
 WIDER = 1.25  # times as different from the expected robot as robots are likely to be, are these
+RARE = 0.05  # of the robots at least are of each kind, where there are several
 TRIED = 6  # candidates whose paths are computed at once
 MOST_TRIED = 180  # candidates per figure
 CUT_SHORT = 1.0  # weight of what is known after five moves of a figure, beside what is known after all eight
@@ -144,7 +145,7 @@ def design_drive(
             advice=f"give {least:.2f} or more, or shorter moves",
         )
     few = edge_robots(knowledge, options.robots, seed=options.seed)
-    many = drawn_robots(knowledge.spread_by(WIDER), options.checked, seed=options.seed + 1)
+    many = drawn_robots(knowledge.spread_by(WIDER), options.checked, seed=options.seed + 1, least=RARE)
     judge = WorstPrediction(prediction_jacobians(knowledge, space.grid(JUDGED_LEVELS), HORIZON))
     best: _Found | None = None
     for done, fractions in enumerate(FRACTIONS):

@@ -28,6 +28,8 @@ class Knowledge:
     covariance: Floats  # [parameters, parameters] that a drive is to shrink
     spread: Floats  # [parameters, parameters] of the robots that may turn up, the slip disturbance included
     limits: _core.CommandLimits | None = None  # of the drive, in front of its lag
+    #: Robots that may turn up, where these are of several kinds: each kind's weight, and what is known of it.
+    kinds: tuple[tuple[float, Knowledge], ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -36,7 +38,8 @@ class Knowledge:
 
     def spread_by(self, factor: float) -> Knowledge:
         """Return the same where robots differ so many times as much from the expected one; 0: not at all."""
-        return replace(self, spread=factor**2 * self.spread)
+        kinds = tuple((weight, kind.spread_by(factor)) for weight, kind in self.kinds)
+        return replace(self, spread=factor**2 * self.spread, kinds=kinds)
 
     def driven(self, history: _core.InputHistory) -> _core.InputHistory:
         """Return what reaches the actuator of these commands."""

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -68,16 +69,35 @@ def fits(box: Floats, room: Floats) -> NDArray[np.bool_]:
     return np.asarray((box[:, 1] - box[:, 0] <= room[0]) & (box[:, 3] - box[:, 2] <= room[1]))
 
 
-def drawn_robots(knowledge: Knowledge, count: int, *, seed: int) -> Robots:
-    """Draw robots from the spread of what is known, a normal distribution."""
-    return _robots(knowledge, np.random.default_rng(seed).standard_normal((count, len(knowledge.mean))))
+def drawn_robots(knowledge: Knowledge, count: int, *, seed: int, least: float = 0.0) -> Robots:
+    """Draw robots from the spread of what is known, a normal distribution or several.
+
+    Args:
+        knowledge: what is known.
+        count: robots.
+        seed: of the draw.
+        least: part of the robots that each kind gets at least, where there are several; rare ones are then
+            drawn more often than they are likely.
+    """
+    if not knowledge.kinds:
+        return _robots(knowledge, np.random.default_rng(seed).standard_normal((count, len(knowledge.mean))))
+    shares = np.maximum([weight for weight, _ in knowledge.kinds], least)
+    numbers = np.random.default_rng(seed).multinomial(count, shares / shares.sum()).tolist()
+    return _together(
+        drawn_robots(kind, number, seed=seed + place)
+        for place, ((_, kind), number) in enumerate(zip(knowledge.kinds, numbers, strict=True), start=1)
+    )
 
 
 def edge_robots(knowledge: Knowledge, count: int, *, seed: int) -> Robots:
     """Draw robots from the edge of the region that holds 99.73 % of them, and the mean robot.
 
-    In one dimension that region is three standard deviations wide.
+    In one dimension that region is three standard deviations wide. Several kinds give as many robots each.
     """
+    if knowledge.kinds:
+        each = math.ceil(count / len(knowledge.kinds))
+        parts = (edge_robots(kind, each, seed=seed + k) for k, (_, kind) in enumerate(knowledge.kinds))
+        return _together(parts)
     size = len(knowledge.mean)
     drawn = np.random.default_rng(seed).standard_normal((count, size))
     if size:
@@ -89,6 +109,10 @@ def edge_radius(size: int) -> float:
     """Return the Mahalanobis radius of the region that holds 99.73 % (Wilson and Hilferty 1931)."""
     part = 2.0 / (9.0 * size)
     return math.sqrt(size * (1.0 - part + THREE_SIGMA * math.sqrt(part)) ** 3)
+
+
+def _together(parts: Iterable[Robots]) -> Robots:
+    return Robots(tuple(program for part in parts for program in part.programs))
 
 
 def _robots(knowledge: Knowledge, drawn: Floats) -> Robots:

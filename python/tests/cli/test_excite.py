@@ -46,6 +46,8 @@ def test_model_says_what_is_known_and_the_limits(slipwise: Slipwise, folder: Pat
         (("--vehicle", "husky", "--minutes", "0.01"), "too short"),
         (("--vehicle", "husky", "--speed", "-1"), "speed"),
         (("--vehicle", "husky", "--hold", "0.33"), "hold"),
+        (("--vehicle", "husky", "--model", "a.yaml", "--prior", "b.yaml"), "--prior"),
+        (("--vehicle", "husky", "--prior", "b.yaml"), "b.yaml"),
     ],
 )
 def test_wrong_use_ends_with_code_2_and_says_why(

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,20 @@ def test_same_seed_draws_the_same_robots() -> None:
 def test_robots_at_the_edge_come_farther_than_likely_ones() -> None:
     likely, edge = (draw(KNOWLEDGE, 100, seed=2).box(COMMANDS) for draw in (drawn_robots, edge_robots))
     assert edge[1] - edge[0] > likely[1] - likely[0]
+
+
+def test_robots_of_several_kinds_are_drawn_by_weight_and_rare_ones_often_enough() -> None:
+    other = prior_knowledge(CommandSpace(1.0, 1.0), basis="edd-2")
+    other = replace(other, mean=other.mean - 0.2)
+    both = replace(KNOWLEDGE, kinds=((0.99, KNOWLEDGE), (0.01, other)))
+
+    def rare(least: float) -> int:
+        paths = drawn_robots(both.spread_by(0.0), 1000, seed=3, least=least).paths(COMMANDS)
+        return 1000 - int(np.sum(np.all(paths == paths[0], axis=(1, 2))))
+
+    assert rare(0.0) == pytest.approx(10, abs=10)
+    assert rare(0.1) == pytest.approx(91, abs=30)
+    assert len(edge_robots(both, 20, seed=3).programs) == 22
 
 
 def test_exact_knowledge_gives_the_expected_robot_each_time() -> None:
