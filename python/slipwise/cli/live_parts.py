@@ -93,16 +93,16 @@ def with_memory(settings: Settings, *, chosen: bool) -> Settings:
     """
     from slipwise.calibration.calibrate_sequence import settings_of
     from slipwise.cli.memory_options import refuse_labels
-    from slipwise.models import load_model
+    from slipwise.live.model_file import model_in
 
     table = settings.live
     if not table.memory:
         refuse_labels([label for label in (table.terrain, table.terrain_topic) if label])
         return settings
-    if table.memory is True and table.model is not None and load_model(table.model).content.surfaces:
+    if table.memory is True and table.model is not None and model_in(table.model).content.surfaces:
         table = table.model_copy(update={"memory": table.model})
     if isinstance(table.memory, str) and not chosen:
-        settings = settings_of(load_model(table.memory))
+        settings = settings_of(model_in(table.memory))
     return settings.model_copy(update={"live": table})
 
 

@@ -18,6 +18,7 @@ from slipwise.live.gates import Gates, rules_for
 from slipwise.live.handover import Handover
 from slipwise.live.intake import Intake
 from slipwise.live.learning import Learning
+from slipwise.live.model_file import model_in
 from slipwise.live.move_adviser import MoveAdviser
 from slipwise.live.node import LiveNode, NodeParts
 from slipwise.live.said import Said
@@ -26,7 +27,7 @@ from slipwise.live.status import Identity
 from slipwise.live.surface_watch import today
 from slipwise.live.transport import Transport
 from slipwise.live.watch.watcher import Watcher
-from slipwise.models import Model, load_model
+from slipwise.models import Model
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,7 @@ def _new_learner(input_name: str, settings: Settings, before: Model | None, *, w
 def _start_model(path: str | None, input_name: str) -> Model | None:
     if path is None:
         return None
-    model = load_model(path)
+    model = model_in(path)
     if model.content.input != input_name:
         raise SettingsError(
             f"the start model was learned from {model.content.input}s, this node learns from {input_name}s",
