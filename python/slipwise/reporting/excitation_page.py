@@ -23,7 +23,9 @@ YAW, POSITION = "#d55e00", "#0072b2"
 DRAWN_ROBOTS = 60
 SEED = 7  # of the robots that are drawn
 HIGHEST = 900  # px
-WATCH = "A person has to watch, with the stop button in hand: nothing here looks where the robot is."
+WATCH = (
+    "A person has to watch, with the stop button in hand: nothing looks where the robot is while a bag plays."
+)
 
 
 def excitation_page(drive: Excitation, lessons: Sequence[Lesson], title: str) -> str:
