@@ -16,7 +16,6 @@ from slipwise.live.drive_link import DriveLink
 
 LOOK = 0.05  # s between two looks at what is missing
 SAY_EVERY = 5.0  # s between two times that it is said
-LATE = 0.25  # s that a command may be late; beyond it the drive would be another one
 INTERRUPTED = "it was interrupted"
 
 
@@ -29,6 +28,7 @@ class DrivePlan:
     rate: float = 20.0  # Hz
     countdown: float = 5.0  # s, for which all must be well before the robot moves
     stand: float = 0.5  # s of commands to stand after the drive
+    late: float = 0.25  # s that a command may be late; beyond it the drive would be another one
 
     @property
     def seconds(self) -> float:
@@ -155,7 +155,7 @@ class SelfDrive:
                 return INTERRUPTED
             if trouble := guard.trouble():
                 return trouble
-            if now - number * period > LATE:
+            if now - number * period > plan.late:
                 return f"this computer is busy: a command came {now - number * period:.2f} s late"
             if now >= plan.seconds:
                 return ""

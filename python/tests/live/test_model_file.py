@@ -32,6 +32,7 @@ def reads(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     return read
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("memory", [True, "model.yaml"])
 def test_start_and_memory_of_one_file_read_it_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, reads: list[str], memory: bool | str

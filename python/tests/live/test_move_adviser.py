@@ -17,7 +17,7 @@ from slipwise.live.outputs import NextMovesNow
 from slipwise.live.samples import Command, RunStart, Sample, Wheels
 from slipwise.models import Model
 
-SHORT = replace(SLIP, seconds=40.0)
+SHORT = replace(SLIP, seconds=25.0)
 
 
 def turned(curvature: float) -> Turning:
@@ -109,5 +109,5 @@ def test_it_looks_once_for_a_model_and_not_again_before_its_time() -> None:
 
 
 def test_with_no_time_between_looks_there_are_none() -> None:
-    found, _ = moves_of([RunStart("a"), *driven(replace(SLIP, seconds=20.0))], moves_every=0.0)
+    found, _ = moves_of([RunStart("a"), *driven(replace(SLIP, seconds=12.0))], moves_every=0.0)
     assert found == []

@@ -6,6 +6,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 
@@ -16,8 +17,11 @@ from slipwise.live.drive_link import DriveLog
 from slipwise.live.samples import Pose
 from slipwise.live.self_drive import INTERRUPTED, DrivePlan, DriveReport, SelfDrive
 
-MOVES = (Move(0.5, 0.2, 0.2, 0.1), Move(-0.5, -0.2, 0.2, 0.1))
-PLAN = DrivePlan(MOVES, lead=0.1, rate=50.0, countdown=0.1, stand=0.05)
+MOVES = (Move(0.5, 0.2, 0.1, 0.05), Move(-0.5, -0.2, 0.1, 0.05))
+PLAN = DrivePlan(MOVES, lead=0.05, rate=100.0, countdown=0.05, stand=0.03, late=5.0)
+
+#: A computer that runs tests may be busy: what is heard holds for long.
+BOUNDS = DriveBounds(-1.0, 1.0, -1.0, 1.0, 1.0, 1.0, dead_man_within=5.0, pose_within=5.0)
 
 
 class Link:
@@ -62,7 +66,7 @@ def driven(
     act: Callable[[Link], None] = lambda _: None, plan: DrivePlan = PLAN, said: list[str] | None = None
 ) -> tuple[DriveReport, Link]:
     link = Link(act)
-    guard = DriveGuard(DriveBounds(-1.0, 1.0, -1.0, 1.0, 1.0, 1.0))
+    guard = DriveGuard(BOUNDS)
     link.driver = SelfDrive(link, guard, plan, say=(said if said is not None else []).append)
     try:
         return link.driver.run(), link
@@ -76,7 +80,7 @@ def test_all_moves_are_commanded_in_their_order_and_the_robot_stands_at_the_end(
     assert report.why == ""
     assert report.moves == 2
     assert list(dict.fromkeys(link.sent)) == [(0.0, 0.0), (0.5, 0.2), (-0.5, -0.2)]
-    assert link.sent.count((0.5, 0.2)) == pytest.approx(10, abs=3)
+    assert link.sent.count((0.5, 0.2)) == pytest.approx(10, abs=5)
     assert link.sent[0] == link.sent[-1] == (0.0, 0.0)
     assert "the robot drives in 1 s" in said
     assert report.room_left == pytest.approx(1.0)
@@ -114,7 +118,7 @@ def test_on_any_exception_the_robot_is_commanded_to_stand(problem: BaseException
         raise problem
 
     link.act = fail
-    guard = DriveGuard(DriveBounds(-1.0, 1.0, -1.0, 1.0, 1.0, 1.0))
+    guard = DriveGuard(BOUNDS)
     with pytest.raises(type(problem)):
         SelfDrive(link, guard, PLAN, say=lambda _: None).run()
     link.close()
@@ -128,8 +132,9 @@ def test_a_command_beyond_the_limits_is_never_sent() -> None:
         driven(plan=fast)
 
 
+@pytest.mark.slow
 def test_a_computer_that_is_busy_ends_the_drive() -> None:
-    report, link = driven(lambda _: time.sleep(0.4))
+    report, link = driven(lambda _: time.sleep(0.4), plan=replace(PLAN, late=0.25))
     assert "busy" in report.why
     assert link.sent[-1] == (0.0, 0.0)
 
@@ -137,9 +142,9 @@ def test_a_computer_that_is_busy_ends_the_drive() -> None:
 def test_before_the_button_is_pressed_nothing_is_commanded() -> None:
     link, said = Link(), list[str]()
     link.pressed = False
-    guard = DriveGuard(DriveBounds(-1.0, 1.0, -1.0, 1.0, 1.0, 1.0))
+    guard = DriveGuard(BOUNDS)
     driver = SelfDrive(link, guard, PLAN, say=said.append)
-    threading.Timer(0.3, driver.stop).start()
+    threading.Timer(0.15, driver.stop).start()
     report = driver.run()
     link.close()
     assert (report.why, report.commands, link.sent) == (INTERRUPTED, 0, [])
@@ -160,7 +165,7 @@ def test_topics_that_do_not_fit_end_it_without_a_command() -> None:
 
 
 def test_the_plan_stands_before_between_and_after_moves() -> None:
-    times = (0.05, 0.15, 0.32, 0.45, 0.65, 9.0)
+    times = (0.02, 0.1, 0.17, 0.25, 0.32, 9.0)
     assert [PLAN.command(t) for t in times] == [
         (0.0, 0.0, 0),
         (0.5, 0.2, 1),
@@ -169,4 +174,4 @@ def test_the_plan_stands_before_between_and_after_moves() -> None:
         (0.0, 0.0, 2),
         (0.0, 0.0, 0),
     ]
-    assert PLAN.seconds == pytest.approx(0.7)
+    assert PLAN.seconds == pytest.approx(0.35)
