@@ -28,8 +28,9 @@ HEARD = {
     "model": "std_msgs/msg/String",
     "surface": "std_msgs/msg/String",
     "surface_json": "std_msgs/msg/String",
+    "next_moves": "std_msgs/msg/String",
 }
-LATCHED = ("model", "surface", "surface_json")
+LATCHED = ("model", "surface", "surface_json", "next_moves")
 
 
 def get_message(name: str) -> type:
@@ -77,6 +78,7 @@ def main(file: str, rate: float) -> None:
         "frame": odometry.header.frame_id if odometry else "",
         "model": model.data[:40] if model else "",
         "surfaces": [last[name].data if name in last else None for name in ("surface", "surface_json")],
+        "moves": last["next_moves"].data if "next_moves" in last else "{}",
         "nodes": node.get_node_names(),
     }
     print(json.dumps(found), flush=True)

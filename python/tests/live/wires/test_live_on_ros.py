@@ -112,6 +112,7 @@ def test_a_bag_played_by_a_real_node_gives_the_model_of_the_bag(
     assert "slipwise" in found["nodes"]
     assert found["frame"]
     assert found["model"].startswith("# slipwise live, robot")
+    assert len(json.loads(found["moves"])["moves"]) == 3
     assert found["heard"]["odometry"] > 100
     assert found["heard"]["twist"] == found["heard"]["odometry"]
     assert min(found["heard"][name] for name in ("predicted_path", "diagnostics")) > 10
