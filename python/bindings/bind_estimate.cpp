@@ -68,6 +68,12 @@ void bind_settings(nb::module_& m) {
       .def(
           "passed",
           [](const BodyForce& force, Estimate estimate, double seconds) {
+            check_square(estimate.covariance, estimate.mean.size(), "the covariance beside a force");
+            for (const Eigen::Index place : force.places()) {
+              if (place >= estimate.mean.size()) {
+                throw std::invalid_argument("the estimate lacks the states of the force: it is of another model");
+              }
+            }
             force.pass(estimate, seconds);
             return estimate;
           },

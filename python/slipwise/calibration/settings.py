@@ -243,9 +243,12 @@ class Settings(_Section):
         return settings
 
     def average_settings(self) -> _core.ModelAverageSettings:
-        """Return the core's settings of model averaging, and of finding a change of terrain."""
+        """Return the core's settings of model averaging, and of finding a change of terrain.
+
+        Where a force is learned, what changes at once is taken for it: no terrain is looked for then.
+        """
         settings, change = _core.ModelAverageSettings(), _core.ChangeSettings()
-        change.detect = self.change.detect
+        change.detect = self.change.detect and not self.body_force.learned
         settings.change = change
         return settings
 

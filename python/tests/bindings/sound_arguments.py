@@ -187,6 +187,7 @@ OBJECTS: dict[str, Callable[[], Any]] = {
     "BayesianRegression": _regression,
     "Basis": lambda: _core.named_basis("edd-2"),
     "ActuatorFilter": _chain_learner,
+    "ForceFrame": lambda: _core.ForceFrame.Body,
     "DisturbanceFilter": lambda: _core.DisturbanceFilter(_law()),
     "CommandLimits": _limits,
     "CostmapView": lambda: _core.CostmapView(np.zeros((4, 5), np.float32), 0.5, 0.0, 0.0, 100.0),

@@ -16,7 +16,7 @@ struct BodyForceSettings {
   double time_constant = 0.0;  ///< [s]; 0: no force is learned
   double std = 0.03;           ///< of the drift that it causes along and across, per distance driven [m/m]
   double turn_std = 0.03;      ///< of the turn that it causes [rad/m]
-  double arm = 0.5;            ///< distance whose drift is expected for a turn of one radian [m]
+  double arm = 3.0;            ///< distance whose drift is expected for a turn of one radian [m]
 };
 
 /// The states of a force among the parameters of a model. Terms that a basis happens to share with a force are those of
