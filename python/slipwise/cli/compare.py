@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from slipwise.models import Model
     from slipwise.models.difference import Difference
 
+_MOST_NAMED = 5  # numbers that a sentence names
+
 
 @takes_log_options
 def compare(
@@ -46,15 +48,17 @@ def compare(
     from slipwise.cli.model_names import named_models
     from slipwise.cli.output import Output
     from slipwise.cli.writable import refuse_unwritable
+    from slipwise.models.body_force import without_force
     from slipwise.models.difference import differences
 
     out = Output(json)
     refuse_unwritable(out.written_file, inputs=(first, second, *(logs or []), *log_options.files))
     models = named_models([first, second])
-    rows = differences(*models.values())
+    slips = {name: without_force(model) for name, model in models.items()}  # a force is of its day
+    rows = differences(*slips.values())
     evaluation = _predicted(models, logs, log_options) if logs else None
-    out.document(_document(models, rows, evaluation))
-    _show_differences(out, models, rows)
+    out.document(_document(slips, rows, evaluation))
+    _show_differences(out, slips, rows)
     if evaluation is not None:
         _show_predictions(out, evaluation)
     return 0
@@ -103,7 +107,10 @@ def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Diff
         f"{len(both) - len(different)} of {len(both)} numbers agree within {DIFFERENT:g} standard deviations"
     )
     out.line(f"{agree}." if different else f"Nothing differs: {agree}.")
-    shown = sorted(different, key=lambda row: -abs(row.z)) + [row for row in rows if row not in both]
+    different.sort(key=lambda row: -abs(row.z))
+    if different:
+        out.line(different_sentence(different))
+    shown = different + [row for row in rows if row not in both]
     cells = [(row.name, _cell(row.first), _cell(row.second), row.unit, _z_text(row.z)) for row in shown]
     if cells:
         heads = [Column("number", whole=True), *(Column(name, True) for name in models)]
@@ -114,6 +121,14 @@ def _show_differences(out: Output, models: dict[str, Model], rows: Sequence[Diff
         out.line(
             "Both have learned from the same log: their errors are alike, and z is smaller than it says."
         )
+
+
+def different_sentence(different: Sequence[Difference]) -> str:
+    """Say which numbers differ and by how many standard deviations, the farthest first."""
+    named = [f"{row.name} by {abs(row.z):.1f}" for row in different[:_MOST_NAMED]]
+    more = len(different) - len(named)
+    rest = f" and {more} more" if more else ""
+    return f"Different, in standard deviations of both together: {', '.join(named)}{rest}."
 
 
 def _show_predictions(out: Output, evaluation: Evaluation) -> None:

@@ -11,6 +11,10 @@ import pytest
 from cli.conftest import Result
 from sample_models import make_model, named
 
+from slipwise import _core
+from slipwise.models import Model
+from slipwise.models.schema import BodyForceSection
+
 Slipwise = Callable[..., Result]
 
 
@@ -25,6 +29,7 @@ def test_differences_stand_with_both_values_and_z(slipwise: Slipwise, models: tu
     result = slipwise("compare", *models)
     assert (result.code, result.err) == (0, "")
     assert "2 of 5 numbers agree within 3 standard deviations." in result.out
+    assert "ang.w by 14.1" in next(line for line in result.out.splitlines() if line.startswith("Different"))
     row = next(line for line in result.out.splitlines() if line.strip().startswith("ang.w"))
     assert row.split() == [
         "ang.w",
@@ -40,6 +45,18 @@ def test_differences_stand_with_both_values_and_z(slipwise: Slipwise, models: tu
         "+14.1",
     ]
     assert "Both have learned from the same log" in result.out
+
+
+def test_a_force_of_one_day_is_not_compared(
+    slipwise: Slipwise, folder: Path, models: tuple[Path, Path]
+) -> None:
+    made = named("edd-2", lon__V=-0.1, ang__w=-0.3)
+    basis = _core.with_force(made.basis, _core.ForceFrame.Body)
+    towing = make_model(replace(made, basis=basis, values={**made.values, "lon.abs(V)": -0.2}))
+    law = BodyForceSection(frame="body", time_constant=60.0, std=0.03)
+    content = towing.content.model_copy(update={"body_force": law})
+    saved = Model(content).save(folder / "towing.yaml")
+    assert "Nothing differs: 5 of 5 numbers agree" in slipwise("compare", models[0], saved).out
 
 
 def test_models_that_agree_are_said_to(slipwise: Slipwise, folder: Path, models: tuple[Path, Path]) -> None:
