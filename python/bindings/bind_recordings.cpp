@@ -26,7 +26,8 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
   check_columns(gyro, 2, "gyro");
   check_columns(attitudes, 3, "attitudes");
   const bool with_std = poses.cols() != 5;
-  check_columns(poses, with_std ? 7 : 5, "poses");
+  const bool with_force = poses.cols() == 9;
+  check_columns(poses, with_force ? 9 : (with_std ? 7 : 5), "poses");
   Recording run{
       .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
   for (const auto& row : attitudes.rowwise()) {
@@ -38,6 +39,8 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .y = row[2],
                          .yaw = std::isnan(row[3]) ? 0.0 : row[3],
                          .frame = static_cast<long>(row[4]),
+                         .gx = with_force ? row[7] : 0.0,
+                         .gy = with_force ? row[8] : 0.0,
                          .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
                          .position = std::isnan(row[3])});
   }
@@ -67,8 +70,8 @@ void bind_recordings(nb::module_& m) {
           "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = Rows(0, 2),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
-          "unknown, or "
-          "both left away. A yaw of NaN says that only the position was measured. Of a gyro rows of (t, yaw rate) [s, "
+          "unknown, or both left away; then known forces over the mass may follow (force_x, force_y) [m/s^2]. A yaw of "
+          "NaN says that only the position was measured. Of a gyro rows of (t, yaw rate) [s, "
           "rad/s].");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)

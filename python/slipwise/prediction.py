@@ -87,6 +87,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     at: Pose = (0.0, 0.0, 0.0),
     terrain_ahead: TerrainAhead | None = None,
     force_age: float = 0.0,
+    known_force: tuple[float, float] = (0.0, 0.0),
 ) -> Path:
     """Predict the path of base_link under `commands`, wherever on it the pose sensor sits.
 
@@ -109,6 +110,8 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
             surface that it is driven on; where that is uncertain, as the mixture, whose covariance says so.
         force_age: how long before the start the model was learned [s], where a force was learned beside
             slip: it fades. A day later use `without_force`.
+        known_force: what pushes the robot all along, over its mass, ahead and to its left [m/s^2]; it acts
+            where the model has terms of gravity, on level ground.
 
     Raises:
         ModelError: the model does not remember a surface ahead.
@@ -143,7 +146,7 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     ahead = np.append(np.arange(PERIOD, horizon - 1e-9, PERIOD), horizon)
     poses, covariance = [np.zeros(3)], [np.zeros((3, 3))]
     for seconds in ahead.tolist():
-        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, 0.0, 0.0)
+        segment = _core.Segment(begin, begin + seconds, _core.Pose2(0.0, 0.0, 0.0), None, *known_force)
         segment = segment.with_ground(under).with_heading(at[2])
         posterior = stretches or model.posterior_after(force_age + 0.5 * seconds)
         if known is not None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from slipwise.calibration.settings import AUTO_BASES, Settings
+from slipwise.errors import LogError
 from slipwise.logs.log import Log
 
 #: Bases with terms of gravity that `auto` averages too where roll and pitch were measured.
@@ -31,14 +32,31 @@ def has_attitude(log: Log) -> bool:
     )
 
 
+def has_known_force(log: Log) -> bool:
+    """Return whether a force on the robot was known: it pushes as gravity does on a slope.
+
+    Raises:
+        LogError: roll and pitch were measured too, of which gravity follows.
+    """
+    runs = [run for run in log.runs if run.poses.force_x is not None or run.poses.force_y is not None]
+    if runs and has_attitude(log):
+        raise LogError(
+            "the log has both roll and pitch and a known force, and only one of them can be taken for a push",
+            where=runs[0].name,
+            advice="leave out the columns roll and pitch, and add gravity to force_x and force_y",
+        )
+    return bool(runs)
+
+
 def for_the_ground_of(log: Log, settings: Settings) -> Settings:
     """Return the settings with which a log is learned.
 
-    With terms of gravity where it has an attitude, of sideways speed where the vehicle is known to drive so.
+    With terms of gravity where it has an attitude or a known force, of sideways speed where the vehicle is
+    known to drive so.
 
     Only the default list of `auto` is extended; bases that were chosen stay as they are.
     """
-    slopes = SLOPE_BASES if has_attitude(log) else ()
+    slopes = SLOPE_BASES if has_known_force(log) or has_attitude(log) else ()
     return _with(settings, (*slopes, *(SIDEWAYS_BASES if log.sideways else ())))
 
 

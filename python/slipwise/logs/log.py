@@ -18,7 +18,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 ABSURD = 1e30  # no measurement in SI units is larger
-OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw")
+OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "force_x", "force_y")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +81,8 @@ class Poses:
     pitch: Floats | None = None  # [M] rad
     std_xy: Floats | None = None  # [M] m, NaN where it is not known
     std_yaw: Floats | None = None  # [M] rad, NaN where it is not known
+    force_x: Floats | None = None  # [M] m/s^2, a known force over the robot's mass along its x axis
+    force_y: Floats | None = None  # [M] m/s^2, the same to its left
     course: bool = False  # only positions were measured: the yaw is the direction of the path
     # As measured, where outliers were rejected and frames split at jumps; poses made from these have none.
     measured: Poses | None = field(default=None, init=False)

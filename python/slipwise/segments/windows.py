@@ -76,8 +76,8 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     """Return what was measured in a run, a row each in the order of the stamps.
 
     Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame,
-    std_xy, std_yaw), with deviations of 0 where they are not known and a yaw of NaN where only positions were
-    measured.
+    std_xy, std_yaw, force_x, force_y), with deviations of 0 where they are not known and a yaw of NaN where
+    only positions were measured. The forces are left out where none are known.
     """
     poses = run.poses if run.poses.measured is None else run.poses.measured
     attitudes = np.empty((0, 3))
@@ -89,8 +89,19 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
         for std in (poses.std_xy, poses.std_yaw)
     ]
     yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations))
+    known = (poses.force_x, poses.force_y)
+    pushed = any(force is not None for force in known)
+    forces = [_held(force, len(poses)) for force in known] if pushed else []
+    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations, *forces))
     return input_rows(run.commands), input_rows(run.wheels), attitudes, measured
+
+
+def _held(force: Floats | None, poses: int) -> Floats:
+    """A known force [m/s^2] at each pose: the last that was known, 0 before the first."""
+    if force is None:
+        return np.zeros(poses)
+    last = np.maximum.accumulate(np.where(np.isfinite(force), np.arange(poses), -1))
+    return np.where(last >= 0, np.nan_to_num(force)[np.maximum(last, 0)], 0.0)
 
 
 def recording_of(run: Run, since: float = -np.inf, until: float = np.inf) -> _core.Recording:

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A known force acts as gravity does: how the robot gives way to it is learned, and predicted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from sample_logs import STEP, Drive, commands, poses_of
+
+from slipwise import _core
+from slipwise.calibration import calibrate, make_settings
+from slipwise.errors import LogError
+from slipwise.logs import Inputs, Log, Run, open_log
+from slipwise.logs.write_tidy import write_csv
+from slipwise.prediction import predict
+
+GIVES = 0.03  # s^2/m, of the slip to the side per speed and force over the mass
+
+
+def pushed_log(seconds: float = 120.0, *, told: bool = True) -> Log:
+    """A blade pushes to one side and the other for 10 s each, by 1.5 m/s^2."""
+    rng = np.random.default_rng(3)
+    t, v, omega = commands(Drive(seconds=seconds), rng)
+    force = np.where((t // 10.0) % 2.0 == 0.0, 1.5, -1.5)
+    basis = _core.Basis("true", ["V"], ["gy*abs(V)"], ["w"])
+    pose, path = _core.Pose2(0.0, 0.0, 0.0), np.empty((len(t), 3))
+    for i in range(len(t)):
+        path[i] = pose.vector()
+        state = _core.SlipState(v[i], omega[i], 0.0, force[i])
+        slip = _core.slip_rate(basis, np.array([-0.05, GIVES, -0.2]), state)
+        noise = 2e-3 * np.sqrt(STEP) * rng.standard_normal(3)
+        pose = _core.compose(pose, _core.exp((np.array([v[i], 0.0, omega[i]]) + slip) * STEP + noise))
+    path += rng.standard_normal(path.shape) * (0.005, 0.005, 0.002)
+    inputs = Inputs(t=t, v=v, vy=np.zeros_like(v), omega=omega)
+    poses = poses_of(t, path)
+    if told:
+        poses = replace(poses, force_y=force)
+    return Log(runs=(Run(name="blade", commands=None, wheels=inputs, poses=poses),))
+
+
+def test_how_the_robot_gives_way_to_a_known_force_is_learned() -> None:
+    told, untold = (
+        calibrate(pushed_log(told=told), input="wheel", settings=make_settings({"basis": basis})).model
+        for told, basis in ((True, "drive-9"), (False, "drive-5"))
+    )
+    gives = told["lat.abs(V)*gy"]
+    assert abs(gives.value - GIVES) < 3.0 * gives.std < 0.02
+    errors = [model.content.verdict.held_out for model in (told, untold)]
+    assert errors[0] is not None
+    assert errors[1] is not None
+    assert errors[0].position < 0.7 * errors[1].position
+    straight = np.array([[0.0, 1.0, 0.0]])
+    left, right = (
+        predict(told, straight, horizon=2.0, known_force=(0.0, f)).poses[-1, 1] for f in (1.5, -1.5)
+    )
+    assert left - right == pytest.approx(2.0 * 2.0 * 1.5 * GIVES, rel=0.3)
+
+
+def test_auto_tries_how_the_robot_gives_way_where_a_force_is_known() -> None:
+    model = calibrate(pushed_log(40.0), input="wheel").model
+    assert {"lat.gy", "lat.abs(V)*gy"} <= set(model)
+
+
+def test_a_table_carries_a_known_force(tmp_path: Path) -> None:
+    log = pushed_log(20.0)
+    write_csv(log, tmp_path / "blade.csv")
+    (run,) = open_log(tmp_path / "blade.csv").runs
+    assert run.poses.force_y is not None
+    assert set(np.unique(run.poses.force_y)) == {-1.5, 1.5}
+
+
+def test_a_known_force_beside_an_attitude_is_refused() -> None:
+    log = pushed_log(20.0)
+    (run,) = log.runs
+    tilted = replace(run.poses, roll=np.full(len(run.poses), 0.05), pitch=np.zeros(len(run.poses)))
+    with pytest.raises(LogError, match="roll and pitch and a known force"):
+        calibrate(Log(runs=(replace(run, poses=tilted),)), input="wheel")
