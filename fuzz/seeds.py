@@ -150,7 +150,7 @@ def _flight(kind: str) -> bytes:
 
     with tempfile.TemporaryDirectory() as folder:
         write = getattr(sample_flights, f"write_{kind}")
-        written: Path = write(Path(folder) / "drive", sample_flights.made_flight(1.5, 20.0))
+        written: Path = write(Path(folder) / "drive", sample_flights.made_flight(1.2, 20.0))
         return written.read_bytes()
 
 
