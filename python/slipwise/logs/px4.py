@@ -39,8 +39,14 @@ def px4_streams(messages: FlightMessages, options: LogOptions) -> FlightStreams:
     made = FlightStreams()
     made.commands = _commands(messages, made.notes)
     made.wheels = _wheels(messages, options, made.notes)
-    if POSES in messages.topics:
-        made.poses = _poses(messages.topics[POSES], messages.topics.get(ATTITUDE), made.notes)
+    topic = messages.topics.get(POSES)
+    if topic is not None:
+        lacking = [name for name in ("x", "y", "z") if name not in topic]
+        lacking += [] if {"heading", "yaw"} & set(topic) else ["heading"]
+        if lacking:
+            made.notes.append(f"{POSES} is not used: it has no {', '.join(lacking)}")
+        else:
+            made.poses = _poses(topic, messages.topics.get(ATTITUDE), made.notes)
     return made
 
 
@@ -67,7 +73,7 @@ def _commands(messages: FlightMessages, notes: list[str]) -> FlightStream | None
 
 def _wheels(messages: FlightMessages, options: LogOptions, notes: list[str]) -> FlightStream | None:
     topic = messages.topics.get(WHEELS)
-    if topic is None or "wheel_speed[1]" not in topic:
+    if topic is None or not {"wheel_speed[0]", "wheel_speed[1]"} <= set(topic):
         return None
     separation = options.wheel_separation or messages.parameters.get(TRACK, 0.0)
     if options.wheel_radius is None or not separation > 0.0:
@@ -106,7 +112,7 @@ def _poses(topic: Columns, attitude: Columns | None, notes: list[str]) -> Flight
     )
     if "eph" in topic:
         columns["std_xy"] = topic["eph"] / np.sqrt(2.0)
-    if attitude is not None and "q[3]" in attitude:
+    if attitude is not None and {f"q[{k}]" for k in range(4)} <= set(attitude):
         w, x, y, z = (attitude[f"q[{k}]"] for k in range(4))
         roll = np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
         pitch = -np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0))

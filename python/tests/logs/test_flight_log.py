@@ -165,3 +165,12 @@ def test_other_files_are_none_of_these(tmp_path: Path) -> None:
     for data in (b"t,x,y,yaw\n", b"PAR1", b"\x89MCAP0\r\n", b"\x00" * 20):
         path.write_bytes(data)
         assert flight_format(path) is None
+
+
+def test_poses_without_a_heading_are_not_used(tmp_path: Path) -> None:
+    path = write_ulog(tmp_path / "a.ulg", made_flight())
+    whole = path.read_bytes()
+    path.write_bytes(whole.replace(b"float heading;", b"float HEADING;"))
+    assert path.read_bytes() != whole
+    with pytest.raises(LogError, match="no poses: there is .*vehicle_local_position"):
+        open_log(path)
