@@ -172,5 +172,5 @@ def test_poses_without_a_heading_are_not_used(tmp_path: Path) -> None:
     whole = path.read_bytes()
     path.write_bytes(whole.replace(b"float heading;", b"float HEADING;"))
     assert path.read_bytes() != whole
-    with pytest.raises(LogError, match="no poses: there is .*vehicle_local_position"):
+    with pytest.raises(LogError, match=r"no poses: there is .*vehicle_local_position"):
         open_log(path)
