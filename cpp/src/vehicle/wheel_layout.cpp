@@ -243,7 +243,8 @@ void WheelLayout::check(const WheelReadings& readings) const {
   }
   for (Eigen::Index i = 0; i < count; ++i) {
     const Wheel& wheel = wheels_[static_cast<std::size_t>(i)];
-    if (wheel.steered && !(finite(readings.steering[i]) && (!wheel.pivot || finite(steering_rate_of(readings, i))))) {
+    const double rate = wheel.pivot ? steering_rate_of(readings, i) : 0.0;
+    if (wheel.steered && (!finite(readings.steering[i]) || !finite(rate))) {
       throw std::invalid_argument("the angle of a steered wheel, and its rate, must be finite [rad, rad/s]");
     }
   }
