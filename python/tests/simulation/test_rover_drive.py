@@ -63,7 +63,7 @@ def test_it_drives_as_its_wheels_tell_less_their_wear(
 def test_slip_is_recovered_within_three_sigma(rover: Rover, stones: int, basis: str) -> None:
     for seed in (1, 2):
         ground = RoughGround(stones, height=0.05, seed=seed)
-        drive = drive_rover(rover, rover_commands(rover, 60.0, seed), ground)
+        drive = drive_rover(rover, rover_commands(rover, 45.0, seed), ground)
         truth = true_slip(drive, _core.named_basis(basis))
         settings = make_settings({"basis": basis, "change": {"detect": False}})
         model = sw.calibrate(drive.log(seed=seed), input="wheel", settings=settings).model
@@ -76,7 +76,7 @@ def test_slip_is_recovered_within_three_sigma(rover: Rover, stones: int, basis: 
 @pytest.mark.slow
 def test_a_learned_rover_predicts_held_out_windows_better_than_its_stated_sizes() -> None:
     rover = Rover()
-    drive = drive_rover(rover, rover_commands(rover, 60.0, 4), RoughGround(600, height=0.05, seed=4))
+    drive = drive_rover(rover, rover_commands(rover, 45.0, 4), RoughGround(600, height=0.05, seed=4))
     options = sw.EvaluationOptions(horizons=(2.0,), methods=("none", "auto"))
     position = {
         s.method: s.position.mean for s in sw.evaluate(drive.log(), input="wheel", options=options).scores
