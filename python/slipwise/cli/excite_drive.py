@@ -89,11 +89,11 @@ def drive_by_itself(drive: Excitation, options: SelfDriveOptions) -> dict[str, A
             driver = SelfDrive(link, guard, plan, say=_say)
             stopping.node = driver
             report = driver.run()
-        finally:
+        finally:  # what was driven is kept whatever ended it
             link.close()
-    if report.commands:
-        write_text_whole(options.log, link.log.text())
-        _say(f"commands and poses: {options.log}; next: slipwise calibrate {options.log}")
+            if link.log.commands:
+                write_text_whole(options.log, link.log.text())
+                _say(f"commands and poses: {options.log}; next: slipwise calibrate {options.log}")
     for line in summary_of(report, len(drive.moves), drive.seconds):
         _say(line)
     return {"exit_code": int(bool(report.why)), "driven": _finite(asdict(report)) | {"log": options.log}}

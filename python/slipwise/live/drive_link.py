@@ -37,6 +37,11 @@ class DriveLog:
         self._commands: list[tuple[float, float, float]] = []
         self._poses: list[tuple[float, float, float, float]] = []
 
+    @property
+    def commands(self) -> int:
+        """How many there were."""
+        return len(self._commands)
+
     def take_command(self, t: float, v: float, omega: float) -> None:
         """Take a command at a stamp [s]."""
         self._commands.append((t, v, omega))

@@ -17,6 +17,7 @@ def test_commands_and_poses_are_read_back_by_their_stamps(tmp_path: Path) -> Non
         log.take_pose(10.0 + 0.1 * i, 0.05 * i, 0.0, 0.0)
     for i in range(200):
         log.take_command(10.0 + 0.05 * i, 0.5, 0.1)
+    assert log.commands == 200
     file = tmp_path / "driven.csv"
     file.write_text(log.text(), encoding="utf-8")
     (run,) = open_log(file).runs
