@@ -29,22 +29,11 @@ Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd
   return model.learned().sensor_extrinsics ? model.sensor_extrinsics(parameters) : segment.sensor;
 }
 
-/// Of a step that begins at `theta`, the heading amid it.
-BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta, bool by_heading,
-                  const BodyGravity* ground) {
-  BodyGravity all = ground != nullptr ? *ground : BodyGravity{.gx = segment.gx, .gy = segment.gy};
-  if (by_heading) {
-    const double amid = segment.heading + theta + 0.5 * step.turn;
-    all.cos_yaw = std::cos(amid);
-    all.sin_yaw = std::sin(amid);
-  }
-  return all;
-}
-
-/// Runge-Kutta of fourth order on a constant twist: Simpson's rule over the heading (thesis 3.1).
-Eigen::Vector2d rk4_displacement(const Eigen::Vector3d& tangent) {
-  const Eigen::Matrix2d mean = (rotation(0.0) + 4.0 * rotation(tangent.z() / 2.0) + rotation(tangent.z())) / 6.0;
-  return mean * tangent.head<2>();
+/// What pulls the robot amid a step that begins at `theta`, and where slip is `by_heading`, its heading there.
+BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta, const BodyGravity* ground,
+                  bool by_heading) {
+  const BodyGravity pull = ground != nullptr ? *ground : BodyGravity{.gx = segment.gx, .gy = segment.gy};
+  return by_heading ? headed(pull, segment.heading + theta + 0.5 * step.turn) : pull;
 }
 
 /// The path as it grows. The heading's rotation is carried along, so that a step costs the trigonometry of its turn
@@ -136,23 +125,13 @@ struct SensitivitySums {
     }
   }
 
-  /// Derivatives of the heading amid a step, before anything of the step is added.
-  struct ByHeading {
-    Eigen::RowVectorXd slip;
-    Eigen::RowVectorXd actuator;
-  };
-  ByHeading heading_amid(const std::optional<LearnedColumns>& step) const {
-    ByHeading amid{slip.row(2), actuator.row(2)};
+  /// Derivatives of the heading amid a step by slip and by the actuator, before anything of the step is added.
+  std::array<Eigen::RowVectorXd, 2> heading_amid(const std::optional<LearnedColumns>& step) const {
+    std::array<Eigen::RowVectorXd, 2> amid{slip.row(2), actuator.row(2)};
     if (step) {
-      amid.actuator += 0.5 * step->row(3);
+      amid[1] += 0.5 * step->row(3);
     }
     return amid;
-  }
-
-  /// What follows from the heading amid the step: `rate` is the derivative of the path's start by it.
-  void add_heading(const Eigen::Vector3d& rate, const ByHeading& amid) {
-    slip += rate * amid.slip;
-    actuator += rate * amid.actuator;
   }
 
   /// Phi(n, 0), carried from the robot to the sensor.
@@ -198,6 +177,41 @@ struct GroundUnder {
     return GroundUnder{moved.step, std::move(moved)};
   }
 };
+
+/// A step as it was driven.
+struct DrivenStep {
+  const ActuatorStep& step;
+  const PathSlip& along;
+  std::span<const double> features;
+  const Eigen::Vector3d& slip;
+  const Eigen::Vector3d& body;  ///< its tangent in the robot's axes
+  const Pose2& before;          ///< where it begins
+  const std::optional<GroundUnder>& ground;
+};
+
+/// Adds to the sums what follows from a step. `learned` has a column for each actuator parameter that is learned, and
+/// `by_tangent` is the derivative of the path's start by the tangent seen from above.
+void add_step(SensitivitySums& sums, const DrivenStep& driven, const std::optional<LearnedColumns>& learned,
+              Eigen::Matrix3d by_tangent) {
+  const auto& [step, along, features, slip, body, before, ground] = driven;
+  const auto amid = along.basis.by_heading() ? std::optional(sums.heading_amid(learned)) : std::nullopt;
+  if (ground && ground->moved) {
+    sums.add_ground(by_tangent * above_by_place(*ground->moved, step, along, body), *ground->moved, before, learned);
+  }
+  if (ground) {
+    by_tangent = (by_tangent * ground->step.level).eval();
+  }
+  if (amid) {
+    const Eigen::Vector3d rate = slip_rate_by_heading(along.basis, along.alpha, slip_state(step, along.gravity));
+    const Eigen::Vector3d by_heading = by_tangent * rate * step.duration;
+    sums.slip += by_heading * (*amid)[0];
+    sums.actuator += by_heading * (*amid)[1];
+  }
+  sums.add_slip(along.basis, by_tangent, features, step.duration);
+  if (learned && !learned->isZero(0.0)) {
+    sums.actuator += by_tangent * tangent_by(step, *learned, along, slip);
+  }
+}
 
 /// Cuts steps where the ground `changes` on the way, and at the points of the segment's course; returns where these
 /// are, if it has one.
@@ -254,32 +268,18 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
     const ActuatorStep& step = drive.steps[k];
     const auto ground = GroundUnder::find(segment, step, path, by_actuator);
     const PathSlip along{model.basis(), alpha,
-                         under(segment, step, path.pose().theta, by_heading, ground ? &ground->step.gravity : nullptr)};
+                         under(segment, step, path.pose().theta, ground ? &ground->step.gravity : nullptr, by_heading)};
     model.basis().features(slip_state(step, along.gravity), features);
     const Eigen::Vector3d slip = slip_rate(model.basis(), alpha, features);
     const Eigen::Vector3d body = tangent_of(step, slip);
     const Pose2 before = path.pose();
-    Eigen::Matrix3d by_tangent =
+    const Eigen::Matrix3d by_tangent =
         append_linearized(path, step.duration, ground ? ground->step.seen_from_above(body) : body);
-    std::optional<LearnedColumns> learned;
-    if (by_actuator) {
-      learned = drive.jacobians[k](Eigen::all, model.actuator_places());
-    }
-    const auto amid = by_heading ? std::optional(sums.heading_amid(learned)) : std::nullopt;
-    if (ground && ground->moved) {
-      sums.add_ground(by_tangent * above_by_place(*ground->moved, step, along, body), *ground->moved, before, learned);
-    }
-    if (ground) {
-      by_tangent = (by_tangent * ground->step.level).eval();
-    }
-    if (amid) {
-      const Eigen::Vector3d rate = slip_rate_by_heading(model.basis(), alpha, slip_state(step, along.gravity));
-      sums.add_heading(by_tangent * rate * step.duration, *amid);
-    }
-    sums.add_slip(model.basis(), by_tangent, features, step.duration);
-    if (learned && !learned->isZero(0.0)) {
-      sums.actuator += by_tangent * tangent_by(step, *learned, along, slip);
-    }
+    const DrivenStep driven{step, along, features, slip, body, before, ground};
+    add_step(sums, driven,
+             by_actuator ? std::optional<LearnedColumns>(drive.jacobians[k](Eigen::all, model.actuator_places()))
+                         : std::nullopt,
+             by_tangent);
     for (std::size_t i = 0; course && i < kCoursePoints; ++i) {
       if (course->at[i] == k + 1) {
         at_points[i] = at_sensor();
@@ -342,7 +342,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
     const auto ground =
         segment.ground ? std::optional(ground_step(*segment.ground, step, path.pose(), path.time())) : std::nullopt;
     const BodyGravity gravity =
-        under(segment, step, path.pose().theta, by_heading, ground ? &ground->gravity : nullptr);
+        under(segment, step, path.pose().theta, ground ? &ground->gravity : nullptr, by_heading);
     model.basis().features(slip_state(step, gravity), features);
     if (!ahead.empty()) {
       alpha = slip_over(ahead, parameters.head(model.slip_size()), travelled, std::abs(step.forward));

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #include "slipwise/actuator/actuator_model.hpp"
 #include "slipwise/lie/se2.hpp"
@@ -18,6 +19,13 @@ struct BodyGravity {
   double cos_yaw = 1.0;
   double sin_yaw = 0.0;
 };
+
+/// The same of a robot that is headed like this [rad].
+inline BodyGravity headed(BodyGravity gravity, double yaw) {
+  gravity.cos_yaw = std::cos(yaw);
+  gravity.sin_yaw = std::sin(yaw);
+  return gravity;
+}
 
 /// What slip along a path follows from.
 struct PathSlip {
@@ -62,6 +70,12 @@ inline Eigen::Vector3d tangent_of(const ActuatorStep& step, const Eigen::Vector3
 template <typename Jacobian>
 using TangentColumns =
     Eigen::Matrix<double, 3, Jacobian::ColsAtCompileTime, Eigen::ColMajor, 3, Jacobian::MaxColsAtCompileTime>;
+
+/// Runge-Kutta of fourth order on a constant twist: Simpson's rule over the heading (thesis 3.1).
+inline Eigen::Vector2d rk4_displacement(const Eigen::Vector3d& tangent) {
+  const Eigen::Matrix2d mean = (rotation(0.0) + 4.0 * rotation(tangent.z() / 2.0) + rotation(tangent.z())) / 6.0;
+  return mean * tangent.head<2>();
+}
 
 /// Derivative of a step's tangent by parameters that move its duration and integrals, and through these its slip, which
 /// is `slip` at the step's mean drive.
