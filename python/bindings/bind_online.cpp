@@ -10,6 +10,7 @@
 
 #include "bindings.hpp"
 #include "checked_shapes.hpp"
+#include "pose_sources.hpp"
 #include "sample_rows.hpp"
 #include "slipwise/online/motion_learner.hpp"
 #include "slipwise/online/recording.hpp"
@@ -27,6 +28,7 @@ void bind_settings(nb::module_& m) {
       .def_rw("late_factor", &SegmentRules::late_factor)
       .def_rw("length_tolerance", &SegmentRules::length_tolerance)
       .def_rw("still_speed", &SegmentRules::still_speed);
+  bind_sources(m);
   nb::class_<StreamSettings>(m, "StreamSettings", "How measurements become segments.")
       .def(nb::init<>())
       .def_rw("from_commands", &StreamSettings::from_commands)
@@ -38,7 +40,9 @@ void bind_settings(nb::module_& m) {
       .def_rw("latency", &StreamSettings::latency)
       .def_rw("horizons", &StreamSettings::horizons)
       .def_rw("sensor", &StreamSettings::sensor)
-      .def_rw("car", &StreamSettings::car);
+      .def_rw("car", &StreamSettings::car)
+      .def_rw("sources", &StreamSettings::sources)
+      .def_rw("heading_only", &StreamSettings::heading_only);
   nb::class_<HypothesisSettings>(m, "HypothesisSettings", "What is learned.")
       .def(nb::init<>())
       .def_rw("bases", &HypothesisSettings::bases)
@@ -220,20 +224,42 @@ void bind_online(nb::module_& m) {
       .def(
           "push_pose",
           [](MotionLearner& learner, double t, double x, double y, double yaw, long frame, double std_xy,
-             double std_yaw, bool learned) {
-            learner.push_pose({.t = t, .x = x, .y = y, .yaw = yaw, .frame = frame, .std = {std_xy, std_yaw}}, learned);
+             double std_yaw, bool learned, std::size_t source, std::size_t fix) {
+            learner.push_pose({.t = t,
+                               .x = x,
+                               .y = y,
+                               .yaw = yaw,
+                               .frame = frame,
+                               .std = {std_xy, std_yaw},
+                               .source = source,
+                               .fix = pose_fix(fix)},
+                              learned);
           },
-          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true)
+          "t"_a, "x"_a, "y"_a, "yaw"_a, "frame"_a, "std_xy"_a = 0.0, "std_yaw"_a = 0.0, "learned"_a = true,
+          "source"_a = 0, "fix"_a = 0)
       .def(
           "push_position",
-          [](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned) {
-            learner.push_pose(
-                {.t = t, .x = x, .y = y, .yaw = 0.0, .frame = frame, .std = {.xy = std_xy}, .position = true}, learned);
+          [](MotionLearner& learner, double t, double x, double y, long frame, double std_xy, bool learned,
+             std::size_t source, std::size_t fix) {
+            learner.push_pose({.t = t,
+                               .x = x,
+                               .y = y,
+                               .yaw = 0.0,
+                               .frame = frame,
+                               .std = {.xy = std_xy},
+                               .source = source,
+                               .fix = pose_fix(fix),
+                               .position = true},
+                              learned);
           },
-          "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true,
+          "t"_a, "x"_a, "y"_a, "frame"_a, "std_xy"_a = 0.0, "learned"_a = true, "source"_a = 0, "fix"_a = 0,
           "A position without a heading, which is taken from the course of its path.")
       .def("push_gyro", &MotionLearner::push_gyro, "t"_a, "rate"_a)
       .def_prop_ro("gyro_bias", &MotionLearner::gyro_bias, "Of the gyro [rad/s], and its standard deviation.")
+      .def_prop_ro(
+          "sources",
+          [](const MotionLearner& learner) { return learned_sources(learner.sources(), learner.noise_scale()); },
+          "What is known of each source of poses, where there are several.")
       .def("push_attitude", &MotionLearner::push_attitude, "t"_a, "roll"_a, "pitch"_a)
       .def(
           "push", [](MotionLearner& learner, const Recording& run) { push(learner, run); }, "run"_a,

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "pose_sources.hpp"
 #include "sample_rows.hpp"
 #include "slipwise/online/recording.hpp"
 
@@ -25,13 +26,17 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                     const Rows& gyro) {
   check_columns(gyro, 2, "gyro");
   check_columns(attitudes, 3, "attitudes");
+  const bool with_source = poses.cols() >= 9;
   const bool with_std = poses.cols() != 5;
-  const bool with_force = poses.cols() == 9;
-  check_columns(poses, with_force ? 9 : (with_std ? 7 : 5), "poses");
+  const bool with_force = poses.cols() == 11;
+  check_columns(poses, with_force ? 11 : (with_source ? 9 : (with_std ? 7 : 5)), "poses");
   Recording run{
       .commands = samples(commands, "commands"), .wheels = samples(wheels, "wheels"), .attitudes = {}, .poses = {}};
   for (const auto& row : attitudes.rowwise()) {
     run.attitudes.push_back({row[0], row[1], row[2]});
+  }
+  if (with_source && !(poses.middleCols(7, 2).minCoeff() >= 0.0)) {
+    throw std::invalid_argument("numbers of sources and fixes must be 0 or more");
   }
   for (const auto& row : poses.rowwise()) {
     run.poses.push_back({.t = row[0],
@@ -39,9 +44,11 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .y = row[2],
                          .yaw = std::isnan(row[3]) ? 0.0 : row[3],
                          .frame = static_cast<long>(row[4]),
-                         .gx = with_force ? row[7] : 0.0,
-                         .gy = with_force ? row[8] : 0.0,
+                         .gx = with_force ? row[9] : 0.0,
+                         .gy = with_force ? row[10] : 0.0,
                          .std = with_std ? PoseStd{.xy = row[5], .yaw = row[6]} : PoseStd{},
+                         .source = with_source ? static_cast<std::size_t>(row[7]) : 0,
+                         .fix = with_source ? pose_fix(static_cast<std::size_t>(row[8])) : PoseFix::Unknown,
                          .position = std::isnan(row[3])});
   }
   for (const auto& row : gyro.rowwise()) {
@@ -70,8 +77,9 @@ void bind_recordings(nb::module_& m) {
           "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = Rows(0, 2),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
-          "unknown, or both left away; then known forces over the mass may follow (force_x, force_y) [m/s^2]. A yaw of "
-          "NaN says that only the position was measured. Of a gyro rows of (t, yaw rate) [s, "
+          "unknown, or both left away; then the numbers of the source and of the fix may follow, and after these known "
+          "forces over the mass (force_x, force_y) [m/s^2]. A yaw of NaN says that only the position was measured. Of "
+          "a gyro rows of (t, yaw rate) [s, "
           "rad/s].");
   nb::class_<Rejected>(m, "Rejected", "Something rejected.")
       .def_ro("stream", &Rejected::stream)

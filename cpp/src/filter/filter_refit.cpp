@@ -20,6 +20,15 @@ constexpr std::size_t kSlice = 2;    // segments that are linearised at a time
 SLIPWISE_TUNING(kTolerance, 0.03);   // of -2 log posterior: a sixth of a standard deviation
 constexpr double kSameStamp = 1e-6;  // [s] segments closer than this meet at one pose
 
+/// Factor of the variances of what measured a segment, where the filters have learned a `scale`.
+Eigen::Vector3d noise_size(const Segment& segment, const Eigen::Vector3d& scale) {
+  if (!segment.source) {
+    return scale;
+  }
+  const Eigen::Vector3d factor = Eigen::Vector3d::Map(segment.source->noise_factor.data());
+  return segment.source->own_noise ? factor : Eigen::Vector3d(factor.cwiseProduct(scale));
+}
+
 }  // namespace
 
 FilterRefit::FilterRefit(MotionModel model, Estimate before, FilterState now, const CausalFilterSettings& settings,
@@ -46,9 +55,15 @@ void FilterRefit::weight(const DrivenSegment& driven) {
     return;
   }
   Eigen::Matrix3d shared = Eigen::Matrix3d::Zero();
-  if (!model_.learned().dynamics && !segment.chords && last_ && std::abs(segment.start - last_->end) < kSameStamp) {
+  const bool meet =
+      last_ && std::abs(segment.start - last_->end) < kSameStamp && source_number(segment) == source_number(*last_);
+  const bool poses = !segment.chords && !at.path.heading_std;
+  if (!model_.learned().dynamics && poses && meet) {
     const PoseStdRatio& met = segment.pose_std_ratio.front();
-    shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), scale);
+    const Eigen::Vector3d size =
+        segment.source ? Eigen::Vector3d(noise_size(segment, scale).cwiseProduct(noise_size(*last_, scale)).cwiseSqrt())
+                       : scale;
+    shared = scaled_covariance(shared_pose_noise(segment.measured, last_->measured, noise_.shape, met), size);
   }
   const double larger = std::max(std::sqrt(nis) / iekf_.huber, 1.0);
   data_.push_back({.inputs = driven.inputs, .segment = segment, .noise = noise * larger, .shared = shared});
@@ -91,7 +106,9 @@ void FilterRefit::learn_noise(const DrivenSegment& driven) {
   const SegmentLinearization at =
       fitted ? std::move(at_[fitted_]) : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
   const Eigen::Matrix3d expected = expected_noise(at, driven.segment, noise_.shape);
-  state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
+  if (shows_noise(driven.segment)) {
+    state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
+  }
   if (fitted) {
     state_.scores.add(at, state_.estimate.covariance, driven.segment, data_[fitted_].noise);
     ++fitted_;

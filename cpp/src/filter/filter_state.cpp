@@ -9,17 +9,19 @@
 namespace slipwise {
 
 Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise) {
-  return slip_covariance(at.path, noise) + pose_noise_covariance(at.path, segment.measured, noise);
+  return expected_noise(at.path, segment.measured, noise);
 }
 
 IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                               const NoiseSettings& noise, const IekfSettings& iekf) {
   auto at = linearize_segment(model, estimate.mean, inputs, segment);
   const Eigen::Matrix3d expected = expected_noise(at, segment, noise.shape);
-  const Eigen::Matrix3d scaled = scaled_covariance(expected, noise_scale.value());
+  const Eigen::Matrix3d scaled = scaled_covariance(expected, scale_for(at.path, noise_scale.value()));
   IekfUpdate update = iekf_update(model, estimate, inputs, segment, std::move(at), scaled, iekf);
   estimate = update.estimate;
-  noise_scale.learn(update.at, estimate.covariance, segment.measured, expected.diagonal());
+  if (shows_noise(segment)) {
+    noise_scale.learn(update.at, estimate.covariance, segment.measured, expected.diagonal());
+  }
   if (update.weight > 0.0) {
     scores.add(update.at, estimate.covariance, segment, scaled / update.weight);
   }

@@ -20,7 +20,15 @@ void NoiseScale::learn(const SegmentLinearization& at, const Eigen::MatrixXd& co
   }
   const Eigen::Vector3d residual = measured.vector() - at.predicted.vector();
   const Eigen::Matrix3d open = at.by_parameter * covariance * at.by_parameter.transpose();
-  follow(residual.cwiseAbs2() + open.diagonal(), expected);
+  follow(shown_by(at.path, residual.cwiseAbs2() + open.diagonal(), expected), expected);
+}
+
+Eigen::Vector3d NoiseScale::shown_by(const SegmentPath& path, Eigen::Vector3d squared,
+                                     const Eigen::Vector3d& expected) const {
+  if (path.heading_std) {
+    squared.head<2>() = value_.head<2>().cwiseProduct(expected.head<2>());
+  }
+  return squared;
 }
 
 void NoiseScale::learn_prediction(const Eigen::Vector3d& squared, const Eigen::Vector3d& open,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 #include <set>
@@ -19,6 +20,16 @@ namespace {
 
 SLIPWISE_TUNING(kChanged, 0.2);  // weight of the models that forgot, at first: most disturbances of real drives pass
 SLIPWISE_TUNING(kActive, 0.01);  // weight from which a model has a say
+SLIPWISE_TUNING(kNoisy, 4.0);    // times as large variances as those of the best poses hide a change, and look like one
+
+/// Whether a segment comes from a source of poses that tells no change of terrain.
+bool far_noisier(const Segment& segment, const Eigen::Vector3d& scale) {
+  if (shows_noise(segment)) {
+    return false;
+  }
+  const Eigen::Vector3d factor = Eigen::Vector3d::Map(present(segment.source).noise_factor.data());
+  return factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
+}
 
 /// One basis as it is, several as their union.
 Basis averaged_basis(std::string name, const std::vector<Basis>& bases) {
@@ -215,7 +226,7 @@ void ModelAverage::reweigh() {
 /// weights follow a change at once, and would hide it.
 ChangeTest ModelAverage::test_for_change(const InputHistory& inputs, const Segment& segment) {
   const ChangeSettings& change = settings_.change;
-  if (!change.detect) {
+  if (!change.detect || far_noisier(segment, filters_.front().noise_scale())) {
     return {};
   }
   before_.push_back(state());

@@ -11,7 +11,7 @@
 namespace slipwise {
 
 std::vector<DrivenSegment> SegmentStream::pending_segments() const {
-  PoseAccuracy accuracy = accuracy_;
+  PoseAccuracies accuracy = accuracy_;
   PoseGate gate = gate_;
   PoseTimer timer = timer_;
   ChordFinder chords = chords_;

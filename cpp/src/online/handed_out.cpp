@@ -10,6 +10,9 @@
 namespace slipwise {
 namespace {
 
+constexpr double kHeadings = 0.1;      // [s] between headings of a gyro
+constexpr double kMissing = 0.25;      // [s] between samples of a gyro, over which the robot may have turned otherwise
+constexpr double kUnknownTurn = 3.0;   // [rad] of a turn that a gyro did not see
 constexpr double kActuatorBack = 5.0;  // [s] of commands before wheel speeds; their filter goes on from the last
 
 }  // namespace
@@ -38,6 +41,27 @@ void SegmentStream::set_course(Segment& segment, const SegmentCut& cut) const {
     segment.measured.theta = turn->angle;
     segment.gyro_std = turn->std;
   }
+}
+
+/// Headings are integrals of a gyro, one every `kHeadings`, and a frame ends where samples are missing.
+void SegmentStream::turn_on(const YawRate& sample) {
+  if (turned_until_) {
+    const double seconds = sample.t - turned_until_->t;
+    breaks_ += seconds > kMissing ? 1 : 0;
+    turned_ += 0.5 * seconds * (sample.rate + turned_until_->rate);
+  }
+  turned_until_ = sample;
+  if (poses_.empty() ? sample.t >= now_ + kHeadings : sample.t >= poses_.back().t + kHeadings) {
+    poses_.push_back({.t = sample.t, .x = 0.0, .y = 0.0, .yaw = turned_, .frame = breaks_});
+  }
+}
+
+/// The turn alone, by a gyro whose bias is known as far as it is when the segment is complete.
+void SegmentStream::set_turn(Segment& segment) const {
+  const GyroTurn turn = gyro_.turn(segment.start, segment.end).value_or(GyroTurn{segment.measured.theta, kUnknownTurn});
+  segment.measured = {0.0, 0.0, turn.angle};
+  segment.gyro_std = turn.std;
+  segment.source = SegmentSource{.heading_only = true};
 }
 
 void SegmentStream::emit_wheel_segments(const std::vector<SegmentCut>& cuts) {
@@ -75,8 +99,10 @@ void SegmentStream::emit_learned(const std::vector<SegmentCut>& cuts) {
   for (const SegmentCut& cut : cuts) {
     if (cut.rejected) {
       reject(Stream::Pose, *cut.rejected, cut.first.t);
-    } else {
+    } else if (settings_.sources.empty()) {
       items_.emplace_back(driven(cut, !settings_.from_commands, now_));
+    } else {
+      items_.emplace_back(SourceSegment{driven(cut, !settings_.from_commands, now_), 0, classes_of(cut)});
     }
   }
 }
@@ -89,6 +115,7 @@ void SegmentStream::emit_targets(std::size_t horizon, const std::vector<SegmentC
       if (car_ && settings_.from_commands) {
         target.baseline = car_->baseline(cut.first.t, cut.second.t, cut.first.t - std::max(length, kReady));
       }
+      target.classes = classes_of(cut);
       items_.emplace_back(std::move(target));
     }
   }

@@ -66,7 +66,11 @@ std::vector<DrivenSegment> MotionLearner::complete_now() const {
     if (const auto* segment = std::get_if<DrivenSegment>(&item)) {
       complete.push_back(*segment);
     }
+    if (const auto* source = std::get_if<SourceSegment>(&item); source != nullptr && source->source == 0) {
+      complete.push_back(source->driven);
+    }
   }
+  std::ranges::move(sources_.waiting(), std::back_inserter(complete));
   for (DrivenSegment& segment : stream_.pending_segments()) {
     complete.push_back(std::move(segment));
   }

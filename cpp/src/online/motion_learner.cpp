@@ -69,7 +69,8 @@ MotionLearner::MotionLearner(const LearnerSettings& settings)
       monitor_(pose_filter_settings(settings).nominal, settings.stream.rules.late_factor),
       errors_(settings.stream.horizons.size()),
       held_out_(settings.stream.horizons.size()),
-      before_run_(-kNever) {
+      before_run_(-kNever),
+      sources_(settings.stream, settings.hypotheses.filter) {
   known_.push_back(now_known(-kNever));
 }
 
@@ -82,6 +83,7 @@ void MotionLearner::start_run() {
   pose_filter_.restart();
   monitor_.restart();
   hypotheses_.start_run();
+  sources_.start_run();
   runs_ += run_begins_ ? 0 : 1;
   run_begins_ = true;
 }
@@ -90,6 +92,7 @@ void MotionLearner::end_run() {
   stream_.end_run();
   take_in();
   work_through();
+  finish_sources();
 }
 
 MotionLearner MotionLearner::completed() const {
@@ -149,7 +152,7 @@ void MotionLearner::push_gyro(double t, double rate) {
 
 void MotionLearner::push_pose(const MeasuredPose& pose, bool learned) {
   see_stamp(pose.t);
-  if (stream_.push_pose(pose, learned) && !pose.position) {
+  if (stream_.push_pose(pose, learned) && !pose.position && pose.source == 0) {
     pose_filter_.push(pose);
     monitor_.push(pose);
   }
@@ -198,6 +201,9 @@ bool MotionLearner::work() {
     }
   } else if (const auto* target = std::get_if<TargetSegment>(&waiting_.front())) {
     judge(*target);
+  } else if (std::holds_alternative<SourceSegment>(waiting_.front())) {
+    learn_source();
+    return !waiting_.empty();
   } else {
     const auto& segment = std::get<DrivenSegment>(waiting_.front());
     if (started_) {
@@ -238,6 +244,9 @@ void MotionLearner::work_until(double t) {
     if (const auto* slip = std::get_if<SlipSegment>(&item)) {
       return slip->driven.known_at;
     }
+    if (const auto* source = std::get_if<SourceSegment>(&item)) {
+      return source->driven.known_at;
+    }
     const auto* target = std::get_if<TargetSegment>(&item);
     return target != nullptr ? target->driven.known_at : std::get<DrivenSegment>(item).known_at;
   };
@@ -262,10 +271,12 @@ void MotionLearner::learn_disturbance(const DrivenSegment& segment) {
 
 Knowledge MotionLearner::now_known(double until) const {
   const auto motion = hypotheses_.posterior();
-  return {.until = until,
-          .motion = motion,
-          .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
-          .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_)};
+  return {
+      .until = until,
+      .motion = motion,
+      .slip = motion->structure == Structure::Baseline ? hypotheses_.slip_posterior() : motion,
+      .disturbance = std::make_shared<const DisturbanceFilter>(disturbance_),
+      .sources = settings_.stream.sources.empty() ? nullptr : std::make_shared<const SourceNoise>(sources_.noise())};
 }
 
 void MotionLearner::publish(const DrivenSegment& segment) {
@@ -347,10 +358,11 @@ SegmentList MotionLearner::recent_before(double t) const {
 
 /// Predicts a target from what was known before it, then holds it against what was measured.
 void MotionLearner::judge(const TargetSegment& target) {
-  const DrivenSegment& driven = target.driven;
-  const Segment& segment = driven.segment;
   const double horizon = settings_.stream.horizons[target.horizon];
-  const Knowledge& known = known_at(segment.start - std::max(horizon, kReady));
+  const Knowledge& known = known_at(target.driven.segment.start - std::max(horizon, kReady));
+  const DrivenSegment driven =
+      known.sources ? measured_by(*known.sources, target, known.motion->noise_scale) : target.driven;
+  const Segment& segment = driven.segment;
   const SegmentList recent = recent_before(segment.start);
   const SlipNow& slip = recent_slip_.after(*known.disturbance, known.motion, recent);
   const auto [expected, nominal] = known.disturbance->predict_both(*aged(known, segment), slip, driven);
@@ -359,8 +371,9 @@ void MotionLearner::judge(const TargetSegment& target) {
   HorizonErrors& errors = errors_[target.horizon];
   const HorizonErrors::Known earlier = errors.before(segment.start - std::max(horizon, kReady));
   const StudentT student = earlier.students[index(structure)];
-  const double squared = normalised_square(error_of(measured, expected.pose), expected.covariance);
-  const double nominal_squared = normalised_square(error_of(measured, nominal.pose), nominal.covariance);
+  const double directions = settings_.stream.heading_only ? 3.0 : 1.0;  // one is measured in place of three
+  const double squared = directions * normalised_square(error_of(measured, expected.pose), expected.covariance);
+  const double nominal_squared = directions * normalised_square(error_of(measured, nominal.pose), nominal.covariance);
   errors.learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});

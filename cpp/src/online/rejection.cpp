@@ -25,6 +25,8 @@ constexpr std::array<Words, kReasons> kWords{{
     {.name = "heading-ambiguous", .text = "between two poses the robot may have turned by more than half a turn"},
     {.name = "no-course",
      .text = "a position to which no chord leads: the robot hardly moved, or not as its inputs say"},
+    {.name = "no-fix", .text = "the satellite receiver says that it has no position"},
+    {.name = "poor-pose", .text = "between poses whose errors are far larger than those of the first source"},
 }};
 
 const Words& words(Reason reason) { return kWords[static_cast<std::size_t>(reason)]; }

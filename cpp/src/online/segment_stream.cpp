@@ -27,6 +27,9 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Stream stream) { return static_cast<std::size_t>(stream); }
 
+/// A standard deviation that can be one.
+double allowed(double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); }
+
 }  // namespace
 
 SegmentStream::SegmentStream(const StreamSettings& settings)
@@ -48,6 +51,7 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
     longest = std::max(longest, horizon);
   }
   keep_ += 2.0 * longest;
+  begin_others();
   if (settings.car) {
     car_.emplace(*settings.car, settings.sensor, settings.unknown_after);
   }
@@ -62,9 +66,11 @@ void SegmentStream::start_run() {
   wheels_.clear();
   tilts_.clear();
   gyro_.restart();
+  turned_until_.reset();
   gate_.restart();
   timer_.restart();
   wheel_timer_.restart();
+  std::ranges::for_each(others_, &PoseSource::restart);
   if (car_) {
     car_->start_run();
   }
@@ -73,6 +79,7 @@ void SegmentStream::start_run() {
 void SegmentStream::end_run() {
   advance(kNever);
   process_accepted(gate_.finish(gate_inputs(now_)));
+  finish_others();
   finish_cutters();
 }
 
@@ -142,12 +149,22 @@ void SegmentStream::push_attitude(double t, double roll, double pitch) {
 void SegmentStream::push_gyro(const YawRate& sample) {
   if (arrives(Stream::Gyro, sample.t, std::array{sample.rate})) {
     gyro_.push(sample);
+    if (settings_.heading_only) {
+      turn_on(sample);
+    }
   }
   advance(newest_ - settings_.latency);
 }
 
 bool SegmentStream::push_pose(const MeasuredPose& pose, bool learned) {
-  const auto allowed = [](double std) { return std >= 0.0 ? std : std::numeric_limits<double>::quiet_NaN(); };
+  if (pose.fix == PoseFix::None) {
+    reject(Stream::Pose, Reason::NoFix, pose.t);
+    return false;
+  }
+  return pose.source == 0 ? push_first(pose, learned) : push_other(pose, learned);
+}
+
+bool SegmentStream::push_first(const MeasuredPose& pose, bool learned) {
   const double yaw = pose.position ? 0.0 : pose.yaw;
   const std::array numbers{pose.x, pose.y, yaw, allowed(pose.std.xy), allowed(pose.std.yaw)};
   const bool taken = arrives(Stream::Pose, pose.t, numbers);
@@ -172,9 +189,11 @@ void SegmentStream::advance(double until) {
   while (!poses_.empty() && poses_.front().t <= until) {
     const MeasuredPose pose = poses_.front();
     poses_.pop_front();
+    advance_others(pose.t);
     process_wheels(pose.t);
     process_pose(pose);
   }
+  advance_others(until);
   process_wheels(until);
   trim();
 }
@@ -194,17 +213,22 @@ void SegmentStream::process_wheels(double until) {
 
 void SegmentStream::process_pose(const MeasuredPose& raw) {
   now_ = raw.t;
-  process_accepted(gate_.push(complete(raw, accuracy_), gate_inputs(now_)));
+  const MeasuredPose pose = complete(raw, accuracy_);
+  if (settings_.heading_only) {
+    process_accepted({.accepted = {pose}, .outliers = {}, .jumps = {}});
+  } else {
+    process_accepted(gate_.push(pose, gate_inputs(now_)));
+  }
 }
 
 /// With what is known beside it: how the robot was tilted, and how exact its like were.
-MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const {
+MeasuredPose SegmentStream::complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const {
   MeasuredPose pose = raw;
   if (const auto tilt = tilts_.known_at(raw.t, settings_.unknown_after)) {
     pose.gx = gravity_of(*tilt).gx;
     pose.gy = gravity_of(*tilt).gy;
   }
-  pose.std_ratio = accuracy.ratio(raw.std);
+  pose.std_ratio = accuracies[static_cast<std::size_t>(raw.fix)].ratio(raw.std);
   return pose;
 }
 
@@ -241,7 +265,8 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
     }
     if (settings_.from_commands && wheels_ever_) {
       emit_slip(slip_.push(*timed, wheels_));
-    } else if (settings_.from_commands && !pose.position) {  // a course lags behind the heading by half its chord
+    } else if (settings_.from_commands && !pose.position &&
+               !settings_.heading_only) {  // a course lags behind the heading by half its chord
       emit_twists(twists_.push(*timed, commands_));
     }
     emit_learned(learned_.push(*timed, inputs()));
@@ -260,6 +285,11 @@ void SegmentStream::finish_cutters() {
     }
   }
   emit_learned(learned_.finish(inputs()));
+  for (PoseSource& source : others_) {
+    for (const SegmentCut& cut : source.cutter.finish(inputs())) {
+      emit_other(source, cut, std::max(now_, cut.second.t));
+    }
+  }
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     emit_targets(i, targets_[i].finish(inputs()));
   }
@@ -283,6 +313,9 @@ DrivenSegment SegmentStream::driven(const SegmentCut& cut, bool by_wheels, doubl
                   .pose_std_ratio = {cut.first.std_ratio, cut.second.std_ratio},
                   .heading = cut.first.yaw};
   set_course(segment, cut);
+  if (settings_.heading_only) {
+    set_turn(segment);
+  }
   stand_on_ground(segment, horizon.has_value());
   if (!by_wheels) {
     set_actuator_state(segment);
@@ -316,6 +349,9 @@ void SegmentStream::trim() {
   begun = std::min(begun, twists_.begins());
   for (const SegmentCutter* cutter : {&learned_, &slip_, &wheel_cutter_}) {
     begun = std::min(begun, cutter->begins());
+  }
+  for (const PoseSource& source : others_) {
+    begun = std::min({begun, source.cutter.begins(), source.waiting.empty() ? begun : source.waiting.front().t});
   }
   for (const SegmentCutter& cutter : targets_) {
     begun = std::min(begun, cutter.begins());

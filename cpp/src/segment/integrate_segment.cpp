@@ -2,6 +2,7 @@
 // One pass over the drive steps of a segment: poses, and sums that give the derivative of the last pose.
 #include "slipwise/segment/integrate_segment.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -15,7 +16,8 @@
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;  // [s] of stamps
+constexpr double kRounding = 1e-9;        // [s] of stamps
+constexpr Eigen::Index kClockOffset = 4;  // its place among the parameters of an actuator
 
 /// One column per learned parameter of the actuator.
 using ActuatorColumns = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kActuatorParameters>;
@@ -25,8 +27,30 @@ ActuatorSpan window_of(const Segment& segment) {
   return {.start = path_start(segment), .end = segment.end, .initial = segment.initial, .known = segment.known};
 }
 
+bool calibrated_apart(const Segment& segment) { return segment.source && segment.source->own_calibration; }
+
+ActuatorModel actuator_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
+                          const Segment& segment) {
+  ActuatorModel actuator = model.actuator(parameters);
+  if (calibrated_apart(segment)) {
+    actuator.clock_offset = 0.0;
+  }
+  return actuator;
+}
+
+/// What measures the segment says nothing of the clock and the sensor that the model learns.
+void clear_calibration(const MotionModel& model, Eigen::Matrix<double, 3, Eigen::Dynamic>& by_parameter) {
+  by_parameter.rightCols(model.extrinsics_size()).setZero();
+  const auto& places = model.actuator_places();
+  const auto clock = std::ranges::find(places, kClockOffset);
+  if (clock != places.end()) {
+    by_parameter.col(model.slip_size() + (clock - places.begin())).setZero();
+  }
+}
+
 Pose2 sensor_of(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters, const Segment& segment) {
-  return model.learned().sensor_extrinsics ? model.sensor_extrinsics(parameters) : segment.sensor;
+  return model.learned().sensor_extrinsics && !calibrated_apart(segment) ? model.sensor_extrinsics(parameters)
+                                                                         : segment.sensor;
 }
 
 /// What pulls the robot amid a step that begins at `theta`, and where slip is `by_heading`, its heading there.
@@ -47,6 +71,11 @@ class GrowingPath {
     path_.times.push_back(path_start(segment));
     path_.poses.emplace_back();
     path_.pose_std_ratio = segment.pose_std_ratio;
+    if (segment.source) {
+      path_.noise_factor = segment.source->noise_factor;
+      path_.own_noise = segment.source->own_noise;
+      path_.heading_std = segment.source->heading_only ? segment.gyro_std : std::nullopt;
+    }
   }
 
   const Eigen::Matrix2d& heading() const { return heading_; }
@@ -249,7 +278,7 @@ template <bool kAll, class See>
 SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                 const InputHistory& inputs, const Segment& segment, const See& see) {
   model.check(parameters);
-  const ActuatorModel actuator = model.actuator(parameters);
+  const ActuatorModel actuator = actuator_of(model, parameters, segment);
   const bool by_actuator = kAll && model.actuator_size() > 0;
   const bool by_heading = model.basis().by_heading();
   const auto alpha = parameters.head(model.slip_size());
@@ -294,6 +323,12 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   if (course) {
     by_parameter = of_course(finished, at_points, by_parameter.cols());
   }
+  if (finished.heading_std) {
+    by_parameter.topRows<2>().setZero();
+  }
+  if (kAll && calibrated_apart(segment)) {
+    clear_calibration(model, by_parameter);
+  }
   const Pose2 predicted = finished.sensor_motion();
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
@@ -317,6 +352,9 @@ double SegmentPath::course_turn() const {
 }
 
 Pose2 SegmentPath::sensor_motion() const {
+  if (heading_std) {
+    return {0.0, 0.0, poses.back().theta};
+  }
   return course ? course_motion(course_positions(), *course, course_turn())
                 : slipwise::sensor_motion(poses.back(), sensor);
 }
@@ -334,7 +372,7 @@ SegmentPath integrate_segment(const MotionModel& model, const Eigen::Ref<const E
   Eigen::VectorXd alpha = parameters.head(model.slip_size());
   const bool by_heading = model.basis().by_heading();
   double travelled = 0.0;
-  ActuatorSteps drive = actuator_steps(inputs, model.actuator(parameters), window_of(segment));
+  ActuatorSteps drive = actuator_steps(inputs, actuator_of(model, parameters, segment), window_of(segment));
   const std::optional<CoursePlaces> course = cut_steps(drive, segment, segment.ground || by_heading || !ahead.empty());
   GrowingPath path(segment, drive.steps.size());
   std::vector<double> features(model.basis().size());
@@ -373,7 +411,7 @@ std::vector<SegmentLinearization> linearize_beginnings(const MotionModel& model,
                                                        const Eigen::Ref<const Eigen::VectorXd>& parameters,
                                                        const InputHistory& inputs, const Segment& segment,
                                                        std::size_t parts) {
-  const ActuatorModel actuator = model.actuator(parameters);
+  const ActuatorModel actuator = actuator_of(model, parameters, segment);
   const Pose2 sensor = sensor_of(model, parameters, segment);
   const double part = (segment.end - segment.start) / static_cast<double>(parts);
   double next = segment.start + part;

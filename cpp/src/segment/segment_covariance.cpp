@@ -167,9 +167,22 @@ Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen
   return root.asDiagonal() * covariance * root.asDiagonal();
 }
 
+Eigen::Matrix3d expected_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise) {
+  if (path.heading_std) {  // of the position nothing is measured, and nothing may be learned
+    const double turn = slip_covariance(path, noise)(2, 2) + *path.heading_std * *path.heading_std;
+    return Eigen::Vector3d(1.0, 1.0, turn).asDiagonal();
+  }
+  const Eigen::Vector3d factor(path.noise_factor[0], path.noise_factor[1], path.noise_factor[2]);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(path, measured, noise), factor);
+}
+
+Eigen::Vector3d scale_for(const SegmentPath& path, const Eigen::Vector3d& scale) {
+  return path.own_noise ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : scale;
+}
+
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale) {
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(path, measured, noise), scale);
+  return scaled_covariance(expected_noise(path, measured, noise), scale_for(path, scale));
 }
 
 }  // namespace slipwise

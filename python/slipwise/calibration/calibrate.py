@@ -34,6 +34,7 @@ from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
+from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Log, has_course
 from slipwise.models import schema
 from slipwise.models.model import Model
@@ -98,7 +99,7 @@ def calibrate_by(
         judged.verdict,
         learned.history,
         log.left_out + windows.left_out,
-        log.notes,
+        (*log.notes, *(source.sentence() for source in learned.sources)),
         smooth_windows(learned.kept, windows, settings) if smooth else None,
         learned.predictions if settings.estimator == AVERAGE else (),
     )
@@ -165,6 +166,7 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.bases,
         learned.limits,
         learned.car,
+        learned.sources,
     )
 
 
@@ -249,7 +251,8 @@ def judged_on(
         wheels_advice=log.advice.get("wheel", ""),
         positions=has_course(log.runs),
     )
-    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
+    facts = LogFacts(found, shortage, input_name, has_course(log.runs), gyro_alone(log.runs))
+    verdict = give_verdict(judgement, known, facts)
     if not any(each.spoils for each in found):
         verdict = replace(verdict, force=force_words(learned.identifiable, settings))
         kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from slipwise import _core
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.source_tables import core_sources
 from slipwise.errors import SettingsError
 
 STRAIGHT_SIDE_SLIP = 0.03  # rad, standard deviation of a side slip that positions do not see
@@ -24,6 +25,8 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
     remember: bool = False,
     positions: bool = False,
     car: _core.CarPrior | None = None,
+    sources: Sequence[str] = (),
+    gyro_alone: bool = False,
 ) -> _core.LearnerSettings:
     """Return the core's settings.
 
@@ -34,9 +37,12 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         remember: keep surfaces that were driven on, and recall them.
         positions: headings are courses of positions, which do not tell a side slip that is always the same.
         car: what is taken of a car whose commands are throttle and steering, before it drives.
+        sources: names of the sources of poses, where sources or fixes are told apart; the first's first.
+        gyro_alone: no poses come, and turns of a gyro alone are learned from.
 
     Raises:
-        SettingsError: a basis or a term is unknown, or a force is to be learned beside surfaces.
+        SettingsError: a basis or a term is unknown, a force is to be learned beside surfaces, or settings name a
+            source that is not among them.
     """
     core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
     from_commands = input_name == "command"
@@ -44,6 +50,9 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         settings.segment_length(input_name), from_commands=from_commands
     )
     stream.whole_frames, stream.horizons = True, list(horizons)
+    stream.heading_only = gyro_alone
+    if sources:
+        stream.sources = core_sources(sources, settings.pose_sources, settings.prior.clock_offset_std)
     hypotheses.bases = [settings.body_force.added_to(basis) for basis in settings.bases()]
     hypotheses.dynamics = from_commands
     hypotheses.clock_offset, hypotheses.sensor_extrinsics = (

@@ -16,9 +16,11 @@ from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
+from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Run, has_course
-from slipwise.segments import car_prior, recording_of
+from slipwise.segments import car_prior, recording_of, source_names
 
 Floats = NDArray[np.float64]
 
@@ -40,6 +42,7 @@ class LearnedLog:
     seconds: float  # of all segments learned
     limits: _core.LimitSearch | None = None  # what was found of the actuator's limits, where it was asked
     car: _core.CarCurves | None = None  # where commands are throttle and steering
+    sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,8 @@ def new_learner(
         remember=remember,
         positions=has_course(runs),
         car=car_prior(runs),
+        sources=source_names(runs),
+        gyro_alone=gyro_alone(runs),
     )
     return _core.MotionLearner(core)
 
@@ -157,6 +162,7 @@ def learned_of(
         seconds=model.seconds,
         limits=None if found is None else found.search,
         car=model.car,
+        sources=learned_sources(learner, source_names(run.run for run in drive)),
     )
 
 
@@ -190,6 +196,7 @@ def pushed(
         drive: the runs, in the order of time.
         cues: of each run, when somebody said what the surface is; the learner is told at that time.
     """
+    sources = source_names(run.run for run in drive) if learner.sources else ()
     for place, run in enumerate(drive):
         learner.start_run()
         said = dict(cues[place]) if place < len(cues) else {}
@@ -198,7 +205,7 @@ def pushed(
             if since in said:
                 _tell(learner, said[since])
             until = float(edges[k]) if k < len(edges) else np.inf
-            learner.push(recording_of(run.run, since, until))
+            learner.push(recording_of(run.run, since, until, sources))
             yield (place + (k + 1) / (len(edges) + 1)) / len(drive)
     learner.end_run()
     yield 1.0
@@ -247,7 +254,7 @@ def _predictions(
 ) -> Predictions:
     run, learned_until = columns.run, columns.learned_until
     if drive and len(run):
-        first = np.array([min(float(each.inputs.t[0]), float(each.run.poses.t[0])) for each in drive])
+        first = np.array([min(float(each.inputs.t[0]), each.begin) for each in drive])
         learned_until = np.maximum(np.minimum(first[run], columns.start), learned_until)
         run = np.array([each.index for each in drive], dtype=np.int64)[run]
     return Predictions(

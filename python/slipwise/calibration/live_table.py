@@ -56,6 +56,10 @@ class LiveTable(_Table):
     override_topic: str | None = None  # std_msgs/Bool: an operator drives
     input: Literal["command", "wheel"] | None = None
     positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so
+    gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from; a replayed log says so
+    sources: list[
+        Annotated[str, Field(min_length=1)]
+    ] = []  # of poses, where there are several: the first first
     model: str | None = None  # start model
     attitude: bool = False  # poses have a true roll and pitch: terms of gravity are tried
     memory: bool | str = False  # remember surfaces; a model file: begin with those in it

@@ -15,6 +15,7 @@ from slipwise.logs.unpacking import MOST_UNPACKED
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 Radians = Annotated[float, Field(allow_inf_nan=False)]
 Factors = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
+Several = Annotated[list[str], Field(min_length=1)]
 Seconds = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -24,7 +25,7 @@ class LogTable(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     command_topic: str | None = None
-    pose_topic: str | None = None
+    pose_topic: str | Several | None = None  # several: sources beside the first
     wheel_topic: str | None = None
     imu_topic: str | None = None
     pose_frame: str | None = None
@@ -40,7 +41,7 @@ class LogTable(BaseModel):
     pose_yaw_offset: Radians = 0.0  # rad
     most_unpacked: Positive = MOST_UNPACKED  # MiB that a compressed table, or a chunk of a bag, may unpack to
     most_fetched: Positive = MOST_FETCHED  # MiB that a log on a server may have
-    poses: str | None = None  # a file beside the log
+    poses: str | Several | None = None  # a file beside the log
     pose_clock_offset: Seconds | Literal["auto"] | None = None  # s
     start: Seconds | None = None  # s
     end: Seconds | None = None  # s
@@ -52,8 +53,14 @@ class LogTable(BaseModel):
         for name in ("left_joints", "right_joints", "command_scale", "wheel_scale"):
             if name in own:
                 own[name] = tuple(own[name])
+        for name, further in (("poses", "other_poses"), ("pose_topic", "other_pose_topics")):
+            if isinstance(own.get(name), list):
+                own[name], *others = own[name]
+                own |= {further: tuple(others)} if name not in given else {}
         if "poses" in own:
             own["poses"] = Path(own["poses"])
+        if "other_poses" in own:
+            own["other_poses"] = tuple(map(Path, own["other_poses"]))
         if "columns" in given:
             given = given | {"columns": own.get("columns", {}) | given["columns"]}
         return LogOptions(**({"unknown_after": unknown_after} | own | given))

@@ -16,6 +16,7 @@ from slipwise.calibration.learner import Posterior
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.result import History, Verdict
 from slipwise.calibration.settings import Settings
+from slipwise.calibration.source_knowledge import LearnedSource
 from slipwise.models import schema
 from slipwise.models.car import car_section
 from slipwise.models.limits import limits_section
@@ -34,6 +35,7 @@ class Learned:
     bases: tuple[str, ...]
     limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
     car: _core.CarCurves | None = None  # where commands are throttle and steering
+    sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
 
 
 @dataclass(frozen=True, eq=False)

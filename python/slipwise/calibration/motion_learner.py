@@ -18,6 +18,7 @@ from slipwise.calibration.learned_log import found_limits, kept_posterior, predi
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
 from slipwise.calibration.limit_words import advice_on_limits
+from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import (
     Judged,
     Learned,
@@ -31,6 +32,7 @@ from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
 from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.sloping_ground import with_gravity
+from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
 from slipwise.calibration.verdict import LogFacts, give_verdict, identified
 from slipwise.errors import SettingsError
@@ -44,14 +46,14 @@ if TYPE_CHECKING:
 _LENGTH_BYTES = 8  # of what stands before the core's bytes
 
 
-class MotionLearner(RememberedSurfaces):
+class MotionLearner(Measurements, RememberedSurfaces):
     """Takes measurements as they come; each stream in the order of its stamps.
 
     Streams may be late relative to each other by up to half a second. What is wrong is rejected, counted
     and said by `events`; no push raises for what was measured.
     """
 
-    def __init__(
+    def __init__(  # noqa: PLR0913 (what will come is said by its sort)
         self,
         input: str = "command",
         settings: Settings | None = None,
@@ -59,6 +61,8 @@ class MotionLearner(RememberedSurfaces):
         remember: bool = False,
         positions: bool = False,
         attitude: bool = False,
+        sources: Sequence[str] = (),
+        gyro_alone: bool = False,
     ) -> None:
         """Start with nothing learned.
 
@@ -69,10 +73,15 @@ class MotionLearner(RememberedSurfaces):
             positions: positions will come (`push_position`), and no poses.
             attitude: roll and pitch will be pushed: `auto` tries terms of gravity too, as `calibrate` does of
                 a log that has them. Learning takes about half as long again.
+            sources: names of the sources of poses, where there are several or fixes are told apart. The first
+                is the one that predictions start from and are judged by; one may be enough.
+            gyro_alone: no poses will come: turns of a gyro (`push_gyro`) are all that is learned from.
 
         Raises:
-            SettingsError: there is no such input, or a basis or a term is unknown.
+            SettingsError: there is no such input, a basis or a term is unknown, or two sources have one name.
         """
+        if len(set(sources)) < len(sources):
+            raise SettingsError(f"two sources have one name: {', '.join(sources)}", advice="name each apart")
         if input not in ("command", "wheel"):
             raise SettingsError(f"unknown input '{input}'", advice="use 'command' or 'wheel'")
         settings = settings or Settings()
@@ -85,8 +94,12 @@ class MotionLearner(RememberedSurfaces):
                 remember=remember,
                 positions=positions,
                 car=car_of(self._settings),
+                sources=sources,
+                gyro_alone=gyro_alone,
             )
         )
+        self._gyro_alone = gyro_alone
+        self._sources = {name: number for number, name in enumerate(sources)}
         self._positions = positions
         self._runs: list[str] = []
         self._wheels = False
@@ -97,82 +110,6 @@ class MotionLearner(RememberedSurfaces):
         """Begin a run: nothing is joined across runs; what was learned stays."""
         self._name_run(name)
         self._core.start_run()
-
-    def push_command(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
-        """Take a command: its stamp [s], speeds [m/s] and yaw rate [rad/s].
-
-        Of a car commanded by throttle and steering (`vehicle` of [log]) v is the throttle and omega the
-        steering, both in [-1, 1].
-        """
-        self._core.push_command(t, v, omega, vy)
-
-    def push_wheels(self, t: float, v: float, omega: float, vy: float = 0.0) -> None:
-        """Take the twist that the wheels measure: its stamp [s], speeds [m/s] and yaw rate [rad/s]."""
-        self._wheels = True
-        self._core.push_wheels(t, v, omega, vy)
-
-    def push_pose(  # noqa: PLR0913 (a measurement has as many numbers)
-        self,
-        t: float,
-        x: float,
-        y: float,
-        yaw: float,
-        std_xy: float | None = None,
-        std_yaw: float | None = None,
-        frame: int = 0,
-        *,
-        learned: bool = True,
-    ) -> None:
-        """Take a measured pose: its stamp [s], x, y [m], yaw [rad]; comparable in one frame alone.
-
-        Args:
-            t: stamp [s].
-            x: position [m].
-            y: position [m].
-            yaw: heading [rad].
-            std_xy: standard deviation of x and of y [m], where the sensor says it: how much this pose counts
-                beside others. How large errors are on the whole is learned.
-            std_yaw: the same of the heading [rad].
-            frame: poses of different frames are not compared.
-            learned: whether slip may be learned from it; else it serves odometry alone, and nothing is
-                joined across it.
-        """
-        self._core.push_pose(t, x, y, yaw, frame, std_xy or 0.0, std_yaw or 0.0, learned)
-
-    def push_position(  # noqa: PLR0913 (a measurement has as many numbers)
-        self,
-        t: float,
-        x: float,
-        y: float,
-        std_xy: float | None = None,
-        frame: int = 0,
-        *,
-        learned: bool = True,
-    ) -> None:
-        """Take a measured position without a heading, such as that of a GNSS antenna.
-
-        Args:
-            t: stamp [s].
-            x: position [m].
-            y: position [m].
-            std_xy: standard deviation of x and of y [m], where the sensor says it.
-            frame: positions of different frames are not compared.
-            learned: whether slip may be learned from it; else nothing is joined across it.
-
-        Raises:
-            SettingsError: the learner was made for poses.
-        """
-        if not self._positions:
-            raise SettingsError("this learner expects poses", advice="make it with positions=True")
-        self._core.push_position(t, x, y, frame, std_xy or 0.0, learned)
-
-    def push_gyro(self, t: float, rate: float) -> None:
-        """Take a yaw rate [rad/s], counter-clockwise, at a stamp [s]: turns between positions are its own."""
-        self._core.push_gyro(t, rate)
-
-    def push_attitude(self, t: float, roll: float, pitch: float) -> None:
-        """Take roll and pitch [rad] at a stamp [s]; by REP-103 nose down is positive pitch."""
-        self._core.push_attitude(t, roll, pitch)
 
     def events(self) -> list[Event]:
         """Return what happened since the last call."""
@@ -273,6 +210,11 @@ class MotionLearner(RememberedSurfaces):
         return self._positions
 
     @property
+    def sources(self) -> tuple[LearnedSource, ...]:
+        """What is known of each source of poses, where there are several."""
+        return learned_sources(self._core, tuple(self._sources))
+
+    @property
     def settings(self) -> Settings:
         """What is learned and how."""
         return self._settings
@@ -299,7 +241,7 @@ class MotionLearner(RememberedSurfaces):
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         judgement = judgement_of(learned)
         known = identified(learned.identifiable, wheels_logged=self._wheels, positions=self._positions)
-        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
+        verdict = give_verdict(judgement, known, self._facts())
         kept = learned.kept.limits is not None
         of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)
         verdict = replace(verdict, advice=(*verdict.advice, *of_limits))
@@ -314,6 +256,9 @@ class MotionLearner(RememberedSurfaces):
         )
         content = self._remembered(model_content(learned, Judged(judgement, verdict), facts), learned)
         return model_of(content, Log(()), ()), judgement
+
+    def _facts(self) -> LogFacts:
+        return LogFacts(input_name=self._input, positions=self._positions, gyro_alone=self._gyro_alone)
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:
         """Return the content with the surfaces, where these are remembered."""
@@ -338,6 +283,7 @@ class MotionLearner(RememberedSurfaces):
             tuple(basis.name for basis in self._settings.bases()),
             None if found is None else found.search,
             model.car,
+            self.sources,
         )
 
     def save(self) -> bytes:
@@ -348,6 +294,8 @@ class MotionLearner(RememberedSurfaces):
             "runs": self._runs,
             "wheels": self._wheels,
             "positions": self._positions,
+            "sources": list(self._sources),
+            "gyro_alone": self._gyro_alone,
             "remember": self._remember,
             "start": None if self._start is None else self._start.to_yaml(),
         }
@@ -373,6 +321,8 @@ class MotionLearner(RememberedSurfaces):
                 settings,
                 remember=bool(facts.get("remember")),
                 positions=bool(facts["positions"]),
+                sources=[str(name) for name in facts.get("sources", [])],
+                gyro_alone=bool(facts.get("gyro_alone")),
             )
             if facts.get("start"):
                 learner._start = parse_model(facts["start"], where="saved model")

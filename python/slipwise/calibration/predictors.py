@@ -183,8 +183,8 @@ def _learned_until(
 ) -> Floats:
     """The latest time of the target's run at which something that its prediction uses was measured, [N] s."""
     if not predictor.causal:
-        return np.array([run.run.poses.t[-1] for run in targets.drive])[targets.position]
-    begin = np.array([min(float(run.inputs.t[0]), float(run.run.poses.t[0])) for run in targets.drive])
+        return np.array([run.end for run in targets.drive])[targets.position]
+    begin = np.array([min(float(run.inputs.t[0]), run.begin) for run in targets.drive])
     until = np.minimum(begin[targets.position], targets.start)
     for windows, counts in used:
         last = np.maximum(counts - 1, 0)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.errors import LogError, SettingsError
+from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import HeldSum
 from slipwise.logs.log import Inputs, LeftOut, Log, Run
 from slipwise.segments import WindowRules, cut_windows
@@ -32,6 +33,16 @@ class PreparedRun:
     inputs: Inputs
     wheels: Inputs | None  # measured at the start of a prediction from commands
     input_name: str = "command"  # or "wheel": of `inputs`
+
+    @property
+    def begin(self) -> float:
+        """Stamp of the first pose; without poses, of the first input [s]."""
+        return float(self.run.poses.t[0]) if len(self.run.poses) else self.run.span[0]
+
+    @property
+    def end(self) -> float:
+        """Stamp of the last pose; without poses, of the last input [s]."""
+        return float(self.run.poses.t[-1]) if len(self.run.poses) else self.run.span[1]
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +102,7 @@ class WindowSet:
     @cached_property
     def _clocks(self) -> Ints:
         """Number of each run's clock, [runs]."""
-        runs = [run.run for run in self.drive]
-        restarts = [earlier.poses.t[-1] > later.poses.t[0] for earlier, later in itertools.pairwise(runs)]
+        restarts = [earlier.end > later.begin for earlier, later in itertools.pairwise(self.drive)]
         return np.cumsum([0, *restarts], dtype=np.int64)
 
 
@@ -108,9 +118,11 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
             f"unknown input '{input_name}'", where="--input", advice=f"use {' or '.join(INPUT_NAMES)}"
         )
     drive = []
+    alone = gyro_alone(log.runs)
     for index, run in enumerate(log.runs):
         inputs = run.commands if input_name == "command" else run.wheels
-        if inputs is None or len(inputs) == 0 or len(run.poses) < 2:
+        measured = len(gyro_rows(run)) if alone else len(run.poses)
+        if inputs is None or len(inputs) == 0 or measured < 2:
             continue
         wheels = run.wheels if input_name == "command" else None
         drive.append(PreparedRun(index, run, inputs, wheels, input_name))
@@ -121,8 +133,8 @@ def prepare_run(log: Log, input_name: str) -> tuple[PreparedRun, ...]:
 
 def _in_time(drive: list[PreparedRun]) -> list[PreparedRun]:
     """Order runs by their start where all stamps are times of day: files may come in any order."""
-    if all(float(run.run.poses.t[0]) > EPOCH_STAMPS for run in drive):
-        return sorted(drive, key=lambda run: float(run.run.poses.t[0]))
+    if all(run.begin > EPOCH_STAMPS for run in drive):
+        return sorted(drive, key=lambda run: run.begin)
     return drive
 
 

@@ -14,6 +14,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationErr
 from slipwise import _core
 from slipwise.calibration.live_table import LiveTable
 from slipwise.calibration.log_table import LogTable
+from slipwise.calibration.source_tables import PoseSourceTable
 from slipwise.errors import SettingsError
 from slipwise.files import read_whole
 from slipwise.logs.options import LogOptions
@@ -207,6 +208,7 @@ class Settings(_Section):
     smoothing: SmoothingTable = SmoothingTable()
     vehicle: VehicleTable = VehicleTable()
     sensor_extrinsics: SensorExtrinsicsTable = SensorExtrinsicsTable()
+    pose_sources: list[PoseSourceTable] = []  # beside the first
     log: LogTable = LogTable()
     live: LiveTable = Field(LiveTable(), exclude=True)  # says nothing of how a log is learned
 

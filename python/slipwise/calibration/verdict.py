@@ -25,6 +25,10 @@ POSITIONS_ONLY = (
     "Only positions were measured: headings are courses of the path, their errors are errors of the course, "
     "and a side slip that is always the same is not seen."
 )
+YAW_RATES_ONLY = (
+    "Only yaw rates were measured: slip is learned of turns alone, and predicted positions are those that "
+    "the inputs say, along the learned heading."
+)
 FEW = 20  # held-out segments; a gain that shows in fewer may be chance
 
 
@@ -49,6 +53,7 @@ class LogFacts:
     shortage: tuple[str, ...] = ()  # why there are so few segments, and what to do, where they are too few
     input_name: str = "command"
     positions: bool = False  # only positions were measured
+    gyro_alone: bool = False  # no poses were measured, but yaw rates
 
 
 def identified(
@@ -70,7 +75,8 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     reservations = _reservations(judgement, facts)
     sentences = [fault]
     if not contradicted and not judgement.too_short:
-        sentences += [_figures(judgement.held_out), *reservations, "" if fault else _unknown(known)]
+        figures = _turns(judgement.held_out) if facts.gyro_alone else _figures(judgement.held_out)
+        sentences += [figures, *reservations, "" if fault else _unknown(known)]
     advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
     return Verdict(
         not fault,
@@ -115,7 +121,7 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
     ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
-    courses = POSITIONS_ONLY if facts.positions else ""
+    courses = POSITIONS_ONLY if facts.positions else YAW_RATES_ONLY if facts.gyro_alone else ""
     return tuple(sentence for sentence in (honest, *partly, courses) if sentence)
 
 
@@ -124,6 +130,15 @@ def _figures(held_out: HeldOut) -> str:
         f"The learned model's mean error after {held_out.horizon:g} s is {held_out.position:.3g} m and "
         f"{held_out.heading:.3g} rad, the kinematic baseline's {held_out.baseline_position:.3g} m and "
         f"{held_out.baseline_heading:.3g} rad ({held_out.segments} held-out segments)."
+    )
+
+
+def _turns(held_out: HeldOut) -> str:
+    """The figures of a log without poses."""
+    return (
+        f"The learned model's mean heading error after {held_out.horizon:g} s is {held_out.heading:.3g} rad, "
+        f"the kinematic baseline's {held_out.baseline_heading:.3g} rad "
+        f"({held_out.segments} held-out segments)."
     )
 
 

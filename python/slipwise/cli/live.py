@@ -146,6 +146,10 @@ def live(
         robot = open_robot(chosen, log_options, source, say=shown.say)
         if robot.positions:
             chosen = live_settings(chosen, {"positions": True})
+        if robot.gyro_alone:
+            chosen = live_settings(chosen, {"gyro_alone": True})
+        if robot.sources:
+            chosen = live_settings(chosen, {"sources": list(robot.sources)})
         chosen = for_the_ground(chosen, robot.log)
         watchers = watchers_for(shown, chosen.live)
         built = build_node(robot.transport, robot.input_name, chosen, watchers=watchers, run=robot.run)

@@ -31,6 +31,8 @@ class Robot:
     run: str | None  # name of the run that begins; None: the transport says
     log: Log | None = None  # that is replayed
     positions: bool = False  # poses come without a heading
+    sources: tuple[str, ...] = ()  # of poses, where they are told apart
+    gyro_alone: bool = False  # no poses come, and turns of a gyro are learned from
 
 
 @dataclass(frozen=True)
@@ -152,17 +154,18 @@ def _replayed(table: LiveTable, options: LogOptions, replay: Path, rate: float) 
     from slipwise.calibration.prepared_run import choose_input
     from slipwise.live.replay import Replay
     from slipwise.logs import open_log
+    from slipwise.logs.gyro import gyro_alone
     from slipwise.logs.log import has_course
 
     log = open_log(replay, options=options)
     input_name = table.input or choose_input(log)
-    return Robot(
-        Replay(log, input_name, rate=rate, label=table.terrain), input_name, None, log, has_course(log.runs)
-    )
+    replayed = Replay(log, input_name, rate=rate, label=table.terrain)
+    alone = gyro_alone(log.runs)
+    return Robot(replayed, input_name, None, log, has_course(log.runs), replayed.sources, alone)
 
 
 def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> Robot:
-    from slipwise.live.ros_roles import find_roles, only_positions
+    from slipwise.live.ros_roles import find_roles, only_positions, source_topics, with_oriented_imu
     from slipwise.live.ros_transport import CueTopics, RosTransport
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
@@ -173,6 +176,7 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     try:
         roles = find_roles(wire, options, say, own=f"/{table.name}")
+        roles = with_oriented_imu(wire, roles, say)
         for note in roles.guessed:
             say(note)
         input_name = table.input or ("command" if roles.command is not None else "wheel")
@@ -184,7 +188,14 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
     except BaseException:
         wire.close()
         raise
-    return Robot(transport, input_name, "live", positions=only_positions(roles))
+    return Robot(
+        transport,
+        input_name,
+        "live",
+        positions=only_positions(roles),
+        sources=source_topics(roles),
+        gyro_alone=roles.pose is None,
+    )
 
 
 def _results(path: Path | None) -> Any:

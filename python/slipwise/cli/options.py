@@ -98,11 +98,11 @@ Duration = Annotated[float, typer.Option(metavar="SECONDS", help="How long to dr
 Seed = Annotated[int, typer.Option(metavar="N", help="Of the drive and of the pose noise.")]
 Runs = Annotated[Path, typer.Option(metavar="DIR", help="Where run folders are kept.")]
 
-_LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
+_LOG_OPTIONS: dict[str, tuple[Any, str, str]] = {
     "pose_topic": (
-        str,
+        list[str],
         "TOPIC",
-        "Measured pose: Odometry, Pose[WithCovariance]Stamped, NavSatFix, TFMessage.",
+        "Measured pose: Odometry, Pose[WithCovariance]Stamped, NavSatFix, TFMessage. Again for others.",
     ),
     "command_topic": (
         str,
@@ -117,7 +117,7 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     "imu_topic": (
         str,
         "TOPIC",
-        "Imu: orientation beside a NavSatFix, roll and pitch beside planar poses.",
+        "Imu: orientation or yaw rate beside a NavSatFix, tilt beside poses; alone with --pose-topic none.",
     ),
     "pose_frame": (str, "FRAME", "TF: the fixed frame, such as map."),
     "child_frame": (str, "FRAME", "TF: the robot's frame, such as base_link."),
@@ -144,7 +144,11 @@ _LOG_OPTIONS: dict[str, tuple[type, str, str]] = {
     ),
     "most_unpacked": (float, "MIB", "What a compressed table or chunk may unpack to; default 512."),
     "most_fetched": (float, "MIB", "What a log on a server may have; default 4096."),
-    "poses": (Path, "FILE", "Measured poses in a file beside the log: TUM, KITTI, a table, GPX, NMEA, .pos."),
+    "poses": (
+        list[Path],
+        "FILE",
+        "Measured poses in a file beside the log: TUM, KITTI, a table, GPX, NMEA, .pos. Again for others.",
+    ),
     "pose_clock_offset": (
         str,
         "SECONDS",
@@ -196,7 +200,7 @@ def chosen_settings(
     return settings
 
 
-def _parameter(name: str, kind: type, metavar: str, text: str) -> inspect.Parameter:
+def _parameter(name: str, kind: Any, metavar: str, text: str) -> inspect.Parameter:
     option = typer.Option(
         f"--{name.replace('_', '-')}", metavar=metavar, help=text, show_default=False, rich_help_panel="Log"
     )
@@ -211,6 +215,10 @@ def _log_options(given: dict[str, Any], settings: Path | None) -> LogOptions:
     from slipwise.logs.column_names import parse_columns
 
     chosen: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+    for name, further in (("poses", "other_poses"), ("pose_topic", "other_pose_topics")):
+        if name in chosen:
+            chosen[name], *others = chosen[name]
+            chosen |= {further: tuple(others)} if others else {}
     for name in ("left_joints", "right_joints"):
         if name in chosen:
             chosen[name] = tuple(part for part in chosen[name].split(",") if part)

@@ -101,7 +101,14 @@ def build_node(
 def _new_learner(input_name: str, settings: Settings, before: Model | None, *, wheels: bool) -> MotionLearner:
     """A learner that knows nothing, or a robot and its surfaces."""
     live = settings.live
-    learner = MotionLearner(input_name, settings, remember=bool(live.memory), positions=live.positions)
+    learner = MotionLearner(
+        input_name,
+        settings,
+        remember=bool(live.memory),
+        positions=live.positions,
+        sources=live.sources,
+        gyro_alone=live.gyro_alone,
+    )
     if before is not None:
         learner.begin_with(before, wheels=wheels)
     return learner

@@ -37,6 +37,7 @@ class CacheKey:
         """Return the key of a vehicle that learns from an input with settings."""
         text = json.dumps(settings.model_dump(mode="json", exclude={"log"}), sort_keys=True)
         text += "with a memory of surfaces" if settings.live.memory else ""
+        text += "".join(f" source {name}" for name in settings.live.sources)
         digest = sha256(text.encode()).hexdigest()[:16]
         return cls(vehicle, input_name, settings.basis, SCHEMA_VERSION, digest)
 

@@ -63,7 +63,7 @@ class Gates:
         if isinstance(sample, Override):
             self._take_override(sample)
         elif isinstance(sample, Pose):
-            if self._poses.take(sample.t, (sample.x, sample.y)):
+            if not sample.source and self._poses.take(sample.t, (sample.x, sample.y)):
                 self._close("two sources speak on the pose topic", sample.t, 0.0)
         elif not isinstance(sample, Gyro):
             self._take_twist(sample)

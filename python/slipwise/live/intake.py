@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.live.clock_watch import Clock, ClockWatch, Stamped
@@ -92,6 +94,12 @@ class Intake:
             self._push_pose(sample)
 
     def _push_pose(self, pose: Pose) -> None:
+        if not self._learner.knows_source(pose.source):
+            self._said.count(f"poses of '{pose.source}', which is none of the sources of [live]")
+            return
+        if not self._learner.is_first(pose.source):
+            self._push_other(pose)
+            return
         self.newest_pose = pose
         self._follow_gates(pose.t)
         learned = not self.why_not
@@ -100,11 +108,32 @@ class Intake:
         if pose.roll is not None and pose.pitch is not None:
             self._learner.push_attitude(pose.t, pose.roll, pose.pitch)
         number = self._frames.setdefault(pose.frame, len(self._frames))
-        if self._learner.positions:
-            self._learner.push_position(pose.t, pose.x, pose.y, pose.std_xy, number, learned=learned)
+        self._learn(pose, number, learned=learned)
+
+    def _push_other(self, pose: Pose) -> None:
+        """A further source: where the gates are closed nothing is learned from it either."""
+        number = self._frames.setdefault(f"{pose.source} {pose.frame}", len(self._frames))
+        self._learn(pose, number, learned=not self._gates.why(pose.t))
+
+    def _learn(self, pose: Pose, number: int, *, learned: bool) -> None:
+        learner, source = self._learner, pose.source
+        fix = pose.fix if learner.tells_sources else ""
+        if math.isnan(pose.yaw) or (learner.positions and not source):
+            learner.push_position(
+                pose.t, pose.x, pose.y, pose.std_xy, number, learned=learned, source=source, fix=fix
+            )
             return
-        self._learner.push_pose(
-            pose.t, pose.x, pose.y, pose.yaw, pose.std_xy, pose.std_yaw, number, learned=learned
+        learner.push_pose(
+            pose.t,
+            pose.x,
+            pose.y,
+            pose.yaw,
+            pose.std_xy,
+            pose.std_yaw,
+            number,
+            learned=learned,
+            source=source,
+            fix=fix,
         )
 
     def _follow_gates(self, t: float) -> None:

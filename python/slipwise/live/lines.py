@@ -22,6 +22,7 @@ from slipwise.live.outputs import (
     surface_content,
 )
 from slipwise.live.samples import Command, Override, Pose, Request, RunStart, Sample, SurfaceCue, Wheels
+from slipwise.logs.fixes import FIXES, fix_number
 
 MOST_CHARACTERS = 10_000  # of a line
 
@@ -116,6 +117,8 @@ def _pose_of(t: float, row: Mapping[str, object]) -> Pose:
         frame=str(row.get("frame", "")),
         roll=_known(row, "roll"),
         pitch=_known(row, "pitch"),
+        source=str(row.get("source", "")),
+        fix=FIXES[fix_number(str(row.get("fix", "")))],
     )
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 
 from slipwise.calibration.prepared_run import PreparedRun, has_wheels, prepare_run
 from slipwise.calibration.surface_labels import date_of, label_at_start, labels_of
-from slipwise.errors import SettingsError
+from slipwise.errors import LogError, SettingsError
 from slipwise.live.feed import Feed
 from slipwise.live.samples import (
     Command,
@@ -23,8 +23,9 @@ from slipwise.live.samples import (
     Wheels,
 )
 from slipwise.logs import Log
+from slipwise.logs.fixes import FIXES
 from slipwise.logs.gyro import gyro_rows
-from slipwise.segments import recording_rows
+from slipwise.segments import recording_rows, source_names, sourced_rows
 
 AS_FAST_AS_IT_GOES = 0.0
 
@@ -49,6 +50,12 @@ class Replay(Feed):
         drive = prepare_run(log, input_name)
         super().__init__(self._paced(drive, rate, label))
         self._wheels = has_wheels(drive)
+        self._sources = source_names(run.run for run in drive)
+
+    @property
+    def sources(self) -> tuple[str, ...]:
+        """Names of the sources of poses, where they are told apart; the first's first."""
+        return self._sources
 
     @property
     def wheels(self) -> bool:
@@ -63,7 +70,7 @@ class Replay(Feed):
                 begins = DriveStart(label or label_at_start(cues, run.run), date_of(drive))
             yield RunStart(run.run.name, begins)
             begin = time.monotonic()
-            for sample in with_labels(samples_of(run), cues):
+            for sample in with_labels(samples_of(run, self._sources), cues):
                 if isinstance(sample, SurfaceCue):
                     yield sample
                     continue
@@ -84,14 +91,28 @@ def with_labels(
         yield sample
 
 
-def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose | Gyro]:
-    """Yield the samples of a run in the order of their stamps: commands, wheels, poses, the gyro."""
-    commands, wheels, attitudes, poses = (rows.tolist() for rows in recording_rows(run.run))
+def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Command | Wheels | Pose | Gyro]:
+    """Yield the samples of a run in the order of their stamps: commands, wheels, poses, the gyro.
+
+    Args:
+        run: what was measured.
+        sources: names of the sources of poses, where they are told apart.
+
+    Raises:
+        LogError: the log has known forces.
+    """
+    *others, measured = recording_rows(run.run)
+    commands, wheels, attitudes = (rows.tolist() for rows in others)
+    if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
+        raise LogError(
+            "known forces are not taken live", advice="leave out force_x and force_y, or use slipwise calibrate"
+        )
+    poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}
     streams: tuple[list[tuple[float, int, int, Sample]], ...] = (
         [(t, 0, i, Command(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(commands)],
         [(t, 1, i, Wheels(t, v, omega, vy)) for i, (t, v, vy, omega) in enumerate(wheels)],
-        [(row[0], 2, i, _pose(row, tilt.get(row[0]))) for i, row in enumerate(poses)],
+        [(row[0], 2, i, _pose(row, tilt.get(row[0]), sources)) for i, row in enumerate(poses)],
         [(t, 3, i, Gyro(t, rate)) for i, (t, rate) in enumerate(gyro_rows(run.run).tolist())],
     )
     for _, _, _, sample in heapq.merge(*streams):
@@ -99,7 +120,10 @@ def samples_of(run: PreparedRun) -> Iterator[Command | Wheels | Pose | Gyro]:
         yield sample
 
 
-def _pose(row: list[float], tilt: tuple[float, float] | None) -> Pose:
-    t, x, y, yaw, frame, std_xy, std_yaw = row
-    roll, pitch = tilt or (None, None)
-    return Pose(t, x, y, yaw, std_xy or None, std_yaw or None, str(int(frame)), roll, pitch)
+def _pose(row: list[float], tilt: tuple[float, float] | None, sources: Sequence[str]) -> Pose:
+    t, x, y, yaw, frame, std_xy, std_yaw, *sort = row
+    number, fix = (int(each) for each in sort or (0, 0))
+    roll, pitch = (tilt if number == 0 else None) or (None, None)
+    std = (std_xy or None, std_yaw or None)
+    source = sources[number] if number else ""
+    return Pose(t, x, y, yaw, *std, str(int(frame)), roll, pitch, source, FIXES[fix])

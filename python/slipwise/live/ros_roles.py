@@ -3,17 +3,25 @@
 
 from __future__ import annotations
 
+import contextlib
+import queue
 import time
 from collections.abc import Callable
+from dataclasses import replace
 
+from slipwise.live.cdr_reader import reader_of
+from slipwise.live.one_rotation import rotation_of
+from slipwise.live.wires.ros_types import ros_types
 from slipwise.live.wires.wire import RosWire
-from slipwise.logs.messages import NAV_SAT_FIX, TF
+from slipwise.logs.messages import IMU, IMU_VALUES, NAV_SAT_FIX, TF
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import NONE, Topic
 from slipwise.logs.topics import NOTHING_YET, Roles, choose_topics, weigh_topics
 
 LOOK_EVERY = 0.25  # s
 SETTLED = 1.5  # s for which what is guessed must stay the same: discovery takes its time
+HEARD_WITHIN = 2.0  # s for which a message of an IMU is waited for
+_LISTENED_TO = 3  # messages of an IMU, of which one with an orientation is enough
 SAY_AFTER = 3.0  # s without the topics, after which it is said what is waited for
 
 
@@ -57,9 +65,44 @@ def find_roles(
         time.sleep(LOOK_EVERY)
 
 
+def with_oriented_imu(wire: RosWire, roles: Roles, say: Callable[[str], None]) -> Roles:
+    """Return the roles without an IMU for headings where what it says first has no orientation: a gyro alone.
+
+    Args:
+        wire: brings its messages.
+        roles: that were chosen.
+        say: is told what was found.
+    """
+    if roles.imu is None or roles.pose is None or roles.pose.type != NAV_SAT_FIX:
+        return roles
+    heard = queue.SimpleQueue[bool]()
+    read, values = reader_of(IMU, ros_types()), IMU_VALUES[IMU]
+
+    def take(payload: bytes) -> None:
+        with contextlib.suppress(Exception):  # what cannot be read says nothing; the transport says so
+            heard.put(rotation_of(*values(read(payload))) is not None)
+
+    wire.subscribe(roles.imu.name, IMU, take)
+    with contextlib.suppress(queue.Empty):
+        for _ in range(_LISTENED_TO):
+            if heard.get(timeout=HEARD_WITHIN):
+                return roles
+        say(f"{roles.imu.name} has no orientation: its yaw rates are used")
+        return replace(roles, imu=None)
+    say(f"{roles.imu.name} says nothing yet: headings wait for it")
+    return roles
+
+
 def only_positions(roles: Roles) -> bool:
     """Say whether poses are satellite fixes to which no IMU gives a heading."""
     return roles.pose is not None and roles.pose.type == NAV_SAT_FIX and roles.imu is None
+
+
+def source_topics(roles: Roles) -> tuple[str, ...]:
+    """Return the topics of all sources of poses, where there are several; the first's first."""
+    if roles.pose is None or not roles.others:
+        return ()
+    return (roles.pose.name, *(topic.name for topic in roles.others))
 
 
 def _all_given(options: LogOptions) -> bool:
@@ -69,7 +112,7 @@ def _all_given(options: LogOptions) -> bool:
 def _missing(topics: list[Topic], options: LogOptions) -> str:
     """Name what is not there yet; empty where a choice can be made."""
     names = {topic.name for topic in topics}
-    given = (options.pose_topic, options.command_topic, options.wheel_topic)
+    given = (options.pose_topic, *options.other_pose_topics, options.command_topic, options.wheel_topic)
     absent = [name for name in given if name is not None and name != NONE and name not in names]
     if absent:
         return " and ".join(absent)

@@ -11,12 +11,14 @@ import numpy as np
 
 from slipwise.errors import SettingsError
 from slipwise.live.one_rotation import deviation, rotation_of
-from slipwise.live.samples import Command, Pose, Wheels
+from slipwise.live.samples import Command, Gyro, Pose, Wheels
+from slipwise.logs.fixes import fix_of_status
 from slipwise.logs.joints import SideMotion
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.messages import (
     ACKERMANN,
     COMMAND_VALUES,
+    GYRO_VALUES,
     IMU_VALUES,
     JOINT_STATE,
     NAV_SAT_FIX,
@@ -150,6 +152,12 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
     return pose
 
 
+def to_gyro(message: Any, t: float) -> Gyro | None:
+    """Return the yaw rate of an Imu, which REP-103 counts about the z axis, up."""
+    (rate,) = _values(GYRO_VALUES, message)
+    return Gyro(t, rate) if math.isfinite(rate) else None
+
+
 class FixPoses:
     """Poses of satellite fixes with the orientation of an IMU, in the tangent plane at the first fix.
 
@@ -176,14 +184,14 @@ class FixPoses:
         fix = (latitude, longitude, altitude if math.isfinite(altitude) else 0.0)
         self._origin = self._origin or fix
         x, y, _ = in_tangent_plane(ecef(*_row(fix)), *_row(self._origin))[0].tolist()
-        std_xy = deviation(*variances)
+        std_xy, sort = deviation(*variances), fix_of_status(status)
         frame = message.header.frame_id
         if not self._headed:
-            return Pose(t, x, y, math.nan, std_xy, frame=frame)
+            return Pose(t, x, y, math.nan, std_xy, frame=frame, fix=sort)
         if self._imu is None or abs(t - self._imu[0]) > OLDEST_IMU:
             return None
         _, roll, pitch, yaw = self._imu
-        return Pose(t, x, y, yaw + self._offset, std_xy, frame=frame, roll=roll, pitch=pitch)
+        return Pose(t, x, y, yaw + self._offset, std_xy, frame=frame, roll=roll, pitch=pitch, fix=sort)
 
 
 def _row(fix: tuple[float, float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from slipwise.errors import SlipwiseError
@@ -17,8 +17,8 @@ from slipwise.live.listeners import Listeners
 from slipwise.live.outputs import AppliedParameters, Output, Status
 from slipwise.live.parameter_call import SET_PARAMETERS, refused, request_of
 from slipwise.live.ros_messages import TOPICS, RosMessages
-from slipwise.live.ros_samples import FixPoses, to_command, to_pose, to_wheels
-from slipwise.live.samples import Override, Request, SurfaceCue
+from slipwise.live.ros_samples import FixPoses, ToPose, to_command, to_gyro, to_pose, to_wheels
+from slipwise.live.samples import Override, Pose, Request, SurfaceCue
 from slipwise.live.stamps import Stamps
 from slipwise.live.transport import OnSample
 from slipwise.live.wires.ros_types import ros_types
@@ -175,9 +175,17 @@ class RosTransport:
             converters.append((roles.pose.name, NAV_SAT_FIX, fixes.take_fix))
             if roles.imu is not None:
                 self._take(roles.imu.name, IMU, fixes.take_imu, on_sample)
+            elif roles.gyro is not None:
+                self._take(roles.gyro.name, IMU, to_gyro, on_sample)
+        elif roles.pose is None and roles.gyro is not None:
+            self._take(roles.gyro.name, IMU, to_gyro, on_sample)
         elif roles.pose is not None:
             kind = roles.pose.type
             converters.append((roles.pose.name, kind, to_pose(kind, options)))
+        for other in roles.others:
+            fix = FixPoses(options, headed=False).take_fix if other.type == NAV_SAT_FIX else None
+            convert = fix or to_pose(other.type, options)
+            converters.append((other.name, other.type, _from_source(convert, other.name)))
         for topic in dict.fromkeys(name for name, _, _ in converters):  # one may be both wheels and pose
             mine = [(kind, convert) for name, kind, convert in converters if name == topic]
             self._take(topic, mine[0][0], _all_of([convert for _, convert in mine]), on_sample)
@@ -211,6 +219,14 @@ class RosTransport:
                 continue
             for text in (*request.left_out, *refused(answer, request.names, self._reading)):
                 self._notices.put(f"{applied.node}: {text}")
+
+
+def _from_source(convert: ToPose, source: str) -> ToSample:
+    def sourced(message: Any, t: float) -> Pose | None:
+        pose = convert(message, t)
+        return None if pose is None else replace(pose, source=source)
+
+    return sourced
 
 
 def _all_of(converters: list[ToSample]) -> ToSample:

@@ -42,6 +42,8 @@ class Pose:
     frame: str = ""  # poses of different frames are not compared
     roll: float | None = None  # rad
     pitch: float | None = None  # rad; by REP-103 nose down is positive
+    source: str = ""  # that measured it, of several; nothing: the first
+    fix: str = ""  # what a satellite receiver says of it, where fixes are told apart
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,17 +16,20 @@ from slipwise.logs.bag_streams import (
     BagContext,
     command_stream,
     fix_stream,
+    gyro_stream,
     needs_receipt,
     pose_stream,
     wheel_stream,
     with_tilts,
 )
 from slipwise.logs.foxglove_file import open_bag
+from slipwise.logs.gyro import with_gyro
 from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
+from slipwise.logs.log import Floats, Ints, Log, Run, Source, empty_poses
 from slipwise.logs.messages import (
     COMMAND_VALUES,
+    GYRO_VALUES,
     IMU_VALUES,
     JOINT_STATE,
     NAV_SAT_FIX,
@@ -56,6 +59,8 @@ from slipwise.logs.wheel_readings import JointReadings
 RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
 RUN_TYPE = "std_msgs/msg/String"
 
+_OTHER = "pose of "  # begins the role of a further source of poses, before its topic
+
 Consumer = Callable[[Any, int], None]
 
 
@@ -66,6 +71,11 @@ class _Collected:
     samples: dict[str, Samples]  # by role: command, wheel, pose, imu
     transforms: TransformCollector
     runs: tuple[tuple[int, str], ...]  # start [ns] and name
+
+    @property
+    def starts(self) -> Floats:
+        """When each run but the first begins [s]."""
+        return np.array([start for start, _ in self.runs][1:], dtype=np.int64) / 1e9
 
 
 def read_bag(path: Path, options: LogOptions) -> Log:
@@ -183,6 +193,9 @@ def _extractors(
         )
     if roles.pose is not None and roles.pose.type != TF:
         found.append(("pose", roles.pose, POSE_VALUES[roles.pose.type]))
+    found += [(f"{_OTHER}{topic.name}", topic, POSE_VALUES[topic.type]) for topic in roles.others]
+    if roles.gyro is not None:
+        found.append(("gyro", roles.gyro, GYRO_VALUES[roles.gyro.type]))
     if roles.imu is not None:
         found.append(("imu", roles.imu, IMU_VALUES[roles.imu.type]))
     return found
@@ -218,7 +231,49 @@ def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) 
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
     elif roles.pose is not None:
         poses = with_tilts(context, pose_stream(context, samples["pose"]), samples.get("imu"))
-    return _split(path, collected.runs, (commands, wheels, poses), context.tally)
+    others = _other_streams(roles, samples, context, (wheels, commands))
+    runs = _split(path, collected.runs, (commands, wheels, poses), context.tally)
+    if roles.gyro is not None and (poses is None or poses.course):
+        runs = with_gyro(runs, gyro_stream(context, samples["gyro"]), collected.starts)
+    return _with_others(runs, collected, others, roles, context.tally) if others else runs
+
+
+def _other_streams(
+    roles: Roles,
+    samples: dict[str, Samples],
+    context: BagContext,
+    inputs: tuple[RawStream | None, RawStream | None],
+) -> dict[str, RawStream]:
+    """Return what further sources measured, by their topics; satellite fixes as positions."""
+    first = next((to_inputs(stream, Tally()) for stream in inputs if stream is not None), None)
+    found = {}
+    for topic in roles.others:
+        own = samples[f"{_OTHER}{topic.name}"]
+        if topic.type == NAV_SAT_FIX:
+            found[topic.name] = fix_stream(context, own, None, first)
+        else:
+            found[topic.name] = pose_stream(context, own)
+    return found
+
+
+def _with_others(
+    runs: tuple[Run, ...],
+    collected: _Collected,
+    others: dict[str, RawStream],
+    roles: Roles,
+    tally: Tally,
+) -> tuple[Run, ...]:
+    """Give each run what further sources measured in it, in the order of stamps."""
+    edges = collected.starts
+    first = "" if roles.pose is None else roles.pose.name
+    found = []
+    for number, run in enumerate(runs):
+        beside = {}
+        for name, stream in others.items():
+            own = np.flatnonzero(np.searchsorted(edges, stream.t, side="right") == number)
+            beside[name] = to_poses(stream.taken(own[np.argsort(stream.t[own], kind="stable")]), tally)
+        found.append(replace(run, others=beside, source=first))
+    return tuple(found)
 
 
 def _split(

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.fixes import status_codes
 from slipwise.logs.joints import speeds_from_angles
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
@@ -227,7 +228,18 @@ def fix_stream(
         context.notes.append("headings, roll and pitch are those of the IMU")
     _count(context, samples, good & ~known, "no-heading", "satellite fixes without a heading")
     columns = {"x": x, "y": y, "z": z, "yaw": yaw, "std_xy": deviation_of(values[:, 4:6]), **tilts}
+    if len(np.unique(values[good, 3])) > 1:  # errors of each sort of fix are a population of their own
+        columns["fix"] = status_codes(values[:, 3])
     return replace(context.stream("poses", samples, columns, good & known), course=course)
+
+
+def gyro_stream(context: BagContext, samples: Samples) -> RawStream:
+    """Make the stream of yaw rates about the z axis of an IMU, which REP-103 points up."""
+    rate = samples.values[:, 0] if len(samples.values) else np.empty(0)
+    known = np.isfinite(rate)
+    _count(context, samples, ~known, "no-gyro", "imu messages without a yaw rate")
+    context.notes.append(f"yaw rates are those of {samples.topic}")
+    return context.stream("gyro", samples, {"gyro_z": rate}, known)
 
 
 def deviation_of(variances: Floats) -> Floats:

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Yaw rates of a gyro beside positions: the column gyro_z, where it turns as the inputs do."""
+"""Yaw rates of a gyro beside positions: a column gyro_z or an IMU, where it turns as the inputs do."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.held import UNKNOWN_AFTER, HeldSum
 from slipwise.logs.log import Floats, Run
+from slipwise.logs.streams import RawStream
 
 _COLUMN = "gyro_z"  # rad/s, counter-clockwise
 _WINDOW = 1.0  # [s] over which turns are compared
@@ -17,10 +21,34 @@ _LEAST, _MOST = 0.05, 5.0  # turns of the gyro over those of the inputs
 _NONE = np.empty((0, 2))
 
 
+def gyro_alone(runs: Iterable[Run]) -> bool:
+    """Say whether no pose was measured, but yaw rates: turns are then all that is learned from."""
+    every = tuple(runs)
+    return not any(len(run.poses) for run in every) and any(len(_measured(run)) for run in every)
+
+
 def gyro_rows(run: Run) -> Floats:
     """Return rows of (t, yaw rate) in s and rad/s, [N, 2]; none where poses tell their turns themselves."""
     rows = _measured(run)
     return _NONE if _turns_otherwise(run, rows) else rows
+
+
+def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple[Run, ...]:
+    """Give each run of a bag the yaw rates that came in it, as a column.
+
+    Args:
+        runs: in the order of time, without columns of their own.
+        stream: stamps [s] and rates [rad/s] in its column gyro_z.
+        starts: when each run but the first begins [s].
+    """
+    number = np.searchsorted(starts, stream.t, side="right")
+    found = []
+    for place, run in enumerate(runs):
+        own = np.flatnonzero(number == place)
+        own = own[np.argsort(stream.t[own], kind="stable")]
+        columns = {"t": stream.t[own], _COLUMN: stream.columns[_COLUMN][own]}
+        found.append(replace(run, extra={**run.extra, **columns}) if len(own) else run)
+    return tuple(found)
 
 
 def gyro_contradictions(runs: tuple[Run, ...]) -> tuple[Contradiction, ...]:
@@ -34,7 +62,7 @@ def gyro_contradictions(runs: tuple[Run, ...]) -> tuple[Contradiction, ...]:
 
 
 def _measured(run: Run) -> Floats:
-    if not run.poses.course or _COLUMN not in run.extra:
+    if (len(run.poses) and not run.poses.course) or _COLUMN not in run.extra:
         return _NONE
     try:
         t, rate = (np.asarray(run.extra[name], dtype=np.float64) for name in ("t", _COLUMN))

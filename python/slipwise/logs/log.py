@@ -18,7 +18,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 ABSURD = 1e30  # no measurement in SI units is larger
-OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "force_x", "force_y")
+OPTIONAL_POSE_COLUMNS = ("z", "roll", "pitch", "std_xy", "std_yaw", "fix", "force_x", "force_y")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +81,9 @@ class Poses:
     pitch: Floats | None = None  # [M] rad
     std_xy: Floats | None = None  # [M] m, NaN where it is not known
     std_yaw: Floats | None = None  # [M] rad, NaN where it is not known
+    fix: Floats | None = (
+        None  # [M] code of what a satellite receiver says (`fixes`), NaN where it says nothing
+    )
     force_x: Floats | None = None  # [M] m/s^2, a known force over the robot's mass along its x axis
     force_y: Floats | None = None  # [M] m/s^2, the same to its left
     course: bool = False  # only positions were measured: the yaw is the direction of the path
@@ -110,6 +113,8 @@ class Run:
     wheels: Inputs | None
     poses: Poses
     extra: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # rows of a tidy log, with their "t"
+    others: Mapping[str, Poses] = field(default_factory=dict)  # of further sources, by name
+    source: str = ""  # name of the first source, where there are several
 
     def __repr__(self) -> str:
         return f"<Run {self.name!r}: {', '.join(self._parts())}>"

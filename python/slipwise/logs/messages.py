@@ -88,6 +88,12 @@ def _imu_values(message: Any) -> Values:
     return (q.x, q.y, q.z, q.w)
 
 
+def _yaw_rate(message: Any) -> Values:
+    if message.angular_velocity_covariance[0] == -1.0:  # the message's way to say that there is no gyro
+        return (math.nan,)
+    return (message.angular_velocity.z,)
+
+
 _UNKNOWN = (math.nan, math.nan, math.nan)
 
 COMMAND_VALUES: dict[str, Callable[[Any], Values]] = {
@@ -105,6 +111,7 @@ WHEEL_VALUES: dict[str, Callable[[Any], Values]] = {
     ODOMETRY: lambda message: twist_values(message.twist.twist),
 }
 IMU_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _imu_values}
+GYRO_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _yaw_rate}
 
 
 #: What a message raises that was decoded without a definition of its type, as JSON is.

@@ -117,9 +117,11 @@ def _completed(log: Log, options: LogOptions) -> Log:
     """Scale inputs, take poses of a file beside the log, turn them, cut the log: what is asked for."""
     log = scaled_inputs(log, options)
     if options.poses is not None:
-        from slipwise.logs.poses_beside import with_poses
+        from slipwise.logs.poses_beside import with_other_poses, with_poses
 
         log = with_poses(log, options.poses, options)
+        for path in options.other_poses:
+            log = with_other_poses(log, path, options)
     log = cut_to_span(turned_poses(log, options), options.start, options.end)
     log = replace(log, sideways=options.sideways) if options.sideways else log
     if options.car is None:

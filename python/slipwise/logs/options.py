@@ -46,6 +46,8 @@ class LogOptions:
     most_unpacked: float = MOST_UNPACKED  # [MiB] that a compressed table, or a chunk of a bag, may unpack to
     most_fetched: float = MOST_FETCHED  # [MiB] that a log on a server may have
     poses: Path | None = None  # a file with the measured poses, beside a log whose own are not used
+    other_poses: tuple[Path, ...] = ()  # files of further sources of poses, beside these
+    other_pose_topics: tuple[str, ...] = ()  # topics of further sources, beside the pose topic
     pose_clock_offset: float | str | None = None  # [s] added to its stamps, or "auto" to find it
     start: float | None = None  # [s] from the log's start; what is before is not used
     end: float | None = None  # [s] from the log's start; what is after is not used
@@ -62,6 +64,7 @@ class LogOptions:
                     advice="measure it on the robot",
                 )
         self._check_corrections()
+        self._check_sources()
         for name, usual in (("most_unpacked", MOST_UNPACKED), ("most_fetched", MOST_FETCHED)):
             size: float = getattr(self, name)
             if not 0.0 < size <= LARGEST_UNPACKED:
@@ -112,7 +115,7 @@ class LogOptions:
     def files(self) -> tuple[Path, ...]:
         """Files that are read beside a log."""
         described = () if self.vehicle is None or "." not in self.vehicle else (Path(self.vehicle),)
-        return (*(() if self.poses is None else (self.poses,)), *described)
+        return (*(() if self.poses is None else (self.poses,)), *self.other_poses, *described)
 
     def _described(self) -> VehicleDescription | None:
         if self.vehicle is None:
@@ -138,6 +141,22 @@ class LogOptions:
         for name, size in sizes.items():
             if size is not None and not getattr(self, name):
                 object.__setattr__(self, name, size)
+
+    def _check_sources(self) -> None:
+        """Refuse further sources without a first, or two of one name."""
+        files = [path.stem for path in (self.poses, *self.other_poses) if path is not None]
+        topics = [name for name in (self.pose_topic, *self.other_pose_topics) if name is not None]
+        further = (
+            ("poses", files, len(self.other_poses)),
+            ("pose_topic", topics, len(self.other_pose_topics)),
+        )
+        for what, names, others in further:
+            if others and len(names) == others:
+                raise SettingsError(
+                    f"further {_option(what)} need a first one", advice=f"give {_option(what)}"
+                )
+            if len(set(names)) < len(names):
+                raise SettingsError(f"two sources of {_option(what)} have one name", advice="name each apart")
 
     def _check_corrections(self) -> None:
         for name in ("command_scale", "wheel_scale"):

@@ -56,6 +56,24 @@ def with_poses(log: Log, path: Path, options: LogOptions) -> Log:
     )
 
 
+def with_other_poses(log: Log, path: Path, options: LogOptions) -> Log:
+    """Return the log with the poses of a further file as a source beside its own, named by the file's stem.
+
+    Its offset is found where `pose_clock_offset` is "auto", else none is added; what is left is learned.
+
+    Raises:
+        LogError: the file cannot be read, does not overlap with the log, or the offset cannot be found.
+    """
+    automatic = AUTO if options.pose_clock_offset == AUTO else None
+    beside = with_poses(log, path, replace(options, pose_clock_offset=automatic))
+    first = "" if options.poses is None else options.poses.stem
+    runs = tuple(
+        replace(run, others={**run.others, path.stem: other.poses}, source=run.source or first)
+        for run, other in zip(log.runs, beside.runs, strict=True)
+    )
+    return replace(beside, runs=runs)
+
+
 _CLOCKS = "give --pose-clock-offset auto to find the offset of their clocks, or the seconds to add"
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.absurd_speeds import FASTEST, absurd_speeds
+from slipwise.logs.fixes import NO_FIX
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs, Ints, Poses
 from slipwise.logs.stamps import LATEST, forward_stamps, unit_advice
@@ -33,6 +34,11 @@ class RawStream:
     place: Callable[[int], str]
     optional: frozenset[str] = field(default_factory=frozenset)
     course: bool = False  # of positions: the yaw is the direction of the path
+
+    def taken(self, places: Ints) -> RawStream:
+        """Return the samples at some places, in their order."""
+        columns = {name: values[places] for name, values in self.columns.items()}
+        return replace(self, t=self.t[places], columns=columns, rows=self.rows[places])
 
     def select(self, keep: Bools) -> RawStream:
         """Return the samples where `keep` [N] is true."""
@@ -98,6 +104,13 @@ def to_poses(stream: RawStream, tally: Tally) -> Poses:
         course=stream.course,
         **others,
     )
+
+
+def without_fix(stream: RawStream, tally: Tally) -> RawStream:
+    """Leave out, and count, positions of which the receiver says that it has none."""
+    if "fix" not in stream.columns:
+        return stream
+    return _keep(stream, stream.columns["fix"] != NO_FIX, tally, "no-fix", "of which the receiver has no fix")
 
 
 def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.logs.column_names import check_columns
+from slipwise.logs.fixes import fix_codes
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import (
     OPTIONAL_POSE_COLUMNS,
@@ -29,10 +30,11 @@ from slipwise.logs.log import (
 from slipwise.logs.navsat import with_course
 from slipwise.logs.options import LogOptions
 from slipwise.logs.run_name import run_name
-from slipwise.logs.streams import RawStream, clean_stream, order_codes, to_inputs, to_poses
+from slipwise.logs.streams import RawStream, clean_stream, order_codes, to_inputs, to_poses, without_fix
 from slipwise.logs.table import Table, read_csv, read_parquet
 from slipwise.logs.tidy_columns import (
     KNOWN,
+    MEASURED_BESIDE,
     NUMERIC,
     POSE_COLUMNS,
     TEXT,
@@ -55,6 +57,7 @@ class _Rows:
     wheels: InputColumns | None
     pose: dict[str, Floats]
     fresh: Bools  # a pose was measured in this row
+    source: tuple[Ints, tuple[str, ...]] | None  # whose poses these are: number by row, and names by number
     extra: dict[str, NDArray[Any]]
 
 
@@ -105,13 +108,17 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
 
 def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> _Rows:
     names = table.names
-    wanted = ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS) if options.poses is None else ()
+    wanted = ("x", "y", "yaw", *MEASURED_BESIDE) if options.poses is None else ()
     pose = {name: table.numbers(name, tally) for name in wanted if name in names}
     if "yaw" in pose and "yaw_body" in names and commanded_by_direction(table, options):
         pose["yaw"] = table.numbers("yaw_body", tally)  # where yaw is the direction of travel
         notes.append(f"{table.path.name}: headings are yaw_body")
+    if pose and "fix" in names:
+        codes, words = table.codes("fix")
+        pose["fix"] = fix_codes(words, str(table.path))[codes]
     if pose and "frame" in names:
         pose["frame"] = table.codes("frame")[0].astype(np.float64)
+    pose = pose if {"x", "y"} <= set(pose) else {}
     if pose and "yaw" not in pose:
         notes.append(f"{table.path.name} has no yaw: only positions are measured")
     return _Rows(
@@ -120,8 +127,22 @@ def _rows(table: Table, options: LogOptions, tally: Tally, notes: list[str]) -> 
         wheels=wheel_columns(table, options, tally, notes),
         pose=pose,
         fresh=_fresh(table, pose, tally, notes) if pose else np.zeros(len(table), bool),
+        source=_sources(table, notes) if pose and "source" in names else None,
         extra=_extra(table, notes),
     )
+
+
+def _sources(table: Table, notes: list[str]) -> tuple[Ints, tuple[str, ...]]:
+    """Return whose pose is in each row; the first source is the one that comes first in the table."""
+    codes, names = table.codes("source")
+    named = np.array([bool(name) for name in names])[codes]
+    order = order_codes(np.where(named, codes, -1)[named]) if named.any() else np.zeros(0, np.int64)
+    number = np.full(len(codes), -1, dtype=np.int64)
+    number[named] = order
+    found = tuple(names[codes[int(np.argmax(number == i))]] for i in range(int(number.max(initial=-1)) + 1))
+    if len(found) > 1:
+        notes.append(f"{table.path.name}: poses are those of {found[0]}, beside them {', '.join(found[1:])}")
+    return number, found
 
 
 def _extra(table: Table, notes: list[str]) -> dict[str, NDArray[Any]]:
@@ -191,16 +212,34 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
     extra = {key: values[index] for key, values in rows.extra.items()}
     commands = _inputs(stream("commands", rows.commands.columns()), tally) if rows.commands else None
     wheels = _inputs(stream("wheels", rows.wheels.columns()), tally) if rows.wheels else None
-    poses = empty_poses()
+    poses, source = empty_poses(), ""
+    others: dict[str, Poses] = {}
     if rows.pose:
-        fresh = stream("poses", rows.pose).select(rows.fresh[index])
-        poses = _poses(fresh, wheels if wheels is not None else commands, tally)
+        whole, inputs = stream("poses", rows.pose), wheels if wheels is not None else commands
+        if rows.source is None:
+            poses = _poses(whole.select(rows.fresh[index]), inputs, tally)
+        else:
+            number, names = rows.source
+            found = _by_source(whole, np.where(rows.fresh[index], number[index], -1), len(names))
+            poses, *further = (_poses(own, inputs, tally) for own in found)
+            others, source = dict(zip(names[1:], further, strict=True)), names[0]
     extra = {"t": t, **extra} if extra else {}
-    return Run(name=name, commands=commands, wheels=wheels, poses=poses, extra=extra)
+    return Run(name, commands, wheels, poses, extra, others, source if others else "")
+
+
+def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream]:
+    """Yield what each source measured, in the order of its stamps: sources may come late."""
+    for i in range(count):
+        own = np.flatnonzero(number == i)
+        stream = whole.taken(own[np.argsort(whole.t[own], kind="stable")])
+        if "yaw" in stream.columns and np.isnan(stream.columns["yaw"]).all():
+            stream = replace(stream, columns={n: v for n, v in stream.columns.items() if n != "yaw"})
+        yield stream
 
 
 def _poses(stream: RawStream, inputs: Inputs | None, tally: Tally) -> Poses:
     """Make poses; of a table without a yaw column, positions."""
+    stream = without_fix(stream, tally)
     if "yaw" in stream.columns:
         return to_poses(stream, tally)
     return to_poses(with_course(clean_stream(stream, tally), inputs), tally)

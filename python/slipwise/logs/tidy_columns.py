@@ -18,7 +18,8 @@ from slipwise.logs.table import Table
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import twists_of_wheels, wheel_names
 
-TEXT = ("run", "frame", "terrain")
+MEASURED_BESIDE = tuple(name for name in OPTIONAL_POSE_COLUMNS if name != "fix")  # numbers beside a pose
+TEXT = ("run", "frame", "terrain", "source", "fix")
 CAR = ("throttle", "steering")  # commands without units of a car
 NUMERIC = (
     *CAR,
@@ -34,13 +35,28 @@ NUMERIC = (
         "odo_v",
         "odo_vy",
     ),
-    *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *OPTIONAL_POSE_COLUMNS),
+    *("odo_omega", "wheel_left", "wheel_right", "x", "y", "yaw", *MEASURED_BESIDE),
 )
 USED = frozenset(
-    ("run", "frame", "t", "cmd_v", "cmd_omega", "odo_v", "odo_vy", "odo_omega", "x", "y", "yaw", "pose_new")
+    (
+        "run",
+        "frame",
+        "source",
+        "t",
+        "cmd_v",
+        "cmd_omega",
+        "odo_v",
+        "odo_vy",
+        "odo_omega",
+        "x",
+        "y",
+        "yaw",
+        "pose_new",
+    )
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
-POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", *OPTIONAL_POSE_COLUMNS))
+POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", "source", *OPTIONAL_POSE_COLUMNS))
+LAYOUT_PREFIXES = ("wheel_", "steer_")  # of columns, before the names of wheels and steering joints
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
@@ -70,6 +86,7 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
         LogError: it does not; the error names what is missing and what was found.
     """
     names = table.names
+    poses = poses and ("gyro_z" not in names or bool({"x", "y"} & set(names)))  # turns of a gyro may be all
     missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
     commands = "cmd_v" in names or "cmd_vx" in names or (car and {*CAR} <= set(names))
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)

@@ -46,7 +46,11 @@ def _cut_run(run: Run, low: float, high: float) -> Run:
     if run.extra:
         t = np.asarray(run.extra["t"], dtype=np.float64)
         extra = {name: values[(t >= low) & (t <= high)] for name, values in run.extra.items()}
-    return Run(run.name, _cut(run.commands, low, high), _cut(run.wheels, low, high), poses, extra)
+    others = {
+        name: _kept_poses(other, (other.t >= low) & (other.t <= high)) for name, other in run.others.items()
+    }
+    commands, wheels = _cut(run.commands, low, high), _cut(run.wheels, low, high)
+    return replace(run, commands=commands, wheels=wheels, poses=poses, extra=extra, others=others)
 
 
 def _cut(inputs: Inputs | None, low: float, high: float) -> Inputs | None:

@@ -78,6 +78,8 @@ class Roles:
     imu: Topic | None
     guessed: tuple[str, ...]  # sentences about what was guessed
     advice: Mapping[str, str]  # what would give an input that is not read, by the input's name
+    others: tuple[Topic, ...] = ()  # further sources of poses
+    gyro: Topic | None = None  # whose yaw rates are read: beside positions without a heading
 
 
 def choose_topics(
@@ -92,7 +94,38 @@ def choose_topics(
     if found.problem is not None:
         raise found.problem
     command, wheel, imu = found.command.topic, found.wheel.topic, found.imu.topic
-    return Roles(found.pose.topic, command, wheel, imu, found.guessed, found.advice)
+    others = tuple(_other_pose(topics, name) for name in options.other_pose_topics)
+    gyro = _gyro(topics, found.pose.topic, imu, options)
+    return Roles(found.pose.topic, command, wheel, imu, found.guessed, found.advice, others, gyro)
+
+
+def turns_alone(options: LogOptions) -> bool:
+    """Say whether no pose is to be read, but the yaw rates of an IMU that is named."""
+    return options.pose_topic == NONE and options.imu_topic not in (None, NONE)
+
+
+def _gyro(
+    topics: Sequence[Topic], pose: Topic | None, imu: Topic | None, options: LogOptions
+) -> Topic | None:
+    """Return the IMU whose yaw rates go beside satellite fixes; one that is raw has a gyro at least."""
+    if pose is None:
+        return imu if turns_alone(options) else None
+    if pose.type != NAV_SAT_FIX or options.imu_topic == NONE:
+        return None
+    raw = sorted((topic for topic in topics if topic.type == IMU and topic.count > 0), key=lambda t: t.name)
+    return imu or next(iter(raw), None)
+
+
+def _other_pose(topics: Sequence[Topic], name: str) -> Topic:
+    """Return the topic of a further source of poses.
+
+    Raises:
+        LogError: it is not there or has another type.
+    """
+    found = choose({topic.name: topic for topic in topics if topic.count > 0}, _POSE, name)
+    if found.problem is not None or found.topic is None:
+        raise found.problem or LogError(f"there is no topic {name}", advice="see `slipwise inspect`")
+    return found.topic
 
 
 def weigh_topics(
@@ -197,7 +230,7 @@ def _problem(
     for choice in (found.wheel, found.command, found.pose, found.imu):
         if choice.problem is not None:
             return choice.problem
-    if found.pose.topic is None and options.poses is None:
+    if found.pose.topic is None and options.poses is None and not turns_alone(options):
         return LogError(f"{NOTHING_YET} a measured pose", advice=_pose_advice(live))
     if found.command.topic is None and found.wheel.topic is None:
         what = f"{NOTHING_YET} a command or with wheel speeds"

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from slipwise.errors import LogError
 from slipwise.files import write_whole
+from slipwise.logs.fixes import fix_words
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats, Log, Run
 
 if TYPE_CHECKING:
@@ -76,6 +77,11 @@ def tidy_table(log: Log) -> pa.Table:
 
 def _columns(run: Run) -> dict[str, NDArray[Any]]:
     """Return the columns of one run, one row for every stamp that occurs."""
+    if run.others:
+        raise LogError(
+            "a table is written of one source of poses alone",
+            advice="read the log with --pose-topic or --poses",
+        )
     stamps = [series.t for series in (run.commands, run.wheels, run.poses) if series is not None]
     extra_t = np.asarray(run.extra.get("t", np.empty(0)), dtype=np.float64)
     t = np.unique(np.concatenate([*stamps, extra_t[np.isfinite(extra_t)]]))
@@ -97,7 +103,7 @@ def _columns(run: Run) -> dict[str, NDArray[Any]]:
     for name in ("x", "y", *(() if poses.course else ("yaw",)), *OPTIONAL_POSE_COLUMNS):
         values = getattr(poses, name)
         if values is not None:
-            put(name, poses.t, values)
+            put(name, poses.t, fix_words(values) if name == "fix" else values)
     fresh = np.zeros(len(t), np.int8)
     fresh[np.searchsorted(t, poses.t)] = 1
     columns["pose_new"] = fresh

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Segments between measured poses, cut from the runs of a log."""
 
+from slipwise.segments.sources import source_names, sourced_rows
 from slipwise.segments.windows import (
     WindowRules,
     Windows,
@@ -19,4 +20,6 @@ __all__ = [
     "recording_of",
     "recording_rows",
     "rejections",
+    "source_names",
+    "sourced_rows",
 ]

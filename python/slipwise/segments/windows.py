@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise import _core
-from slipwise.logs.gyro import gyro_rows
+from slipwise.logs.gyro import gyro_alone, gyro_rows
 from slipwise.logs.held import UNKNOWN_AFTER
 from slipwise.logs.log import Inputs, LeftOut, Run
+from slipwise.segments.sources import known_forces, pose_rows, sourced_rows
 
 Floats = NDArray[np.float64]
 
@@ -76,37 +77,37 @@ def recording_rows(run: Run) -> tuple[Floats, Floats, Floats, Floats]:
     """Return what was measured in a run, a row each in the order of the stamps.
 
     Commands and wheels as (t, v, vy, omega), attitudes as (t, roll, pitch), poses as (t, x, y, yaw, frame,
-    std_xy, std_yaw, force_x, force_y), with deviations of 0 where they are not known and a yaw of NaN where
-    only positions were measured. The forces are left out where none are known.
+    std_xy, std_yaw), with deviations of 0 where they are not known and a yaw of NaN where only positions were
+    measured. Where forces are known, (source, fix, force_x, force_y) follow, the first two of them 0.
     """
     poses = run.poses if run.poses.measured is None else run.poses.measured
+    measured = pose_rows(poses)
     attitudes = np.empty((0, 3))
     if poses.roll is not None and poses.pitch is not None:
         attitudes = np.column_stack((poses.t, poses.roll, poses.pitch))
         attitudes = attitudes[np.isfinite(attitudes).all(axis=1)]
-    deviations = [
-        np.zeros(len(poses)) if std is None else np.nan_to_num(std, nan=0.0)
-        for std in (poses.std_xy, poses.std_yaw)
-    ]
-    yaw = np.full(len(poses), np.nan) if poses.course else poses.yaw
-    known = (poses.force_x, poses.force_y)
-    pushed = any(force is not None for force in known)
-    forces = [_held(force, len(poses)) for force in known] if pushed else []
-    measured = np.column_stack((poses.t, poses.x, poses.y, yaw, poses.frame, *deviations, *forces))
+    forces = known_forces(poses)
+    if forces is not None:
+        measured = np.column_stack((measured, np.zeros((len(poses), 2)), forces))
     return input_rows(run.commands), input_rows(run.wheels), attitudes, measured
 
 
-def _held(force: Floats | None, poses: int) -> Floats:
-    """A known force [m/s^2] at each pose: the last that was known, 0 before the first."""
-    if force is None:
-        return np.zeros(poses)
-    last = np.maximum.accumulate(np.where(np.isfinite(force), np.arange(poses), -1))
-    return np.where(last >= 0, np.nan_to_num(force)[np.maximum(last, 0)], 0.0)
+def recording_of(
+    run: Run, since: float = -np.inf, until: float = np.inf, sources: Sequence[str] = ()
+) -> _core.Recording:
+    """Return what was measured in a run from `since` on, and before `until` [s], as the core takes it.
 
-
-def recording_of(run: Run, since: float = -np.inf, until: float = np.inf) -> _core.Recording:
-    """Return what was measured in a run from `since` on, and before `until` [s], as the core takes it."""
-    rows = (*recording_rows(run), gyro_rows(run))
+    Args:
+        run: what was measured.
+        since: the first stamp [s].
+        until: the first stamp that is not returned [s].
+        sources: names of the sources of poses that the learner expects, where it tells sources or fixes
+            apart; else poses are those of the run's first source.
+    """
+    commands, wheels, attitudes, poses = recording_rows(run)
+    if sources:
+        poses = sourced_rows(run, poses, sources)
+    rows = (commands, wheels, attitudes, poses, gyro_rows(run))
     return _core.Recording(*(_between(each, since, until) for each in rows))
 
 
@@ -131,6 +132,7 @@ def cut_windows(
     through those that were known before each segment; the segments are the same.
     """
     settings.car = car_prior(runs, held) if settings.from_commands else None
+    settings.heading_only = gyro_alone(runs)
     cut = _core.cut_segments(settings, [recording_of(run) for run in runs])
     segments = tuple(driven.segment for driven in cut.segments)
     measured = [segment.measured.vector() for segment in segments]

@@ -38,6 +38,8 @@ class NoiseScale {
   /// `at` is the segment at the estimate whose covariance is given.
   void learn(const SegmentLinearization& at, const Eigen::MatrixXd& covariance, const Pose2& measured,
              const Eigen::Vector3d& expected);
+  /// Squared errors as a segment shows them: of what it does not measure, they are as expected.
+  Eigen::Vector3d shown_by(const SegmentPath& path, Eigen::Vector3d squared, const Eigen::Vector3d& expected) const;
   /// Follows the next residuals as fast as those of the first segments, from the present value.
   void reset_gain() { segments_ = std::min(segments_, settings_.prior_segments); }
   /// Forgets all residuals.

@@ -15,6 +15,7 @@
 #include "slipwise/archive/bytes.hpp"
 #include "slipwise/disturbance/slip_disturbance.hpp"
 #include "slipwise/filter/motion_posterior.hpp"
+#include "slipwise/online/source_noise.hpp"
 #include "slipwise/online/student_calibration.hpp"
 #include "slipwise/segment/driven_segment.hpp"
 
@@ -26,6 +27,7 @@ struct Knowledge {
   std::shared_ptr<const MotionPosterior> motion;  ///< of the structure that predicts
   std::shared_ptr<const MotionPosterior> slip;    ///< of the best structure that has slip
   std::shared_ptr<const DisturbanceFilter> disturbance;  ///< how slip differs from that now and then
+  std::shared_ptr<const SourceNoise> sources = {};       ///< how large errors of poses are; nothing of one sort alone
 };
 
 /// A prediction of one horizon, and what was measured.

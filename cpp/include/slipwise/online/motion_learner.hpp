@@ -16,6 +16,7 @@
 #include "slipwise/hypotheses/motion_hypotheses.hpp"
 #include "slipwise/online/actuator_limits.hpp"
 #include "slipwise/online/held_out.hpp"
+#include "slipwise/online/known_sources.hpp"
 #include "slipwise/online/motion_monitor.hpp"
 #include "slipwise/online/pose_filter.hpp"
 #include "slipwise/online/recent_slip.hpp"
@@ -173,6 +174,10 @@ class MotionLearner {
   /// \throws std::invalid_argument when the terms are not those that are learned.
   std::vector<std::string> add_surfaces(const KnownBefore& other);
 
+  /// What is known of the sources of poses, where there are several.
+  const KnownSources& sources() const { return sources_; }
+  /// Learned factor of the noise variances of (x, y, theta), of the poses of the first.
+  Eigen::Vector3d noise_scale() const { return known_.back().slip->noise_scale; }
   /// Bias of the gyro [rad/s], and its standard deviation.
   std::array<double, 2> gyro_bias() const { return {stream_.gyro().bias(), stream_.gyro().bias_std()}; }
   const LearnerSettings& settings() const { return settings_; }
@@ -191,12 +196,14 @@ class MotionLearner {
     a(self.recent_, self.wheel_segments_, self.twist_segments_, self.command_segments_, self.errors_, self.held_out_,
       self.events_);
     a(self.dropped_events_, self.rejected_, self.runs_, self.run_begins_, self.before_run_, self.steepest_);
-    a(self.seconds_, self.surface_events_);
+    a(self.seconds_, self.surface_events_, self.sources_);
   }
 
  private:
   void take_in();
   bool work();
+  void learn_source();
+  void finish_sources();
   void prepare_prediction();
   void work_until(double t);
   void work_through();
@@ -244,6 +251,7 @@ class MotionLearner {
   double steepest_ = 0.0;
   double seconds_ = 0.0;
   std::deque<DatedSurfaceEvent> surface_events_;
+  KnownSources sources_;  ///< where there are several, or fixes
 };
 
 }  // namespace slipwise

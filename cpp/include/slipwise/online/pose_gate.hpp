@@ -10,6 +10,7 @@
 #include "slipwise/filter/speed_range.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
+#include "slipwise/online/pose_fix.hpp"
 #include "slipwise/segment/segment.hpp"
 
 namespace slipwise {
@@ -32,6 +33,8 @@ struct MeasuredPose {
   double gy = 0.0;  ///< along its y axis [m/s^2]
   PoseStd std = {};
   PoseStdRatio std_ratio = {};
+  std::size_t source = 0;  ///< of those that measure poses
+  PoseFix fix = PoseFix::Unknown;
   bool position = false;                                     ///< whether only the position was measured
   std::array<std::optional<ChordHeading>, 2> headings = {};  ///< of a position: the first in use, and another
 };

@@ -28,9 +28,11 @@ enum class Reason : std::uint8_t {
   UnknownInput,
   StandingStill,
   AmbiguousHeading,
-  NoCourse
+  NoCourse,
+  NoFix,
+  PoorPose
 };
-inline constexpr std::size_t kReasons = 13;
+inline constexpr std::size_t kReasons = 15;
 constexpr std::size_t enumerators(Reason /*type*/) { return kReasons; }
 
 /// A short stable name, such as "duplicate-stamp".

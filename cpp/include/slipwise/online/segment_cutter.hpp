@@ -2,12 +2,15 @@
 // Cuts a stream of poses into segments of a given length, each as soon after the last as poses and rules allow.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <deque>
 #include <limits>
 #include <optional>
 #include <vector>
 
 #include "slipwise/online/input_buffer.hpp"
+#include "slipwise/online/pose_fix.hpp"
 #include "slipwise/online/pose_gate.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/segment/segment.hpp"
@@ -78,6 +81,11 @@ struct SegmentCut {
   /// T_first_second, the yaw difference along the unwrapped yaw.
   Pose2 measured() const;
 };
+
+/// Of the noise of both poses.
+inline std::array<std::size_t, 2> classes_of(const SegmentCut& cut) {
+  return {noise_class(cut.first.source, cut.first.fix), noise_class(cut.second.source, cut.second.fix)};
+}
 
 /// Walks along the poses of one run that are not late.
 class SegmentCutter {

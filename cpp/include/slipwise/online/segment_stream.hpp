@@ -16,6 +16,7 @@
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
+#include "slipwise/online/pose_source.hpp"
 #include "slipwise/online/pose_twists.hpp"
 #include "slipwise/online/rejection.hpp"
 #include "slipwise/online/sample_gate.hpp"
@@ -37,6 +38,9 @@ struct StreamSettings {
   std::vector<double> horizons = {1.0, 2.0, 5.0};  ///< of the predictions that are held against what was measured [s]
   Pose2 sensor = {};                               ///< where the pose sensor is known to sit in base_link
   std::optional<CarPrior> car = {};                ///< commands are throttle (v) and steering (omega) of a car
+  bool heading_only = false;                       ///< no poses come: turns of a gyro alone are learned from
+  /// Of all sources of poses, where there are several or their fixes count; the first is sources[0].
+  std::vector<SourceSettings> sources = {};
 };
 
 /// A segment whose prediction is held against what was measured.
@@ -44,6 +48,14 @@ struct TargetSegment {
   std::size_t horizon;  ///< among the settings'
   DrivenSegment driven;
   std::optional<InputHistory> baseline = {};  ///< what the kinematic baseline does, where it is not the inputs
+  std::array<std::size_t, 2> classes = {};    ///< of the noise of its poses, where sources are told apart
+};
+
+/// A segment between poses of one of several sources: it is learned where no better one covers the time.
+struct SourceSegment {
+  DrivenSegment driven;
+  std::size_t source;
+  std::array<std::size_t, 2> classes;  ///< of the noise of its poses
 };
 
 /// A segment from which slip is learned behind measured wheel speeds.
@@ -63,7 +75,7 @@ struct Rejected {
   double t;  ///< [s]
 };
 
-using StreamItem = std::variant<WheelSegment, SlipSegment, TwistSegment, DrivenSegment, TargetSegment>;
+using StreamItem = std::variant<WheelSegment, SlipSegment, TwistSegment, DrivenSegment, TargetSegment, SourceSegment>;
 
 /// Takes measurements of one run after another. Streams are in order each, and late relative to each other by no more
 /// than the latency: a pose is used once no earlier measurement can arrive, so that what comes out does not depend on
@@ -125,7 +137,7 @@ class SegmentStream {
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
       self.learned_last_);
-    a(self.chords_, self.position_last_, self.gyro_, self.heading_);
+    a(self.chords_, self.position_last_, self.gyro_, self.heading_, self.others_, self.turned_until_, self.turned_);
   }
 
  private:
@@ -134,6 +146,14 @@ class SegmentStream {
   void advance(double until);
   void process_wheels(double until);
   void process_pose(const MeasuredPose& raw);
+  void turn_on(const YawRate& sample);
+  bool push_first(const MeasuredPose& pose, bool learned);
+  bool push_other(MeasuredPose pose, bool learned);
+  void begin_others();
+  void finish_others();
+  void advance_others(double until);
+  void process_other(PoseSource& source, const GatedPoses& gated, double known_at);
+  void emit_other(const PoseSource& source, const SegmentCut& cut, double known_at);
   void process_accepted(const GatedPoses& gated);
   std::optional<TimedPose> headed(TimedPose timed, ChordFinder& chords) const;
   void emit_learned(const std::vector<SegmentCut>& cuts);
@@ -152,8 +172,9 @@ class SegmentStream {
                          const std::vector<InputSample>& future = {}) const;
   const InputBuffer& given() const { return car_ && settings_.from_commands ? car_->given() : inputs(); }
   void set_actuator_state(Segment& segment) const;
+  void set_turn(Segment& segment) const;
   void set_course(Segment& segment, const SegmentCut& cut) const;
-  MeasuredPose complete(const MeasuredPose& raw, PoseAccuracy& accuracy) const;
+  MeasuredPose complete(const MeasuredPose& raw, PoseAccuracies& accuracies) const;
   void stand_on_ground(Segment& segment, bool foreseen) const;
   void reject(Stream stream, Reason reason, double t) { rejected_.push_back({stream, reason, t}); }
 
@@ -170,7 +191,7 @@ class SegmentStream {
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
   double now_;                       ///< stamp of the pose that is being used, or was last [s]
-  PoseAccuracy accuracy_;
+  PoseAccuracies accuracy_;          ///< by fix
   PoseGate gate_;
   PoseTimer timer_;
   PoseTimer wheel_timer_;
@@ -186,8 +207,11 @@ class SegmentStream {
   bool learned_last_ = true;  ///< whether the last pose was
   ChordFinder chords_;
   GyroBuffer gyro_;
-  bool position_last_ = false;  ///< whether the last pose was a position alone
-  double heading_ = 0.0;        ///< of the last pose that was accepted [rad]
+  bool position_last_ = false;           ///< whether the last pose was a position alone
+  double heading_ = 0.0;                 ///< of the last pose that was accepted [rad]
+  std::vector<PoseSource> others_;       ///< sources of poses beside the first
+  std::optional<YawRate> turned_until_;  ///< the last yaw rate, where these alone are learned from
+  double turned_ = 0.0;                  ///< integral of yaw rates [rad]
 };
 
 }  // namespace slipwise

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <optional>
 
@@ -25,6 +26,17 @@ struct Chord {
   double offset = 0.0;  ///< what adds to the course to make the heading, as far as the inputs tell [rad]
 };
 
+/// Where several sources measure poses: what is particular to the one that measured a segment.
+struct SegmentSource {
+  std::size_t number = 0;
+  std::array<double, 3> noise_factor = {1.0, 1.0, 1.0};  ///< of the variances of (x, y, theta)
+  bool own_noise = false;  ///< the factor is all of the noise's size: the filters' scale is not that of this source
+  /// The segment says where its sensor sits, and its stamps are those of the inputs, even where the model learns the
+  /// place and the clock of the first.
+  bool own_calibration = false;
+  bool heading_only = false;  ///< no pose was measured, but the turn alone, by a gyro
+};
+
 struct Segment {
   double start;                                     ///< stamp of the first pose [s]
   double end;                                       ///< stamp of the second pose [s]
@@ -41,6 +53,13 @@ struct Segment {
   /// Between positions, where a gyro measured the turn and not the chords: its standard deviation [rad].
   std::optional<double> gyro_std = {};
   double heading = 0.0;  ///< of the first pose in the frame of the poses [rad]; forces fixed there depend on it
+  std::optional<SegmentSource> source = {};
 };
+
+/// Whether a filter learns from it how large noise is.
+inline bool shows_noise(const Segment& segment) { return !segment.source || !segment.source->own_noise; }
+
+/// The number of the source; that of the first where there is one alone.
+inline std::size_t source_number(const Segment& segment) { return segment.source ? segment.source->number : 0; }
 
 }  // namespace slipwise

@@ -27,7 +27,11 @@ Eigen::Matrix3d shared_pose_noise(const Pose2& measured, const Pose2& before, co
                                   const PoseStdRatio& ratio = {});
 /// A covariance of (x, y, theta) with a factor of its variances.
 Eigen::Matrix3d scaled_covariance(const Eigen::Matrix3d& covariance, const Eigen::Vector3d& scale);
-/// R of a measured segment: slip and both poses, with a factor of the variances of (x, y, theta).
+/// Of a measured segment: slip and both poses, times the factor of the source that measures it.
+Eigen::Matrix3d expected_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise);
+/// The learned factor of its variances that goes with what measures the segment.
+Eigen::Vector3d scale_for(const SegmentPath& path, const Eigen::Vector3d& scale);
+/// R of a measured segment: the same with a factor of the variances of (x, y, theta).
 Eigen::Matrix3d segment_noise(const SegmentPath& path, const Pose2& measured, const MotionNoise& noise,
                               const Eigen::Vector3d& scale);
 

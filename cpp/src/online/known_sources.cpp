@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// A segment calibrates its source, shows how large its errors are, and is then merged with those of others.
+#include "slipwise/online/known_sources.hpp"
+
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "slipwise/lie/angle.hpp"
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kOpen, 0.25);          // of a segment's noise variances: what is not known of its source may be as much
+constexpr double kRounding = 1e-9;     // [s]
+constexpr double kLongestPart = 1.06;  // a segment may be longer than asked for by this factor
+
+SegmentSource with_noise(const SourceNoise& noise, const std::array<std::size_t, 2>& classes,
+                         const Eigen::Vector3d& scale, SegmentSource source) {
+  source.own_noise = !noise.is_reference(classes);
+  if (source.own_noise) {
+    const Eigen::Vector3d size = noise.size(classes, scale);
+    source.noise_factor = {size[0], size[1], size[2]};
+  }
+  return source;
+}
+
+}  // namespace
+
+DrivenSegment measured_by(const SourceNoise& noise, const TargetSegment& target, const Eigen::Vector3d& scale) {
+  DrivenSegment driven = target.driven;
+  driven.segment.source = with_noise(noise, target.classes, scale, {});
+  return driven;
+}
+
+KnownSources::KnownSources(const StreamSettings& stream, const CausalFilterSettings& filter)
+    : settings_(stream.sources),
+      filter_(filter),
+      calibrations_(stream.sources.begin(), stream.sources.end()),
+      noise_(filter.noise),
+      merge_(stream.sources.size(), kLongestPart * stream.segment_length + 3.0 * kClocksApart),
+      learned_(stream.sources.size(), 0) {
+  start_run();
+}
+
+void KnownSources::start_run() {
+  merge_.restart();
+  seen_until_.assign(settings_.size(), -std::numeric_limits<double>::infinity());
+}
+
+/// What the errors of a segment show, which must not overlap with those seen before.
+void KnownSources::look(const MotionPosterior& posterior, const DrivenSegment& driven, const SourceSegment& item) {
+  DrivenSegment seen = driven;
+  if (item.source > 0) {
+    calibrations_[item.source].learn(posterior, driven, filter_.iekf);
+    seen.segment = calibrations_[item.source].corrected(driven.segment);
+  }
+  if (item.classes[0] != item.classes[1]) {
+    return;
+  }
+  noise_.meet(item.classes[0], posterior.noise_scale);
+  auto at = linearize_segment(posterior.model, posterior.estimate.mean, seen.inputs, seen.segment);
+  Eigen::Vector3d error = seen.segment.measured.vector() - at.predicted.vector();
+  error.z() = wrap_angle(error.z());
+  at.path.noise_factor = {1.0, 1.0, 1.0};
+  noise_.learn(item.classes[0],
+               {.squared = error.cwiseAbs2(),
+                .open = (at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose()).diagonal(),
+                .expected = expected_noise(at.path, seen.segment.measured, posterior.noise).diagonal()});
+}
+
+/// Puts the segment where and when it really was; false while too little is known of that.
+bool KnownSources::calibrated(const MotionPosterior& posterior, DrivenSegment& driven,
+                              const SourceSegment& item) const {
+  if (item.source == 0) {
+    return true;
+  }
+  const SourceCalibration& calibration = calibrations_[item.source];
+  const Eigen::Vector3d open = calibration.open(posterior, driven);
+  driven.segment = calibration.corrected(driven.segment);
+  if (driven.segment.source) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      driven.segment.source->noise_factor[i] *= 1.0 + open[static_cast<Eigen::Index>(i)];
+    }
+  }
+  return open.maxCoeff() <= kOpen;
+}
+
+KnownSources::Found KnownSources::see(const MotionPosterior& posterior, SourceSegment item) {
+  DrivenSegment& driven = item.driven;
+  const auto place = [&] {
+    driven.segment.source =
+        with_noise(noise_, item.classes, posterior.noise_scale, driven.segment.source.value_or(SegmentSource{}));
+  };
+  place();
+  if (driven.segment.start >= seen_until_[item.source] - kRounding) {
+    seen_until_[item.source] = driven.segment.end;
+    look(posterior, driven, item);
+    place();
+  }
+  const double beside = noise_.beside_best(item.classes);
+  const double start = driven.segment.start;
+  const double known_at = driven.known_at;
+  const bool ready = calibrated(posterior, driven, item);
+  const bool poor = beside > settings_[item.source].poorest && noise_.known(item.classes);
+  merge_.see(item.source, std::min(start, driven.segment.start), beside);
+  if (ready && !poor && noise_.known(item.classes)) {
+    merge_.push({.driven = std::move(driven), .source = item.source, .noise = beside});
+  }
+  std::vector<DrivenSegment> learned = counted(merge_.take(known_at));
+  for (DrivenSegment& each : learned) {
+    each.known_at = known_at;
+  }
+  return {.learned = std::move(learned), .poor = poor};
+}
+
+std::vector<DrivenSegment> KnownSources::counted(std::vector<DrivenSegment> learned) {
+  for (const DrivenSegment& each : learned) {
+    ++learned_[source_number(each.segment)];
+  }
+  return learned;
+}
+
+std::vector<DrivenSegment> KnownSources::waiting() const {
+  std::vector<DrivenSegment> found;
+  for (const MergedSegment& each : merge_.waiting()) {
+    if (each.source == 0) {
+      found.push_back(each.driven);
+    }
+  }
+  return found;
+}
+
+}  // namespace slipwise

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of the sources beside the first: in the order of their stamps, gated, and cut into segments.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/online/learner_times.hpp"
+#include "slipwise/online/segment_stream.hpp"
+
+namespace slipwise {
+namespace {
+
+SLIPWISE_TUNING(kStarts, 10.0);  // segments begin this many times within the length of one, so that gaps are filled
+
+}  // namespace
+
+void SegmentStream::begin_others() {
+  for (std::size_t i = 1; i < settings_.sources.size(); ++i) {
+    const SourceSettings& source = settings_.sources[i];
+    others_.push_back(
+        {.settings = source,
+         .cutter = SegmentCutter(settings_.segment_length, settings_.rules, false, settings_.segment_length / kStarts),
+         .chords = ChordFinder(source.sensor)});
+  }
+}
+
+/// It is used `kClocksApart` after its stamp, so that inputs are known whenever it really was.
+bool SegmentStream::push_other(MeasuredPose pose, bool learned) {
+  if (pose.source > others_.size()) {
+    reject(Stream::Pose, Reason::NotFinite, pose.t);
+    return false;
+  }
+  PoseSource& source = others_[pose.source - 1];
+  pose.t -= source.settings.late;
+  pose.yaw = pose.position ? 0.0 : pose.yaw;
+  const bool absurd = !(pose.std.xy >= 0.0) || !(pose.std.yaw >= 0.0);
+  if (absurd || pose.t < newest_ - settings_.latency) {
+    reject(Stream::Pose, absurd ? Reason::NotFinite : Reason::TooLate, pose.t);
+    return false;
+  }
+  if (!learned) {
+    ++source.breaks;
+    return true;
+  }
+  if (const auto wrong = source.take(pose)) {
+    reject(Stream::Pose, *wrong, pose.t);
+    return false;
+  }
+  newest_ = std::max(newest_, pose.t);
+  advance(newest_ - settings_.latency);
+  return true;
+}
+
+/// Uses what cannot be preceded any more, the earliest first.
+void SegmentStream::advance_others(double until) {
+  const auto next = [](const PoseSource& source) {
+    return source.waiting.empty() ? std::numeric_limits<double>::infinity() : source.waiting.front().t + kClocksApart;
+  };
+  while (!others_.empty()) {
+    PoseSource& source = *std::ranges::min_element(others_, {}, next);
+    if (source.waiting.empty() || next(source) > until) {
+      return;
+    }
+    const MeasuredPose raw = source.waiting.front();
+    source.waiting.pop_front();
+    source.used = raw.t;
+    process_other(source, source.gate.push(complete(raw, source.accuracies), gate_inputs(raw.t)), raw.t + kClocksApart);
+  }
+}
+
+void SegmentStream::finish_others() {
+  for (PoseSource& source : others_) {
+    process_other(source, source.gate.finish(gate_inputs(source.used)), source.used + kClocksApart);
+  }
+}
+
+void SegmentStream::process_other(PoseSource& source, const GatedPoses& gated, double known_at) {
+  for (const MeasuredPose& pose : gated.outliers) {
+    reject(Stream::Pose, Reason::PoseOutlier, pose.t);
+  }
+  for (const MeasuredPose& pose : gated.jumps) {
+    reject(Stream::Pose, Reason::PoseJump, pose.t);
+  }
+  for (const MeasuredPose& pose : gated.accepted) {
+    auto timed = source.timer.push(pose, settings_.rules.late_factor);
+    const bool late = !timed;
+    timed = late ? timed : headed(*std::move(timed), source.chords);
+    if (!timed) {
+      reject(Stream::Pose, late ? Reason::LatePose : Reason::NoCourse, pose.t);
+      continue;
+    }
+    for (const SegmentCut& cut : source.cutter.push(*timed, inputs())) {
+      emit_other(source, cut, known_at);
+    }
+  }
+}
+
+/// Stretches without use are counted for the first source alone: those of others overlap.
+void SegmentStream::emit_other(const PoseSource& source, const SegmentCut& cut, double known_at) {
+  if (cut.rejected) {
+    return;
+  }
+  DrivenSegment found = driven(cut, !settings_.from_commands, known_at);
+  Segment& segment = found.segment;
+  segment.sensor = source.settings.sensor;
+  segment.source = SegmentSource{.number = cut.first.source, .own_calibration = true};
+  Segment longer = segment;
+  longer.end += kClocksApart;
+  found.inputs = settings_.from_commands
+                     ? commanded(longer, kLookBack, segment.start)
+                     : wheels_.slice(path_start(segment) - kWheelsBack, longer.end, SliceKind::Wheels);
+  items_.emplace_back(SourceSegment{std::move(found), cut.first.source, classes_of(cut)});
+}
+
+}  // namespace slipwise

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// A filter of four states for each source.
+#include "slipwise/online/source_calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "slipwise/filter/causal_filter.hpp"
+#include "slipwise/filter/map_update.hpp"
+#include "slipwise/linear/innovation.hpp"
+#include "slipwise/linear/tuning.hpp"
+#include "slipwise/segment/integrate_segment.hpp"
+#include "slipwise/segment/segment_covariance.hpp"
+#include "slipwise/segment/sensor_motion.hpp"
+
+namespace slipwise {
+namespace {
+
+constexpr double kStep = 0.01;  // [s, m] of the differences that stand for derivatives
+constexpr Eigen::Index kStates = 4;
+SLIPWISE_TUNING(kClockDrift, 2e-3);  // [s] per segment: what was learned while the model knew little is forgotten
+SLIPWISE_TUNING(kPlaceDrift, 4e-3);  // [m, rad] the same
+
+}  // namespace
+
+/// A segment of a source as a measurement of how late it is and where it sits.
+struct SourceCalibration::Seen {
+  struct At {
+    Pose2 predicted;
+    Eigen::Matrix<double, 3, kStates> jacobian;
+  };
+  using Innovation = Eigen::Vector3d;
+
+  const MotionPosterior& posterior;
+  const DrivenSegment& driven;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+
+  SegmentPath path(const Eigen::VectorXd& state) const {
+    return integrate_segment(posterior.model, posterior.estimate.mean, driven.inputs, placed(driven.segment, state));
+  }
+  At at(const Eigen::VectorXd& state) const {
+    const SegmentPath here = path(state);
+    At found{here.sensor_motion(), Eigen::Matrix<double, 3, kStates>::Zero()};
+    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kStates, 0);
+    found.jacobian.col(0) =
+        (path(state + step).sensor_motion().vector() - path(state - step).sensor_motion().vector()) / (2.0 * kStep);
+    if (!here.course) {
+      found.jacobian.rightCols<3>() = sensor_by_extrinsics(here.poses.back(), here.sensor);
+      return found;
+    }
+    for (Eigen::Index i = 1; i < 3; ++i) {  // an antenna has no heading
+      const Eigen::VectorXd aside = kStep * Eigen::VectorXd::Unit(kStates, i);
+      found.jacobian.col(i) =
+          (path(state + aside).sensor_motion().vector() - path(state - aside).sensor_motion().vector()) / (2.0 * kStep);
+    }
+    return found;
+  }
+  Innovation innovation(const At& at) const { return driven.segment.measured.vector() - at.predicted.vector(); }
+  static const Eigen::Matrix<double, 3, kStates>& jacobian(const At& at) { return at.jacobian; }
+  const Eigen::Matrix3d& noise(const At& /*at*/) const { return covariance; }
+};
+
+SourceCalibration::SourceCalibration(const SourceSettings& settings)
+    : estimate_{Eigen::VectorXd::Zero(kStates), Eigen::MatrixXd::Zero(kStates, kStates)} {
+  estimate_.mean.tail<3>() = settings.sensor.vector();
+  estimate_.covariance.diagonal() << std::pow(settings.clock_std, 2), std::pow(settings.sensor_std_xy, 2),
+      std::pow(settings.sensor_std_xy, 2), std::pow(settings.sensor_std_yaw, 2);
+}
+
+Segment SourceCalibration::placed(const Segment& segment, const Eigen::VectorXd& at) {
+  Segment moved = segment;
+  const double late = std::clamp(at[0], -kClocksApart, kClocksApart);
+  moved.start -= late;
+  moved.end -= late;
+  if (moved.chords) {
+    for (Chord& chord : *moved.chords) {
+      chord.from -= late;
+    }
+  }
+  moved.sensor = Pose2::from_vector(at.tail<3>());
+  return moved;
+}
+
+void SourceCalibration::learn(const MotionPosterior& posterior, const DrivenSegment& driven,
+                              const IekfSettings& settings) {
+  for (Eigen::Index i = 0; i < kStates; ++i) {
+    const double drift = i == 0 ? kClockDrift : kPlaceDrift;
+    estimate_.covariance(i, i) += estimate_.covariance(i, i) > 0.0 ? drift * drift : 0.0;
+  }
+  const auto at = linearize_segment(posterior.model, posterior.estimate.mean, driven.inputs, corrected(driven.segment));
+  Seen seen{posterior, driven};
+  seen.covariance = prediction_covariance(at, posterior.estimate.covariance, posterior.noise, posterior.noise_scale);
+  const MapUpdate problem(estimate_, seen);
+  auto now = problem.begin(seen.at(estimate_.mean));
+  const double nis =
+      normalised_square(now.innovation, innovation_covariance(estimate_.covariance, now.at.jacobian, seen.covariance));
+  if (!(nis <= settings.gate)) {
+    return;
+  }
+  seen.covariance *= std::max(std::sqrt(nis) / settings.huber, 1.0);
+  now = problem.begin(std::move(now.at));
+  if (!problem.minimize(now, settings.map())) {
+    return;
+  }
+  const Eigen::MatrixXd spread = now.at.jacobian * estimate_.covariance;
+  const Eigen::Matrix3d s = innovation_covariance(estimate_.covariance, now.at.jacobian, seen.covariance);
+  const Eigen::MatrixXd less = spread.transpose() * solve_innovation(s, spread);
+  estimate_.mean = now.state;
+  estimate_.covariance -= (less + less.transpose()) / 2.0;
+  estimate_.covariance.diagonal() = estimate_.covariance.diagonal().cwiseMax(0.0);
+}
+
+Eigen::Vector3d SourceCalibration::open(const MotionPosterior& posterior, const DrivenSegment& driven) const {
+  const Seen seen{posterior, driven};
+  const auto at = seen.at(estimate_.mean);
+  const Eigen::Matrix3d noise =
+      segment_noise(seen.path(estimate_.mean), driven.segment.measured, posterior.noise, posterior.noise_scale);
+  const Eigen::Matrix3d unknown = at.jacobian * estimate_.covariance * at.jacobian.transpose();
+  return unknown.diagonal().cwiseQuotient(noise.diagonal());
+}
+
+}  // namespace slipwise
