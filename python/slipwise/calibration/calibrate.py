@@ -250,9 +250,9 @@ def judged_on(
         wheels_logged=has_wheels(windows.drive),
         wheels_advice=log.advice.get("wheel", ""),
         positions=has_course(log.runs),
+        gyro_alone=gyro_alone(log.runs),
     )
-    facts = LogFacts(found, shortage, input_name, has_course(log.runs), gyro_alone(log.runs))
-    verdict = give_verdict(judgement, known, facts)
+    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
     if not any(each.spoils for each in found):
         verdict = replace(verdict, force=force_words(learned.identifiable, settings))
         kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)

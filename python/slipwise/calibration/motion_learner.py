@@ -240,8 +240,13 @@ class MotionLearner(Measurements, RememberedSurfaces):
             made, judgement = model_of_log(learned, log, self._input, self._settings)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
         judgement = judgement_of(learned)
-        known = identified(learned.identifiable, wheels_logged=self._wheels, positions=self._positions)
-        verdict = give_verdict(judgement, known, self._facts())
+        known = identified(
+            learned.identifiable,
+            wheels_logged=self._wheels,
+            positions=self._positions,
+            gyro_alone=self._gyro_alone,
+        )
+        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
         kept = learned.kept.limits is not None
         of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)
         verdict = replace(verdict, advice=(*verdict.advice, *of_limits))
@@ -256,9 +261,6 @@ class MotionLearner(Measurements, RememberedSurfaces):
         )
         content = self._remembered(model_content(learned, Judged(judgement, verdict), facts), learned)
         return model_of(content, Log(()), ()), judgement
-
-    def _facts(self) -> LogFacts:
-        return LogFacts(input_name=self._input, positions=self._positions, gyro_alone=self._gyro_alone)
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:
         """Return the content with the surfaces, where these are remembered."""

@@ -53,15 +53,20 @@ class LogFacts:
     shortage: tuple[str, ...] = ()  # why there are so few segments, and what to do, where they are too few
     input_name: str = "command"
     positions: bool = False  # only positions were measured
-    gyro_alone: bool = False  # no poses were measured, but yaw rates
 
 
 def identified(
-    posterior: Posterior, *, wheels_logged: bool, wheels_advice: str = "", positions: bool = False
+    posterior: Posterior,
+    *,
+    wheels_logged: bool,
+    wheels_advice: str = "",
+    positions: bool = False,
+    gyro_alone: bool = False,
 ) -> Identified:
     """Say what a posterior knows of its parameters, and which driving would tell the rest."""
     unknown, pairs = not_identifiable(posterior), confounded(posterior)
-    advice = (*drives_for(unknown, positions=positions), *advice_for_pairs(pairs))
+    told = tuple(name for name in unknown if not (gyro_alone and name.startswith(("lon.", "lat."))))
+    advice = (*drives_for(told, positions=positions), *advice_for_pairs(pairs))
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     return Identified(len(posterior.mean), unknown, advice, pairs, timing)
 
@@ -75,7 +80,9 @@ def give_verdict(judgement: Judgement, known: Identified, facts: LogFacts) -> Ve
     reservations = _reservations(judgement, facts)
     sentences = [fault]
     if not contradicted and not judgement.too_short:
-        figures = _turns(judgement.held_out) if facts.gyro_alone else _figures(judgement.held_out)
+        figures = (
+            _turns(judgement.held_out) if judgement.held_out.turns_alone else _figures(judgement.held_out)
+        )
         sentences += [figures, *reservations, "" if fault else _unknown(known)]
     advice = (*_advice(judgement, facts), *(() if contradicted else known.advice))
     return Verdict(
@@ -121,8 +128,9 @@ def _reservations(judgement: Judgement, facts: LogFacts) -> tuple[str, ...]:
         f"{each.sentence[0].upper()}{each.sentence[1:]}." for each in facts.contradictions if not each.spoils
     ]
     honest = "" if judgement.consistency is None else judgement.consistency.sentence()
-    courses = POSITIONS_ONLY if facts.positions else YAW_RATES_ONLY if facts.gyro_alone else ""
-    return tuple(sentence for sentence in (honest, *partly, courses) if sentence)
+    courses = POSITIONS_ONLY if facts.positions else ""
+    turns = YAW_RATES_ONLY if judgement.held_out.turns_alone else ""
+    return tuple(sentence for sentence in (honest, *partly, courses, turns) if sentence)
 
 
 def _figures(held_out: HeldOut) -> str:

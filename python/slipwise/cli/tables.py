@@ -207,5 +207,7 @@ def _score_row(score: Score) -> tuple[str, ...]:
 
 
 def _error(summary: ErrorSummary, scale: float) -> str:
+    if summary.mean == summary.high == 0.0:  # nothing was measured
+        return "–"
     low, high = number_text(summary.low * scale, 2), number_text(summary.high * scale, 2)
     return f"{number_text(summary.mean * scale)} ({low}–{high})"

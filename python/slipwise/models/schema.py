@@ -143,6 +143,11 @@ class HeldOut(_Section):
     baseline_position: NotNegative  # [m]
     baseline_heading: NotNegative  # [rad]
 
+    @property
+    def turns_alone(self) -> bool:
+        """Whether turns alone were measured: there is no error of a position, not even the baseline's."""
+        return self.segments > 0 and self.position == self.baseline_position == 0.0
+
 
 class Confounded(_Section):
     """Two parameters that the log can hardly tell apart."""

@@ -88,6 +88,10 @@ def _prediction_sentences(model: Model) -> list[str]:
     held_out = model.content.verdict.held_out
     if held_out is None or held_out.segments == 0:
         return []
+    if held_out.turns_alone:
+        learned, plain = _turn(held_out.heading), _turn(held_out.baseline_heading)
+        reached = f"Predicts the heading {held_out.horizon:g} s ahead to {learned}"
+        return [f"{reached}, where the kinematic baseline misses by {plain}; positions were not measured."]
     reached = f"Predicts {held_out.horizon:g} s ahead to {_errors(held_out.position, held_out.heading)}"
     times = _times_better(held_out)
     if model.content.verdict.good and times:
@@ -109,9 +113,11 @@ def _times_better(held_out: HeldOut) -> str:
 
 
 def _errors(position: float, heading: float) -> str:
-    return (
-        f"{number_text(position)} m and {number_text(heading)} rad ({number_text(math.degrees(heading))} deg)"
-    )
+    return f"{number_text(position)} m and {_turn(heading)}"
+
+
+def _turn(heading: float) -> str:
+    return f"{number_text(heading)} rad ({number_text(math.degrees(heading))} deg)"
 
 
 def _amount(parameter: PhysicalParameter) -> str:

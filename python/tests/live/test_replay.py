@@ -11,6 +11,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from sample_logs import Drive, simulated_log
 from scripted_node import SLIP
@@ -25,6 +26,7 @@ from slipwise.live.replay import Replay, samples_of
 from slipwise.live.samples import Command, Pose, Wheels
 from slipwise.live.udp import Udp
 from slipwise.logs import Log
+from slipwise.logs.log import empty_poses
 
 
 @pytest.fixture(scope="module")
@@ -147,3 +149,18 @@ def test_a_wrong_line_is_said_once_and_the_rest_goes_on(tmp_path: Path) -> None:
         "left out, line 2: 2 cells where the header has 3",
         "left out, line 5: t is 'x', not a number",
     ]
+
+
+def test_replayed_sources_and_yaw_rates_are_what_calibrate_writes_to_the_byte(log: Log) -> None:
+    (run,) = log.runs
+    beside = replace(run, others={"second": replace(run.poses, t=run.poses.t + 0.05)}, source="first")
+    t, yaw = run.poses.t, np.unwrap(run.poses.yaw)
+    rates = {"t": 0.5 * (t[1:] + t[:-1]), "gyro_z": np.diff(yaw) / np.diff(t)}
+    turning = replace(run, poses=empty_poses(), extra=rates)
+    for each, live in ((beside, {"sources": ["first", "second"]}), (turning, {"gyro_alone": True})):
+        replayed = Log(runs=(each,))
+        settings = make_settings({"live": live})
+        built = build_node(Replay(replayed, "wheel", rate=0.0), "wheel", settings)
+        built.node.run()
+        model, _ = built.learning.learner.judged_model(log=replayed)
+        assert model.to_yaml() == sw.calibrate(replayed, input="wheel", settings=settings).model.to_yaml()

@@ -149,6 +149,8 @@ def _cells(score: Score) -> tuple[str, ...]:
 
 
 def _error(summary: ErrorSummary, scale: float) -> str:
+    if summary.mean == summary.high == 0.0:  # nothing was measured
+        return DASH
     low, high = number(summary.low * scale), number(summary.high * scale)
     return number(summary.mean * scale) + _small(f"{low} to {high}")
 

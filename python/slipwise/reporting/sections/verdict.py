@@ -61,7 +61,7 @@ def _tiles(contents: Contents) -> str:
     tiles = [
         _tile(
             f"Position error after {horizon:g} s",
-            f"{number(position)} m",
+            "not measured" if position == plain.position.mean == 0.0 else f"{number(position)} m",
             f"{BASELINE}: {number(plain.position.mean)} m{_times(position, plain.position.mean)}",
         ),
         _tile(

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Which topics of a robot are sources of poses, and whether an IMU gives headings or yaw rates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from slipwise.live.ros_roles import only_positions, source_topics, with_oriented_imu
+from slipwise.live.ros_transport import CueTopics, RosTransport
+from slipwise.live.samples import Gyro, Pose, Sample
+from slipwise.live.wires.ros_types import ros_types
+from slipwise.live.wires.wire import WireTopic
+from slipwise.logs.messages import IMU, NAV_SAT_FIX, POSE_STAMPED
+from slipwise.logs.options import LogOptions
+from slipwise.logs.role_choice import Topic
+from slipwise.logs.topics import Roles
+
+STORE = ros_types()
+FIX, LIDAR, GYRO = Topic("/fix", NAV_SAT_FIX, 1), Topic("/lidar", POSE_STAMPED, 1), Topic("/imu", IMU, 1)
+
+
+class Wire:
+    """Hands messages over as soon as somebody subscribes."""
+
+    name = "a test's"
+
+    def __init__(self, messages: dict[str, list[bytes]]) -> None:
+        self.messages = messages
+
+    def topics(self) -> list[WireTopic]:
+        return []
+
+    def subscribe(
+        self, topic: str, _type_name: str, on_message: Callable[[bytes], None], *, latched: bool = False
+    ) -> None:
+        del latched
+        for message in self.messages.get(topic, []):
+            on_message(message)
+
+    def publish(self, _topic: str, _type_name: str, _payload: bytes, *, latched: bool = False) -> None:
+        del latched
+
+    def advertise(self, _topic: str, _type_name: str, *, latched: bool = False) -> None:
+        del latched
+
+    def call(self, _service: str, _type_name: str, _request: bytes, *, timeout: float) -> bytes | None:
+        del timeout
+        return None
+
+    def connections(self, _topic: str) -> int:
+        return 0
+
+    def notices(self) -> list[str]:
+        return []
+
+    def close(self) -> None:
+        pass
+
+
+def made(kind: str, *values: object) -> object:
+    return STORE.types[kind](*values)
+
+
+def header() -> object:
+    return made("std_msgs/msg/Header", made("builtin_interfaces/msg/Time", 12, 0), "map")
+
+
+def imu(*, oriented: bool) -> bytes:
+    q = made("geometry_msgs/msg/Quaternion", 0.0, 0.0, 0.0, 1.0 if oriented else 0.0)
+    rate, none = made("geometry_msgs/msg/Vector3", 0.0, 0.0, 0.3), np.zeros(9)
+    return bytes(STORE.serialize_cdr(made(IMU, header(), q, none, rate, none, rate, none), IMU))
+
+
+def fix(status: int) -> bytes:
+    said = made("sensor_msgs/msg/NavSatStatus", status, 1)
+    message = made(NAV_SAT_FIX, header(), said, 48.0, 9.0, 300.0, np.zeros(9), 0)
+    return bytes(STORE.serialize_cdr(message, NAV_SAT_FIX))
+
+
+def roles(
+    pose: Topic | None, *, others: tuple[Topic, ...] = (), headed: bool = False, gyro: bool = False
+) -> Roles:
+    return Roles(
+        pose,
+        None,
+        Topic("/odom", "none", 1),
+        GYRO if headed else None,
+        (),
+        {},
+        others,
+        GYRO if gyro else None,
+    )
+
+
+@pytest.mark.parametrize("oriented", [True, False])
+def test_an_imu_without_an_orientation_gives_no_headings(oriented: bool) -> None:
+    said: list[str] = []
+    wire = Wire({"/imu": [imu(oriented=oriented)] * 3})
+    found = with_oriented_imu(wire, roles(FIX, headed=True, gyro=True), said.append)
+    assert only_positions(found) is not oriented
+    assert found.gyro == GYRO
+    assert said == ([] if oriented else ["/imu has no orientation: its yaw rates are used"])
+
+
+def samples_of(taken: Roles, messages: dict[str, list[bytes]]) -> list[Sample]:
+    taken = Roles(taken.pose, None, None, taken.imu, (), {}, taken.others, taken.gyro)
+    transport = RosTransport(Wire(messages), taken, LogOptions(), name="slipwise", cues=CueTopics())
+    found: list[Sample] = []
+    transport.subscribe(found.append)
+    return [sample for sample in found if isinstance(sample, Pose | Gyro)]
+
+
+def test_yaw_rates_come_beside_positions_and_alone() -> None:
+    beside = samples_of(roles(FIX, gyro=True), {"/fix": [fix(0)], "/imu": [imu(oriented=False)]})
+    assert len(beside) == 2
+    assert Gyro(12.0, 0.3) in beside
+    assert samples_of(roles(None, gyro=True), {"/imu": [imu(oriented=True)]}) == [Gyro(12.0, 0.3)]
+
+
+def test_poses_of_further_topics_say_whose_they_are() -> None:
+    chosen = roles(LIDAR, others=(FIX,))
+    assert source_topics(chosen) == ("/lidar", "/fix")
+    assert source_topics(roles(LIDAR)) == ()
+    (pose,) = samples_of(chosen, {"/fix": [fix(2)]})
+    assert isinstance(pose, Pose)
+    assert (pose.source, pose.fix) == ("/fix", "rtk_fixed")
+    assert np.isnan(pose.yaw)
