@@ -12,6 +12,7 @@ from sample_bags import EPOCH, POSE, SECOND, TWIST, Bag
 from slipwise.errors import LogError, SettingsError
 from slipwise.logs import LogOptions, Run, open_log, save_log
 from slipwise.logs.fixes import CODES
+from slipwise.logs.gyro import gyro_alone
 from slipwise.segments import source_names, sourced_rows
 from slipwise.segments.sources import pose_rows
 
@@ -144,3 +145,22 @@ def test_where_poses_have_headings_no_gyro_is_read(tmp_path: Path) -> None:
     folder = satellite_bag(oriented=True).write(tmp_path / "a.mcap")
     assert gyro_of(open_log(folder, options=LogOptions(pose_topic="/gps/fix")).runs[0]).size == 0
     assert gyro_of(open_log(folder, options=LogOptions(pose_topic="/lidar/pose")).runs[0]).size == 0
+
+
+def test_a_bag_without_poses_gives_yaw_rates_of_the_imu_that_is_named(tmp_path: Path) -> None:
+    folder = satellite_bag().write(tmp_path / "a.mcap")
+    (run,) = open_log(folder, options=LogOptions(pose_topic="none", imu_topic="/imu/data")).runs
+    assert len(run.poses) == 0
+    assert gyro_of(run).size == 99
+    assert gyro_alone([run])
+    with pytest.raises(LogError, match="no topic with a measured pose"):
+        open_log(folder, options=LogOptions(pose_topic="none"))
+
+
+def test_a_table_without_positions_needs_yaw_rates(tmp_path: Path) -> None:
+    rows = [f"{0.1 * k:.1f},1,0.1,0.1" for k in range(60)]
+    (tmp_path / "a.csv").write_text("\n".join(["t,odo_v,odo_omega,gyro_z", *rows, ""]))
+    assert gyro_alone(open_log(tmp_path / "a.csv").runs)
+    (tmp_path / "b.csv").write_text("\n".join(["t,odo_v,odo_omega,gyro_y", *rows, ""]))
+    with pytest.raises(LogError, match="missing columns: x; y"):
+        open_log(tmp_path / "b.csv")
