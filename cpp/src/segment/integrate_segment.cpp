@@ -10,6 +10,7 @@
 
 #include "slipwise/linear/present.hpp"
 #include "slipwise/segment/ground_step.hpp"
+#include "slipwise/segment/growing_path.hpp"
 #include "slipwise/segment/path_step.hpp"
 #include "slipwise/segment/sensor_motion.hpp"
 
@@ -58,63 +59,6 @@ BodyGravity under(const Segment& segment, const ActuatorStep& step, double theta
                   bool by_heading) {
   const BodyGravity pull = ground != nullptr ? *ground : BodyGravity{.gx = segment.gx, .gy = segment.gy};
   return by_heading ? headed(pull, segment.heading + theta + 0.5 * step.turn) : pull;
-}
-
-/// The path as it grows. The heading's rotation is carried along, so that a step costs the trigonometry of its turn
-/// alone.
-class GrowingPath {
- public:
-  GrowingPath(const Segment& segment, std::size_t steps) {
-    path_.times.reserve(steps + 1);
-    path_.poses.reserve(steps + 1);
-    path_.tangents.reserve(steps);
-    path_.times.push_back(path_start(segment));
-    path_.poses.emplace_back();
-    path_.pose_std_ratio = segment.pose_std_ratio;
-    if (segment.source) {
-      path_.noise_factor = segment.source->noise_factor;
-      path_.own_noise = segment.source->own_noise;
-      path_.heading_std = segment.source->heading_only ? segment.gyro_std : std::nullopt;
-    }
-  }
-
-  const Eigen::Matrix2d& heading() const { return heading_; }
-  const Pose2& pose() const { return path_.poses.back(); }
-
-  /// `displacement` is the step's motion observed from its start, and `arc` belongs to its turn.
-  void append(double duration, const Eigen::Vector3d& tangent, const Eigen::Vector2d& displacement,
-              const ArcFunctions<double>& arc) {
-    const Eigen::Vector2d moved = heading_ * displacement;
-    const Pose2 next{pose().x + moved.x(), pose().y + moved.y(), pose().theta + tangent.z()};
-    const Eigen::Vector2d ahead = heading_ * Eigen::Vector2d(arc.cos_turn, arc.sin_turn);
-    heading_ << ahead.x(), -ahead.y(), ahead.y(), ahead.x();
-    path_.times.push_back(path_.times.back() + duration);
-    path_.poses.push_back(next);
-    path_.tangents.push_back(tangent);
-  }
-
-  double time() const { return path_.times.back(); }
-
-  SegmentPath finish(std::vector<ActuatorStep> drive, const Pose2& sensor,
-                     const std::optional<CoursePlaces>& course = std::nullopt) && {
-    path_.drive = std::move(drive);
-    path_.sensor = sensor;
-    path_.course = course;
-    return std::move(path_);
-  }
-
- private:
-  SegmentPath path_;
-  Eigen::Matrix2d heading_ = Eigen::Matrix2d::Identity();
-};
-
-/// Appends an exact step; returns the derivative of the pose by the step's tangent, carried back to the path's start:
-/// Phi(0, k+1) blkdiag(R_k, 1) E_k of derivations/jacobians.md.
-Eigen::Matrix3d append_linearized(GrowingPath& path, double duration, const Eigen::Vector3d& tangent) {
-  const auto arc = arc_functions(tangent.z());
-  const Eigen::Matrix2d heading = path.heading();
-  path.append(duration, tangent, arc_matrix(arc) * tangent.head<2>(), arc);
-  return start_by_tangent(heading, tangent, arc, path.pose());
 }
 
 /// Sums of derivations/jacobians.md: the steps' derivatives carried back to the path's start, one column per

@@ -39,6 +39,10 @@ struct Thirteen {
   int a, b, c, d, e, f, g, h, i, j, k, l, m;
 };
 
+struct Fourteen {
+  int a, b, c, d, e, f, g, h, i, j, k, l, m, n;
+};
+
 class Closed {
  public:
   explicit Closed(int value) : value_(value) {}
@@ -53,6 +57,7 @@ TEST_CASE("members are counted, an array or an aggregate in an aggregate as one"
   CHECK(member_count<Inner>() == 2);
   CHECK(member_count<Outer>() == 4);
   CHECK(member_count<Thirteen>() == 13);
+  CHECK(member_count<Fourteen>() == 14);
 }
 
 TEST_CASE("a class that guards its members is no aggregate") { CHECK_FALSE(Aggregate<Closed>); }
@@ -61,6 +66,8 @@ TEST_CASE("members are visited in their order") {
   Thirteen value{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
   const auto list = [](auto... member) { return std::vector<int>{member...}; };
   CHECK(with_members(value, list) == std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13});
+  Fourteen most{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14};
+  CHECK(with_members(most, list) == std::vector<int>{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14});
   CHECK(std::is_same_v<Members<Inner>, std::tuple<double, int>>);
 }
 

@@ -105,7 +105,8 @@ def samples_of(run: PreparedRun, sources: Sequence[str] = ()) -> Iterator[Comman
     commands, wheels, attitudes = (rows.tolist() for rows in others)
     if run.run.poses.force_x is not None or run.run.poses.force_y is not None:
         raise LogError(
-            "known forces are not taken live", advice="leave out force_x and force_y, or use slipwise calibrate"
+            "known forces are not taken live",
+            advice="leave out force_x and force_y, or use slipwise calibrate",
         )
     poses = (sourced_rows(run.run, measured, sources) if sources else measured).tolist()
     tilt = {t: (roll, pitch) for t, roll, pitch in attitudes}

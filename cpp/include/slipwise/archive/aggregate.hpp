@@ -25,7 +25,7 @@ consteval bool takes(std::index_sequence<I...> /*members*/) {
 }
 
 /// How many members an aggregate has: as many as it can be made of, of at most `kMost`.
-template <Aggregate T, std::size_t kMost = 14>
+template <Aggregate T, std::size_t kMost = 15>
 consteval std::size_t member_count() {
   if constexpr (takes<T>(std::make_index_sequence<kMost>{})) {
     return kMost;
@@ -34,11 +34,11 @@ consteval std::size_t member_count() {
   }
 }
 
-/// Calls `use` with the members of an aggregate of up to thirteen, in their order.
+/// Calls `use` with the members of an aggregate of up to fourteen, in their order.
 template <class T, class Use>
 auto with_members(T& value, const Use& use) {
   constexpr std::size_t kCount = member_count<std::remove_const_t<T>>();
-  static_assert(kCount > 0 && kCount < 14, "an aggregate of one to thirteen members");
+  static_assert(kCount > 0 && kCount < 15, "an aggregate of one to fourteen members");
   // clang-format off
   if constexpr (kCount == 1) { auto& [a] = value; return use(a); }
   else if constexpr (kCount == 2) { auto& [a, b] = value; return use(a, b); }
@@ -55,8 +55,10 @@ auto with_members(T& value, const Use& use) {
     auto& [a, b, c, d, e, f, g, h, i, j, k] = value; return use(a, b, c, d, e, f, g, h, i, j, k);
   } else if constexpr (kCount == 12) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l] = value; return use(a, b, c, d, e, f, g, h, i, j, k, l);
-  } else {
+  } else if constexpr (kCount == 13) {
     auto& [a, b, c, d, e, f, g, h, i, j, k, l, m] = value; return use(a, b, c, d, e, f, g, h, i, j, k, l, m);
+  } else {
+    auto& [a, b, c, d, e, f, g, h, i, j, k, l, m, n] = value; return use(a, b, c, d, e, f, g, h, i, j, k, l, m, n);
   }
   // clang-format on
 }
