@@ -113,6 +113,8 @@ def predict(  # noqa: PLR0913 - all but the first two are options
     ground: Ground | None = None,
     at: Pose = (0.0, 0.0, 0.0),
     terrain_ahead: TerrainAhead | None = None,
+    force_age: float = 0.0,
+    known_force: tuple[float, float] = (0.0, 0.0),
 ) -> prediction.Path:
     """Predict the path of base_link under `commands`; see `slipwise.prediction.predict`.
 
@@ -126,6 +128,8 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         ground: a `Grade` or an `ElevationMap` of `slipwise.ground`; level by default.
         at: the robot's pose (x, y [m], yaw [rad]) at the start in the frame of the ground.
         terrain_ahead: surfaces along the path, a `TerrainAhead` of `slipwise.terrain_ahead`.
+        force_age: how long ago the model was learned [s], where a force was learned beside slip.
+        known_force: what pushes the robot, over its mass, ahead and to its left [m/s^2].
 
     Raises:
         ModelError: the file is no model, or the model does not remember a surface ahead.
@@ -142,6 +146,8 @@ def predict(  # noqa: PLR0913 - all but the first two are options
         ground=ground,
         at=at,
         terrain_ahead=terrain_ahead,
+        force_age=force_age,
+        known_force=known_force,
     )
 
 

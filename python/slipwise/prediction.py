@@ -116,9 +116,10 @@ def predict(  # noqa: PLR0913  (all but the first two are options)
     Raises:
         ModelError: the model does not remember a surface ahead.
         SettingsError: the horizon is not positive or longer than an hour, the start lies before the first
-            command, commands or initial speeds are not such rows, not finite or beyond all speeds, or the
-            path leaves the map of elevations.
+            command, commands or initial speeds are not such rows, not finite or beyond all speeds, the path
+            leaves the map of elevations, or a force is not finite, of the future or on a slope.
     """
+    _check_force(force_age, known_force, ground)
     model = model.body
     inputs = commands if isinstance(commands, Inputs) else _inputs(commands)
     if not (np.isfinite(horizon) and horizon > 0.0):
@@ -224,6 +225,17 @@ def student_at(model: Model, horizon: float) -> StudentT:
         for name in ("inflation", "dof")
     )
     return StudentT(inflation=float(inflation), dof=float(np.clip(dof, LEAST_DOF, MOST_DOF)))
+
+
+def _check_force(age: float, known: tuple[float, float], ground: Ground | None) -> None:
+    if not (np.isfinite(age) and age >= 0.0):
+        raise SettingsError("the force must be of now or before", advice="give force_age in s, 0 or more")
+    if np.shape(known) != (2,) or not np.isfinite(known).all():
+        raise SettingsError("the known force must be two finite numbers", advice="known_force=(0.0, 1.5)")
+    if ground is not None and any(known):
+        raise SettingsError(
+            "a known force acts on level ground alone", advice="leave out the ground or known_force"
+        )
 
 
 def _finite_pose(pose: Pose) -> Pose:

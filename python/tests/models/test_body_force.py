@@ -11,8 +11,9 @@ import pytest
 from sample_models import make_model, named
 
 from slipwise import _core
-from slipwise.errors import ModelError
+from slipwise.errors import ModelError, SettingsError
 from slipwise.export.targets import export_model
+from slipwise.ground import Grade
 from slipwise.models import Model, load_model
 from slipwise.models.body_force import Frame, force_names, force_parts, force_sentence, without_force
 from slipwise.models.schema import BodyForceSection
@@ -85,6 +86,16 @@ def test_a_prediction_carries_a_force_that_fades() -> None:
     assert gone == pytest.approx(2.0 * 0.95, abs=1e-6)
     spread = [predict(model, AHEAD, horizon=2.0, force_age=age).covariance[-1, 0, 0] for age in (0.0, 1e4)]
     assert spread[1] > spread[0]  # where it is then, nobody knows
+
+
+def test_impossible_forces_are_refused() -> None:
+    model = forced("body")
+    with pytest.raises(SettingsError, match="now or before"):
+        predict(model, AHEAD, horizon=1.0, force_age=-1.0)
+    with pytest.raises(SettingsError, match="two finite numbers"):
+        predict(model, AHEAD, horizon=1.0, known_force=(np.nan, 0.0))
+    with pytest.raises(SettingsError, match="level ground"):
+        predict(model, AHEAD, horizon=1.0, known_force=(1.0, 0.0), ground=Grade(slope=0.1, downhill=0.0))
 
 
 def test_wind_is_felt_by_the_heading_at_the_start() -> None:
