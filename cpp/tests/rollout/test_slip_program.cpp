@@ -11,6 +11,7 @@
 
 #include "sample_bases.hpp"
 #include "slipwise/rollout/slip_program.hpp"
+#include "slipwise/slip/force_terms.hpp"
 #include "slipwise/slip/slip_surface.hpp"
 
 namespace slipwise {
@@ -89,6 +90,12 @@ TEST_CASE("a basis with more products than a kernel has room for is refused") {
     terms.push_back("V^" + std::to_string(i));
   }
   CHECK_THROWS_AS(compiled(Basis("long", terms, none, none)), std::invalid_argument);
+}
+
+TEST_CASE("a force that is fixed to the map is refused: rollouts know no heading there") {
+  const Basis windy = with_force(named_basis("edd-2"), ForceFrame::World);
+  const std::vector<double> alpha(windy.size(), 0.01);
+  CHECK_THROWS_AS(compile_slip(windy, alpha, std::nullopt), std::invalid_argument);
 }
 
 }  // namespace

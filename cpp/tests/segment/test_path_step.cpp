@@ -81,5 +81,14 @@ TEST_CASE("a change of a step's tangent moves the start as the end of the path i
   CHECK(tests::jacobian_error(analytic, tests::finite_difference(value, tangent, 0.05)) < tests::kDerivativeTolerance);
 }
 
+TEST_CASE("a heading stands beside gravity in the slip state") {
+  const SlipState state =
+      slip_state({.duration = 0.5, .forward = 0.4, .left = 0.0, .turn = 0.0}, headed({.gx = 0.1, .gy = -0.2}, 2.0));
+  CHECK(state.gx == 0.1);
+  CHECK(state.gy == -0.2);
+  CHECK(state.cos_yaw == doctest::Approx(std::cos(2.0)));
+  CHECK(state.sin_yaw == doctest::Approx(std::sin(2.0)));
+}
+
 }  // namespace
 }  // namespace slipwise
