@@ -138,9 +138,10 @@ def chain_poses(edges: Mapping[Edge, tuple[Ints, Floats]], fixed: str, robot: st
         edge_stamps, rows = edges[edge]
         if len(edge_stamps) > 1:
             covered &= (stamps >= edge_stamps[0]) & (stamps <= edge_stamps[-1])
-        at = _interpolate(stamps, edge_stamps, rows)
-        position = position + rotate(rotation, at[:, :3])
-        rotation = product(rotation, at[:, 3:])
+        with np.errstate(invalid="ignore", over="ignore"):  # such poses are left out with those of no number
+            at = _interpolate(stamps, edge_stamps, rows)
+            position = position + rotate(rotation, at[:, :3])
+            rotation = product(rotation, at[:, 3:])
     return stamps[covered], np.concatenate([position, rotation], axis=1)[covered]
 
 

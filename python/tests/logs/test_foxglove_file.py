@@ -146,6 +146,28 @@ def test_transforms_whose_frames_have_no_names_are_left_out(tmp_path: Path) -> N
     assert [entry.kind for entry in log.left_out] == ["bad-message"]
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_transform_that_is_no_number_is_a_pose_left_out(tmp_path: Path) -> None:
+    made = Writer()
+    poses, commands = made.channel("/tf", "foxglove.FrameTransforms"), made.channel("/cmd", TWIST)
+    for k in range(COUNT):
+        made.add(commands, k, STILL)
+        pose = pose_of(k)
+        moved = {"translation": pose["position"], "rotation": pose["orientation"]}
+        if k == 5:
+            moved = {
+                "translation": {"x": 1e999, "y": float("nan"), "z": 0.0},
+                "rotation": pose["orientation"],
+            }
+        names = {"parent_frame_id": "map", "child_frame_id": "base_link"}
+        made.add(poses, k, {"transforms": [{"timestamp": stamp(k, ("sec", "nsec"))} | names | moved]})
+    log = open_log(made.write(tmp_path / "drive.mcap"))
+    assert 0.25 not in (log.runs[0].poses.t - START / 1e9).round(6).tolist()
+    assert np.isfinite(log.runs[0].poses.x).all()
+    assert len(log.runs[0].poses) == COUNT - 2  # and the one after it, between which and it lies its stamp
+    assert sum(entry.count for entry in log.left_out) == 2
+
+
 def test_damaged_bytes_never_end_otherwise_than_in_a_log_or_a_log_error(file: Path) -> None:
     data, rng = file.read_bytes(), np.random.default_rng(0)
     for _ in range(15):
