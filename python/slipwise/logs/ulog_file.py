@@ -25,6 +25,9 @@ TOPICS = (
 )
 
 
+MOST_RETURNS = 10_000  # to places that were passed before
+
+
 def read_ulog(path: Path) -> FlightMessages:
     """Read a ULog; where a topic has several instances, the first.
 
@@ -35,7 +38,8 @@ def read_ulog(path: Path) -> FlightMessages:
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             from pyulog import ULog
 
-            log = ULog(str(path), message_name_filter_list=list(TOPICS))
+            with _Forward(io.FileIO(path)) as file:
+                log = ULog(file, message_name_filter_list=list(TOPICS))
             topics = {item.name: _columns(item) for item in log.data_list if item.multi_id == 0}
             parameters = {str(name): float(value) for name, value in log.initial_parameters.items()}
     except ImportError as error:
@@ -48,6 +52,25 @@ def read_ulog(path: Path) -> FlightMessages:
             f"not a readable ULog: {reason}", where=str(path), advice="copy it again from the vehicle"
         ) from error
     return FlightMessages("ulog", {name: each for name, each in topics.items() if len(each["t"])}, parameters)
+
+
+class _Forward(io.BufferedReader):
+    """A file in which nobody goes back for ever, as pyulog does from the end of some damaged ones."""
+
+    _farthest, _returns = -1, 0
+
+    def seek(self, offset: int, whence: int = 0, /) -> int:
+        """Go to a place as in any file.
+
+        Raises:
+            EOFError: the place was behind another one too often; pyulog takes many other errors for damage.
+        """
+        place = super().seek(offset, whence)
+        self._returns += place <= self._farthest
+        self._farthest = max(self._farthest, place)
+        if self._returns > MOST_RETURNS:
+            raise EOFError("the end of the file is damaged")
+        return place
 
 
 def _columns(item: Any) -> dict[str, Any]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -26,6 +27,7 @@ from slipwise.errors import LogError, SettingsError
 from slipwise.logs import LogOptions, open_log
 from slipwise.logs.flight_log import flight_format
 from slipwise.logs.survey import survey_log
+from slipwise.logs.ulog_file import MOST_RETURNS, _Forward
 
 pytest.importorskip("pymavlink")
 pytest.importorskip("pyulog")
@@ -174,3 +176,12 @@ def test_poses_without_a_heading_are_not_used(tmp_path: Path) -> None:
     assert path.read_bytes() != whole
     with pytest.raises(LogError, match=r"no poses: there is .*vehicle_local_position"):
         open_log(path)
+
+
+def test_file_that_is_gone_back_in_for_ever_ends_with_an_error(tmp_path: Path) -> None:
+    (tmp_path / "a.ulg").write_bytes(bytes(200))
+    with _Forward(io.FileIO(tmp_path / "a.ulg")) as file:
+        places = [file.seek(100), *(file.seek(50) for _ in range(MOST_RETURNS))]
+        assert places[-1] == 50
+        with pytest.raises(EOFError, match="damaged"):
+            file.seek(50)
