@@ -132,13 +132,17 @@ def judged_content(
     """Judge what was learned; also what its model file holds."""
     log, input_name, settings = given
     judged = judged_on(learned, windows, given, found)
+    segments, seconds = len(windows), float(np.sum(windows.end - windows.start))
+    if learned.sources:  # windows are those of the first source alone
+        segments = sum(source.segments for source in learned.sources)
+        seconds = windows.length * segments
     facts = ModelFacts(
         input_name=input_name,
         settings=settings,
         logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
         range=_range(windows.drive),
-        seconds=float(np.sum(windows.end - windows.start)),
-        segments=len(windows),
+        seconds=seconds,
+        segments=segments,
     )
     return judged, model_content(learned, judged, facts)
 
