@@ -87,7 +87,7 @@ void SegmentStream::process_other(PoseSource& source, const GatedPoses& gated, d
   for (const MeasuredPose& pose : gated.accepted) {
     auto timed = source.timer.push(pose, settings_.rules.late_factor);
     const bool late = !timed;
-    timed = late ? timed : headed(*std::move(timed), source.chords);
+    timed = late ? timed : headed(*timed, source.chords);
     if (!timed) {
       reject(Stream::Pose, late ? Reason::LatePose : Reason::NoCourse, pose.t);
       continue;

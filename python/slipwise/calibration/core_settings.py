@@ -41,8 +41,8 @@ def core_settings(  # noqa: PLR0913 - what comes is said by its sort
         gyro_alone: no poses come, and turns of a gyro alone are learned from.
 
     Raises:
-        SettingsError: a basis or a term is unknown, a force is to be learned beside surfaces, or settings name
-            a source that is not among them.
+        SettingsError: a basis or a term is unknown, a force is to be learned beside surfaces, or settings
+            name a source that is not among them.
     """
     core, hypotheses = _core.LearnerSettings(), _core.HypothesisSettings()
     from_commands = input_name == "command"
