@@ -39,8 +39,15 @@ ActuatorModel actuator_of(const MotionModel& model, const Eigen::Ref<const Eigen
   return actuator;
 }
 
-/// What measures the segment says nothing of the clock and the sensor that the model learns.
-void clear_calibration(const MotionModel& model, Eigen::Matrix<double, 3, Eigen::Dynamic>& by_parameter) {
+/// A gyro says nothing of where the robot is, and a further source nothing of the clock and the sensor of the first.
+void clear_unmeasured(const MotionModel& model, const Segment& segment, bool all,
+                      Eigen::Matrix<double, 3, Eigen::Dynamic>& by_parameter) {
+  if (segment.source && segment.source->heading_only && segment.gyro_std) {
+    by_parameter.topRows<2>().setZero();
+  }
+  if (!all || !calibrated_apart(segment)) {
+    return;
+  }
   by_parameter.rightCols(model.extrinsics_size()).setZero();
   const auto& places = model.actuator_places();
   const auto clock = std::ranges::find(places, kClockOffset);
@@ -267,12 +274,7 @@ SegmentLinearization linearized(const MotionModel& model, const Eigen::Ref<const
   if (course) {
     by_parameter = of_course(finished, at_points, by_parameter.cols());
   }
-  if (finished.heading_std) {
-    by_parameter.topRows<2>().setZero();
-  }
-  if (kAll && calibrated_apart(segment)) {
-    clear_calibration(model, by_parameter);
-  }
+  clear_unmeasured(model, segment, kAll, by_parameter);
   const Pose2 predicted = finished.sensor_motion();
   return {std::move(finished), predicted, std::move(by_parameter)};
 }
