@@ -14,7 +14,13 @@ from slipwise.logs import LogOptions
 
 
 def test_the_table_has_a_key_for_every_option_of_reading() -> None:
-    assert {field.name for field in fields(LogOptions)} == set(LogTable.model_fields) | {"unknown_after"}
+    further = {"other_poses", "other_pose_topics"}  # what follows the first in a list
+    expected = set(LogTable.model_fields) | {"unknown_after"} | further
+    assert {field.name for field in fields(LogOptions)} == expected
+    options = LogTable(poses=["a.csv", "b.csv"], pose_topic=["/a", "/b"]).options(0.5, {})
+    assert (options.poses, options.other_poses) == (Path("a.csv"), (Path("b.csv"),))
+    assert (options.pose_topic, options.other_pose_topics) == ("/a", ("/b",))
+    assert LogTable(poses=["a.csv", "b.csv"]).options(0.5, {"poses": Path("c.csv")}).other_poses == ()
 
 
 def test_settings_become_options_and_given_ones_go_before() -> None:
