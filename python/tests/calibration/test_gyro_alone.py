@@ -75,6 +75,7 @@ def test_slip_of_turns_is_true_within_its_uncertainty_and_the_rest_stays_as_it_w
     assert np.mean(stds, axis=0)[1] < 0.01
 
 
+@pytest.mark.slow
 def test_a_table_without_poses_gives_a_model_of_turns_and_says_what_it_is(tmp_path: Path) -> None:
     run = turning_run(3)
     assert run.wheels is not None

@@ -86,6 +86,7 @@ def with_fixes(poses: Poses, fix: np.ndarray) -> Poses:
     return Poses(t=poses.t, x=poses.x, y=poses.y, yaw=poses.yaw, frame=poses.frame, fix=fix)
 
 
+@pytest.mark.slow
 def test_errors_of_each_fix_are_learned_apart_and_poor_ones_are_rejected_and_counted() -> None:
     run, random = true_run(5)
     exact = run.poses
@@ -115,6 +116,7 @@ def test_errors_of_each_fix_are_learned_apart_and_poor_ones_are_rejected_and_cou
     assert np.trace(covariance) < np.trace(blind[1])
 
 
+@pytest.mark.slow
 def test_one_source_of_one_fix_is_learned_as_ever() -> None:
     run, random = true_run(2)
     poses = seen_by(run.poses, Source(), random)

@@ -151,6 +151,7 @@ def test_a_wrong_line_is_said_once_and_the_rest_goes_on(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_replayed_sources_and_yaw_rates_are_what_calibrate_writes_to_the_byte(log: Log) -> None:
     (run,) = log.runs
     beside = replace(run, others={"second": replace(run.poses, t=run.poses.t + 0.05)}, source="first")
