@@ -212,7 +212,9 @@ class MotionLearner(Measurements, RememberedSurfaces):
     @property
     def sources(self) -> tuple[LearnedSource, ...]:
         """What is known of each source of poses, where there are several."""
-        return learned_sources(self._core, tuple(self._sources))
+        if not self._sources:
+            return ()
+        return learned_sources(self._core.completed(), tuple(self._sources))
 
     @property
     def settings(self) -> Settings:
