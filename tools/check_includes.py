@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks what the C++ core includes: lower layers, the standard library, Eigen, and never in a circle."""
+"""Checks what the C++ core includes: own header first, lower layers, standard library, Eigen; no circle."""
 
 from __future__ import annotations
 
@@ -85,6 +85,14 @@ def foreign_fault(target: str) -> str:
     return f'includes {target}; the core uses the standard library, Eigen and "slipwise/..." only'
 
 
+def order_fault(include: Include, root: Path) -> str:
+    """Say that a source does not begin with its own header, where clang-tidy reads that header by itself."""
+    own = re.sub(r"^cpp/src/(.+)\.(cpp|cu)$", rf"{OWN}\1.hpp", include.path)
+    if own in (include.path, include.target) or not (root / "cpp/include" / own).exists():
+        return ""
+    return f"includes {include.target} before its own header, {own}"
+
+
 def cycles(graph: Mapping[str, set[str]]) -> list[str]:
     """Return a message for the first include cycle of `graph` (header -> headers it includes)."""
     try:
@@ -98,9 +106,11 @@ def check(root: Path) -> list[str]:
     """Return all faults of the core below `root`, one message each."""
     faults: list[str] = []
     graph: dict[str, set[str]] = {}
+    before = ""
     for include in includes(root):
-        if fault := layer_fault(include):
-            faults.append(f"{include.path}:{include.line}: {fault}")
+        first, before = include.path != before, include.path
+        found = (layer_fault(include), order_fault(include, root) if first else "")
+        faults.extend(f"{include.path}:{include.line}: {fault}" for fault in found if fault)
         if include.path.startswith("cpp/include/"):
             graph.setdefault(include.path.removeprefix("cpp/include/"), set()).add(include.target)
     return faults + cycles(graph)

@@ -30,6 +30,15 @@ def test_lower_layers_standard_headers_and_eigen_are_accepted(tmp_path: Path) ->
     assert check(tmp_path) == []
 
 
+def test_a_source_includes_its_own_header_first(tmp_path: Path) -> None:
+    write(tmp_path, "cpp/include/slipwise/lie/se2.hpp", "#include <cmath>")
+    write(tmp_path, "cpp/src/lie/se2.cpp", "#include <vector>", '#include "slipwise/lie/se2.hpp"')
+    write(tmp_path, "cpp/src/lie/other.cpp", "#include <vector>", '#include "slipwise/lie/se2.hpp"')
+    assert check(tmp_path) == [
+        "cpp/src/lie/se2.cpp:2: includes vector before its own header, slipwise/lie/se2.hpp"
+    ]
+
+
 @pytest.mark.parametrize("folder", [folder for row in LAYERS[:-1] for folder in row])
 def test_a_header_of_a_higher_layer_is_refused(tmp_path: Path, folder: str) -> None:
     write(
