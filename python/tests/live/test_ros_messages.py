@@ -157,7 +157,7 @@ def test_stamps_keep_their_nanoseconds_and_stay_within_a_header() -> None:
 
 @pytest.mark.slow
 def test_rclpy_reads_every_message_and_writes_the_same_bytes(messages: RosMessages, ros_python: Path) -> None:
-    outputs = [*driven_outputs()[-60:], straight_path(asked=True), Note(1.0, "said: Ä")]
+    outputs = [*driven_outputs()[-60:], straight_path(asked=True), next_moves(), Note(1.0, "said: Ä")]
     sent = [message for output in outputs for message in messages.of(output)]
     assert {message.topic for message in sent} == set(TOPICS)
     lines = "".join(json.dumps([m.type, m.payload.hex()]) + "\n" for m in sent)
