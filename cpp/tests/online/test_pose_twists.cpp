@@ -89,7 +89,7 @@ TEST_CASE("commands are needed from the stretch's start on") {
   CHECK(twists.begins() == std::numeric_limits<double>::infinity());
   for (int i = 0; i < 5; ++i) {
     commands.push({0.1 * i, {.v = 0.5}});
-    twists.push({.pose = {.t = 0.1 * i}, .interval = 0.1, .gap = 0.1}, commands);
+    twists.push({.pose = {.t = 0.1 * i, .x = 0.0, .y = 0.0, .yaw = 0.0}, .interval = 0.1, .gap = 0.1}, commands);
   }
   CHECK(twists.begins() == 0.0);
 }
