@@ -73,16 +73,17 @@ void bind_slip(nb::module_& m) {
       .def_ro("directions", &MixedAhead::directions, "Independent errors of all stretches, [slip, stretches] each.");
   nb::enum_<ForceFrame>(m, "ForceFrame").value("Body", ForceFrame::Body).value("World", ForceFrame::World);
   m.def("with_force", &with_force, "basis"_a, "frame"_a, "The basis with the terms of a force.");
-  m.def(
-      "force_places",
-      [](const Basis& basis) {
-        std::vector<Eigen::Index> places;
-        for (const ForceTerm& term : force_terms(basis)) {
-          places.push_back(term.place);
-        }
-        return places;
-      },
-      "basis"_a, "Places of the terms of a force among the parameters of a basis.");
+  nb::enum_<ForceAxis>(m, "ForceAxis")
+      .value("Ahead", ForceAxis::Ahead)
+      .value("Left", ForceAxis::Left)
+      .value("Moment", ForceAxis::Moment)
+      .value("WorldX", ForceAxis::WorldX)
+      .value("WorldY", ForceAxis::WorldY);
+  nb::class_<ForceTerm>(m, "ForceTerm", "A term of a force among those of a basis.")
+      .def_ro("place", &ForceTerm::place, "Among the parameters.")
+      .def_ro("axis", &ForceTerm::axis)
+      .def_ro("sign", &ForceTerm::sign, "Of what a positive force does to its channel.");
+  m.def("force_terms", &force_terms, "basis"_a, "The terms of a basis that are those of a force.");
   m.def("named_basis", &named_basis, "name"_a, "A basis by its published name.");
   m.def("basis_names", &basis_names, "Names of all bases that ship.");
   m.def(

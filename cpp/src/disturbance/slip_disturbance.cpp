@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "slipwise/filter/causal_filter.hpp"
-#include "slipwise/lie/angle.hpp"
+#include "slipwise/lie/se2.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
@@ -19,9 +19,7 @@ namespace {
 ObservedSlip see(const MotionPosterior& posterior, const DisturbedTerms& terms, const DrivenSegment& driven) {
   const auto& [inputs, segment, known_at] = driven;
   const auto at = linearize_slip(posterior.model, posterior.estimate.mean, inputs, segment);
-  Eigen::Vector3d innovation = segment.measured.vector() - at.predicted.vector();
-  innovation.z() = wrap_angle(innovation.z());
-  return {segment.start, segment.end, innovation,
+  return {segment.start, segment.end, chart_error(segment.measured.vector(), at.predicted.vector()),
           segment_noise(at.path, at.predicted, posterior.noise, posterior.noise_scale),
           at.by_parameter(Eigen::all, terms.places)};
 }

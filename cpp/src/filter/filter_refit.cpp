@@ -25,7 +25,7 @@ Eigen::Vector3d noise_size(const Segment& segment, const Eigen::Vector3d& scale)
   if (!segment.source) {
     return scale;
   }
-  const Eigen::Vector3d factor = Eigen::Vector3d::Map(segment.source->noise_factor.data());
+  const Eigen::Vector3d& factor = segment.source->noise_factor;
   return segment.source->own_noise ? factor : Eigen::Vector3d(factor.cwiseProduct(scale));
 }
 
@@ -105,7 +105,7 @@ void FilterRefit::learn_noise(const DrivenSegment& driven) {
   const bool fitted = fitted_ < places_.size() && places_[fitted_] == done_;
   const SegmentLinearization at =
       fitted ? std::move(at_[fitted_]) : linearize_segment(model_, state_.estimate.mean, driven.inputs, driven.segment);
-  const Eigen::Matrix3d expected = expected_noise(at, driven.segment, noise_.shape);
+  const Eigen::Matrix3d expected = expected_noise(at.path, driven.segment.measured, noise_.shape);
   if (shows_noise(driven.segment)) {
     state_.noise_scale.learn(at, state_.estimate.covariance, driven.segment.measured, expected.diagonal());
   }

@@ -8,14 +8,10 @@
 
 namespace slipwise {
 
-Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise) {
-  return expected_noise(at.path, segment.measured, noise);
-}
-
 IekfUpdate FilterState::learn(const MotionModel& model, const InputHistory& inputs, const Segment& segment,
                               const NoiseSettings& noise, const IekfSettings& iekf) {
   auto at = linearize_segment(model, estimate.mean, inputs, segment);
-  const Eigen::Matrix3d expected = expected_noise(at, segment, noise.shape);
+  const Eigen::Matrix3d expected = expected_noise(at.path, segment.measured, noise.shape);
   const Eigen::Matrix3d scaled = scaled_covariance(expected, scale_for(at.path, noise_scale.value()));
   IekfUpdate update = iekf_update(model, estimate, inputs, segment, std::move(at), scaled, iekf);
   estimate = update.estimate;

@@ -27,8 +27,7 @@ bool far_noisier(const Segment& segment, const Eigen::Vector3d& scale) {
   if (shows_noise(segment)) {
     return false;
   }
-  const Eigen::Vector3d factor = Eigen::Vector3d::Map(present(segment.source).noise_factor.data());
-  return factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
+  return present(segment.source).noise_factor.cwiseQuotient(scale).array().log().mean() > std::log(kNoisy);
 }
 
 /// One basis as it is, several as their union.

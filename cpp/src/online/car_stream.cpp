@@ -14,11 +14,11 @@
 namespace slipwise {
 namespace {
 
-constexpr double kInterval = 0.2;   // [s] between the poses of a twist; shorter, noise of poses hides the motion
-constexpr double kLongest = 1.0;    // [s] of a twist; over longer ones a car does too much
-constexpr double kRounding = 1e-6;  // [s] of stamps
-constexpr double kBefore = 5.0;     // [s] of twists before a segment, which delays and lags behind the curves ask for
-constexpr double kLongAgo = 1e5;    // [s] the first of them was held for
+constexpr double kInterval = 0.2;    // [s] between the poses of a twist; shorter, noise of poses hides the motion
+constexpr double kLongest = 1.0;     // [s] of a twist; over longer ones a car does too much
+constexpr double kSameStamp = 1e-6;  // [s]
+constexpr double kBefore = 5.0;      // [s] of twists before a segment, which delays and lags behind the curves ask for
+constexpr double kLongAgo = 1e5;     // [s] the first of them was held for
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
@@ -30,9 +30,9 @@ BodyTwist faster(const BodyTwist& a, const BodyTwist& b) {
 }  // namespace
 
 CarStream::CarStream(const CarPrior& prior, const Pose2& sensor, double unknown_after)
-    : sensor_(sensor), given_(unknown_after), filter_(prior), held_(prior.held) {
-  if (held_) {
-    follower_.emplace(prior, *held_);
+    : sensor_(sensor), given_(unknown_after), filter_(prior) {
+  if (prior.held) {
+    follower_.emplace(prior, *prior.held);
   }
   known_.push_back({.until = -kNever, .curves = filter_.curves(), .straight = filter_.straight()});
 }
@@ -49,7 +49,7 @@ void CarStream::start_run() {
 
 const CarStream::KnownCurves& CarStream::known_at(double t) const {
   for (const KnownCurves& known : known_ | std::views::reverse) {
-    if (known.until <= t + kRounding) {
+    if (known.until <= t + kSameStamp) {
       return known;
     }
   }
@@ -85,7 +85,7 @@ void CarStream::push_pose(const MeasuredPose& pose) {
   }
   const double seconds = since_ ? pose.t - since_->t : 0.0;
   const bool joined = since_ && pose.frame == since_->frame && seconds <= kLongest;
-  if (joined && seconds < kInterval - kRounding) {
+  if (joined && seconds < kInterval - kSameStamp) {
     return;
   }
   const bool given = !given_.unknown_since(filter_.until(), pose.t).has_value();
@@ -120,12 +120,12 @@ void CarStream::drop_before(double t) {
 InputHistory CarStream::inputs(double start, double end, double known, const std::vector<InputSample>& future) const {
   CarSpan span{.start = start - kBefore, .end = end};
   for (const KnownMotion& motion : motions_) {
-    if (motion.t <= start + kRounding) {
+    if (motion.t <= start + kSameStamp) {
       span.measured = motion;
     }
   }
   const InputHistory commands = given_.slice(start - kLookBack, end, SliceKind::Commands, future);
-  const InputHistory twists = car_twists(held_ ? *held_ : known_at(known).curves, commands, span);
+  const InputHistory twists = car_twists(follower_ ? follower_->curves() : known_at(known).curves, commands, span);
   std::vector<double> t;
   std::vector<BodyTwist> twist;
   for (std::size_t i = 0; i < twists.size(); ++i) {

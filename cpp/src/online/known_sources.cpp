@@ -6,23 +6,22 @@
 #include <limits>
 #include <utility>
 
-#include "slipwise/lie/angle.hpp"
+#include "slipwise/lie/se2.hpp"
 #include "slipwise/linear/tuning.hpp"
+#include "slipwise/online/learner_times.hpp"
 #include "slipwise/segment/segment_covariance.hpp"
 
 namespace slipwise {
 namespace {
 
 SLIPWISE_TUNING(kOpen, 0.25);          // of a segment's noise variances: what is not known of its source may be as much
-constexpr double kRounding = 1e-9;     // [s]
 constexpr double kLongestPart = 1.06;  // a segment may be longer than asked for by this factor
 
 SegmentSource with_noise(const SourceNoise& noise, const std::array<std::size_t, 2>& classes,
                          const Eigen::Vector3d& scale, SegmentSource source) {
   source.own_noise = !noise.is_reference(classes);
   if (source.own_noise) {
-    const Eigen::Vector3d size = noise.size(classes, scale);
-    source.noise_factor = {size[0], size[1], size[2]};
+    source.noise_factor = noise.size(classes, scale);
   }
   return source;
 }
@@ -62,9 +61,8 @@ void KnownSources::look(const MotionPosterior& posterior, const DrivenSegment& d
   }
   noise_.meet(item.classes[0], posterior.noise_scale);
   auto at = linearize_segment(posterior.model, posterior.estimate.mean, seen.inputs, seen.segment);
-  Eigen::Vector3d error = seen.segment.measured.vector() - at.predicted.vector();
-  error.z() = wrap_angle(error.z());
-  at.path.noise_factor = {1.0, 1.0, 1.0};
+  const Eigen::Vector3d error = chart_error(seen.segment.measured.vector(), at.predicted.vector());
+  at.path.noise_factor.setOnes();
   noise_.learn(item.classes[0],
                {.squared = error.cwiseAbs2(),
                 .open = (at.by_parameter * posterior.estimate.covariance * at.by_parameter.transpose()).diagonal(),
@@ -81,9 +79,7 @@ bool KnownSources::calibrated(const MotionPosterior& posterior, DrivenSegment& d
   const Eigen::Vector3d open = calibration.open(posterior, driven);
   driven.segment = calibration.corrected(driven.segment);
   if (driven.segment.source) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      driven.segment.source->noise_factor[i] *= 1.0 + open[static_cast<Eigen::Index>(i)];
-    }
+    driven.segment.source->noise_factor.array() *= 1.0 + open.array();
   }
   return open.maxCoeff() <= kOpen;
 }

@@ -10,12 +10,6 @@
 #include "slipwise/online/motion_learner.hpp"
 
 namespace slipwise {
-namespace {
-
-constexpr double kRounding = 1e-9;  // [s] of stamps
-
-}  // namespace
-
 Knowledge MotionLearner::now_known(double until) const {
   const auto motion = hypotheses_.posterior();
   return {

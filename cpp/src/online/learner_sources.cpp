@@ -18,12 +18,7 @@ void MotionLearner::learn_source() {
   const double start = item.driven.segment.start;
   KnownSources::Found found = sources_.see(*known_.back().slip, std::move(item));
   if (found.poor) {
-    ++rejected_[static_cast<std::size_t>(Stream::Pose)][static_cast<std::size_t>(Reason::PoorPose)];
-    say({.kind = LearnerEvent::Kind::Rejected,
-         .run = runs_,
-         .t = start,
-         .stream = Stream::Pose,
-         .reason = Reason::PoorPose});
+    count({Stream::Pose, Reason::PoorPose, start});
   }
   waiting_.insert(waiting_.begin(), std::make_move_iterator(found.learned.begin()),
                   std::make_move_iterator(found.learned.end()));

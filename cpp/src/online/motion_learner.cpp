@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "slipwise/lie/angle.hpp"
+#include "slipwise/lie/se2.hpp"
 #include "slipwise/linear/innovation.hpp"
 #include "slipwise/online/learner_times.hpp"
 #include "slipwise/online/stamp_spacing.hpp"
@@ -21,7 +21,6 @@
 namespace slipwise {
 namespace {
 
-constexpr double kRounding = 1e-9;                 // [s] of stamps
 constexpr std::size_t kMostWheelSegments = 200;    // in which limits are looked for
 constexpr std::size_t kMostCommandSegments = 100;  // by which they are judged
 constexpr int kSlices = 8;                         // of refits that a push may do where no segment waits: some 100 us
@@ -29,12 +28,6 @@ constexpr std::size_t kMostEvents = 10000;
 constexpr double kNever = std::numeric_limits<double>::infinity();
 
 std::size_t index(Structure structure) { return static_cast<std::size_t>(structure); }
-
-Eigen::Vector3d error_of(const Eigen::Vector3d& measured, const Eigen::Vector3d& predicted) {
-  Eigen::Vector3d error = measured - predicted;
-  error.z() = wrap_angle(error.z());
-  return error;
-}
 
 const MotionModel& baseline_model() {
   static const MotionModel model({"none", {}, {}, {}}, {});
@@ -167,12 +160,7 @@ void MotionLearner::take_in() {
     waiting_.push_back(std::move(item));
   }
   for (const Rejected& rejected : stream_.take_rejected()) {
-    ++rejected_[static_cast<std::size_t>(rejected.stream)][static_cast<std::size_t>(rejected.reason)];
-    say({.kind = LearnerEvent::Kind::Rejected,
-         .run = runs_,
-         .t = rejected.t,
-         .stream = rejected.stream,
-         .reason = rejected.reason});
+    count(rejected);
   }
   work_until(stream_.newest() - kReady);
 }
@@ -324,8 +312,9 @@ void MotionLearner::judge(const TargetSegment& target) {
   const HorizonErrors::Known earlier = errors.before(segment.start - std::max(horizon, kReady));
   const StudentT student = earlier.students[index(structure)];
   const double directions = settings_.stream.heading_only ? 3.0 : 1.0;  // one is measured in place of three
-  const double squared = directions * normalised_square(error_of(measured, expected.pose), expected.covariance);
-  const double nominal_squared = directions * normalised_square(error_of(measured, nominal.pose), nominal.covariance);
+  const double squared = directions * normalised_square(chart_error(measured, expected.pose), expected.covariance);
+  const double nominal_squared =
+      directions * normalised_square(chart_error(measured, nominal.pose), nominal.covariance);
   errors.learn(driven.known_at, structure, squared, nominal_squared);
   const Knowledge& after = known_at(segment.end);
   const double used = std::max({known.until, recent.empty() ? -kNever : recent.back()->known_at, earlier.until});
@@ -346,6 +335,15 @@ void MotionLearner::judge(const TargetSegment& target) {
                         .learned_until = at_start ? segment.start : std::min(used, segment.start)});
   held_out_[target.horizon].keep(prediction);
   say({.kind = LearnerEvent::Kind::HeldOut, .run = runs_, .t = segment.end, .prediction = prediction});
+}
+
+void MotionLearner::count(const Rejected& rejected) {
+  ++rejected_[static_cast<std::size_t>(rejected.stream)][static_cast<std::size_t>(rejected.reason)];
+  say({.kind = LearnerEvent::Kind::Rejected,
+       .run = runs_,
+       .t = rejected.t,
+       .stream = rejected.stream,
+       .reason = rejected.reason});
 }
 
 void MotionLearner::say(LearnerEvent event) {

@@ -78,12 +78,7 @@ void SegmentStream::finish_others() {
 }
 
 void SegmentStream::process_other(PoseSource& source, const GatedPoses& gated, double known_at) {
-  for (const MeasuredPose& pose : gated.outliers) {
-    reject(Stream::Pose, Reason::PoseOutlier, pose.t);
-  }
-  for (const MeasuredPose& pose : gated.jumps) {
-    reject(Stream::Pose, Reason::PoseJump, pose.t);
-  }
+  reject_gated(gated);
   for (const MeasuredPose& pose : gated.accepted) {
     auto timed = source.timer.push(pose, settings_.rules.late_factor);
     const bool late = !timed;

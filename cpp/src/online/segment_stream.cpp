@@ -237,13 +237,17 @@ const InputBuffer& SegmentStream::gate_inputs(double t) const {
   return !wheels_.empty() && wheels_.first() <= t ? wheels_ : commands_;
 }
 
-void SegmentStream::process_accepted(const GatedPoses& gated) {
+void SegmentStream::reject_gated(const GatedPoses& gated) {
   for (const MeasuredPose& pose : gated.outliers) {
     reject(Stream::Pose, Reason::PoseOutlier, pose.t);
   }
   for (const MeasuredPose& pose : gated.jumps) {
     reject(Stream::Pose, Reason::PoseJump, pose.t);
   }
+}
+
+void SegmentStream::process_accepted(const GatedPoses& gated) {
+  reject_gated(gated);
   for (const MeasuredPose& pose : gated.accepted) {
     auto timed = timer_.push(pose, settings_.rules.late_factor);
     if (!timed) {

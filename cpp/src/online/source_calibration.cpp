@@ -41,17 +41,18 @@ struct SourceCalibration::Seen {
   At at(const Eigen::VectorXd& state) const {
     const SegmentPath here = path(state);
     At found{here.sensor_motion(), Eigen::Matrix<double, 3, kStates>::Zero()};
-    const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kStates, 0);
-    found.jacobian.col(0) =
-        (path(state + step).sensor_motion().vector() - path(state - step).sensor_motion().vector()) / (2.0 * kStep);
+    const auto by = [&](Eigen::Index i) -> Eigen::Vector3d {
+      const Eigen::VectorXd step = kStep * Eigen::VectorXd::Unit(kStates, i);
+      return (path(state + step).sensor_motion().vector() - path(state - step).sensor_motion().vector()) /
+             (2.0 * kStep);
+    };
+    found.jacobian.col(0) = by(0);
     if (!here.course) {
       found.jacobian.rightCols<3>() = sensor_by_extrinsics(here.poses.back(), here.sensor);
       return found;
     }
     for (Eigen::Index i = 1; i < 3; ++i) {  // an antenna has no heading
-      const Eigen::VectorXd aside = kStep * Eigen::VectorXd::Unit(kStates, i);
-      found.jacobian.col(i) =
-          (path(state + aside).sensor_motion().vector() - path(state - aside).sensor_motion().vector()) / (2.0 * kStep);
+      found.jacobian.col(i) = by(i);
     }
     return found;
   }

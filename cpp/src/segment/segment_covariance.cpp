@@ -172,8 +172,8 @@ Eigen::Matrix3d expected_noise(const SegmentPath& path, const Pose2& measured, c
     const double turn = slip_covariance(path, noise)(2, 2) + *path.heading_std * *path.heading_std;
     return Eigen::Vector3d(1.0, 1.0, turn).asDiagonal();
   }
-  const Eigen::Vector3d factor(path.noise_factor[0], path.noise_factor[1], path.noise_factor[2]);
-  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(path, measured, noise), factor);
+  return scaled_covariance(slip_covariance(path, noise) + pose_noise_covariance(path, measured, noise),
+                           path.noise_factor);
 }
 
 Eigen::Vector3d scale_for(const SegmentPath& path, const Eigen::Vector3d& scale) {

@@ -256,9 +256,9 @@ def judged_on(
         positions=has_course(log.runs),
         gyro_alone=gyro_alone(log.runs),
     )
+    known = replace(known, force=force_words(learned.identifiable, settings))
     verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
     if not any(each.spoils for each in found):
-        verdict = replace(verdict, force=force_words(learned.identifiable, settings))
         kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)
         limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=wheels)
         verdict = replace(verdict, advice=(*verdict.advice, *limits))

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import car_of, core_settings
+from slipwise.calibration.force_words import force_words
 from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learned_log import found_limits, kept_posterior, predictions_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
@@ -248,6 +249,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             positions=self._positions,
             gyro_alone=self._gyro_alone,
         )
+        known = replace(known, force=force_words(learned.identifiable, self._settings))
         verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
         kept = learned.kept.limits is not None
         of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)

@@ -65,8 +65,8 @@ def identified(
 ) -> Identified:
     """Say what a posterior knows of its parameters, and which driving would tell the rest."""
     unknown, pairs = not_identifiable(posterior), confounded(posterior)
-    told = tuple(name for name in unknown if not (gyro_alone and name.startswith(("lon.", "lat."))))
-    advice = (*drives_for(told, positions=positions), *advice_for_pairs(pairs))
+    teachable = tuple(name for name in unknown if not (gyro_alone and name.startswith(("lon.", "lat."))))
+    advice = (*drives_for(teachable, positions=positions), *advice_for_pairs(pairs))
     timing = timing_words(posterior.motion, unknown, wheels_logged=wheels_logged, wheels_advice=wheels_advice)
     return Identified(len(posterior.mean), unknown, advice, pairs, timing)
 

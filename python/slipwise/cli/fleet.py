@@ -82,11 +82,11 @@ def fleet(
     table, unusable = store.table(), store.unusable()
     findings = findings_of(table)
     _write(files["page"], fleet_page(table, findings, unusable))
-    told, code = summary(table, findings, unusable), 0 if table else 1
+    sentences, code = summary(table, findings, unusable), 0 if table else 1
     table.clear()  # its memory serves the prior
     write_prior(files["prior"], findings, store.knowledge(), vehicle_type=vehicle_type)
     out.document(_document(count, findings, unusable, files) | {"exit_code": code})
-    for sentence in told:
+    for sentence in sentences:
         out.line(sentence)
     for log, why in count.failed:
         out.line(f"{log}: {why}")

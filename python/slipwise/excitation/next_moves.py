@@ -69,13 +69,13 @@ def choose_next_moves(
         LinAlgError: the covariance cannot be inverted.
     """
     judged: list[Floats] = []
-    told: list[Floats] = []
+    gains: list[Floats] = []
     for begin in range(0, len(commands), PIECE):
         rows = commands[begin : begin + PIECE]
         judged.append(prediction_jacobians(knowledge, rows, HORIZON))
-        told += [_told(knowledge, row) for row in rows.tolist()]
+        gains += [_information_of(knowledge, row) for row in rows.tolist()]
         yield
-    search = _Search(WorstPrediction(np.concatenate(judged)), prior_information(knowledge), np.array(told))
+    search = _Search(WorstPrediction(np.concatenate(judged)), prior_information(knowledge), np.array(gains))
     prior = search.judge.sigmas(np.diag(1.0 / np.maximum(prior_std, SMALLEST) ** 2))
     chosen: list[int] = []
     for _ in range(count):
@@ -89,8 +89,8 @@ def choose_next_moves(
 class _Search:
     """Which of the candidates, by what each tells [N, parameters, parameters]."""
 
-    def __init__(self, judge: WorstPrediction, known: Floats, told: Floats) -> None:
-        self.judge, self._known, self._told = judge, known, told
+    def __init__(self, judge: WorstPrediction, known: Floats, gains: Floats) -> None:
+        self.judge, self._known, self._gains = judge, known, gains
 
     def best_beside(self, others: list[int]) -> Generator[None, None, int]:
         """Return the candidate after which, and after these others, the worst prediction is surest.
@@ -98,10 +98,10 @@ class _Search:
         Raises:
             LinAlgError: a score is not finite.
         """
-        known = self._known + self._told[others].sum(axis=0)
+        known = self._known + self._gains[others].sum(axis=0)
         scores: list[Floats] = []
-        for begin in range(0, len(self._told), PIECE):
-            scores.append(self.judge.scores(known + self._told[begin : begin + PIECE]))
+        for begin in range(0, len(self._gains), PIECE):
+            scores.append(self.judge.scores(known + self._gains[begin : begin + PIECE]))
             yield
         all_scores = np.concatenate(scores)
         if not np.isfinite(all_scores).all():
@@ -113,8 +113,8 @@ class _Search:
         """Return the same, each the one that helps most after those before it."""
         left, order = list(chosen), list[int]()
         while left:
-            known = self._known + self._told[order].sum(axis=0)
-            best = int(np.argmin(self.judge.scores(known + self._told[left])))
+            known = self._known + self._gains[order].sum(axis=0)
+            best = int(np.argmin(self.judge.scores(known + self._gains[left])))
             order.append(left.pop(best))
             yield
         return order
@@ -125,7 +125,7 @@ class _Search:
         """Return the moves in this order with what each teaches."""
         known, moves = self._known, []
         for place in order:
-            before, known = known, known + self._told[place]
+            before, known = known, known + self._gains[place]
             gain = np.diag(np.linalg.inv(before)) / np.diag(np.linalg.inv(known))
             v, omega = commands[place].tolist()
             teaches = knowledge.names[int(np.argmax(gain))]
@@ -133,7 +133,7 @@ class _Search:
         return NextMoves(tuple(moves), self.judge.sigmas(self._known), prior)
 
 
-def _told(knowledge: Knowledge, command: list[float]) -> Floats:
+def _information_of(knowledge: Knowledge, command: list[float]) -> Floats:
     """What one move with this command tells, from rest."""
     v, omega = command
     return information(move_jacobians(knowledge, [Move(v, omega, HOLD, PAUSE)])[0], PoseStd())

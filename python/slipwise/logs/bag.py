@@ -232,7 +232,7 @@ def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) 
     elif roles.pose is not None:
         poses = with_tilts(context, pose_stream(context, samples["pose"]), samples.get("imu"))
     others = _other_streams(roles, samples, context, (wheels, commands))
-    runs = _split(path, collected.runs, (commands, wheels, poses), context.tally)
+    runs = _split(path, collected, (commands, wheels, poses), context.tally)
     if roles.gyro is not None and (poses is None or poses.course):
         runs = with_gyro(runs, gyro_stream(context, samples["gyro"]), collected.starts)
     return _with_others(runs, collected, others, roles, context.tally) if others else runs
@@ -264,32 +264,28 @@ def _with_others(
     tally: Tally,
 ) -> tuple[Run, ...]:
     """Give each run what further sources measured in it, in the order of stamps."""
-    edges = collected.starts
     first = "" if roles.pose is None else roles.pose.name
     found = []
     for number, run in enumerate(runs):
         beside = {}
         for name, stream in others.items():
-            own = np.flatnonzero(np.searchsorted(edges, stream.t, side="right") == number)
-            beside[name] = to_poses(stream.taken(own[np.argsort(stream.t[own], kind="stable")]), tally)
+            beside[name] = to_poses(stream.in_time(stream.in_run(number, collected.starts)), tally)
         found.append(replace(run, others=beside, source=first))
     return tuple(found)
 
 
 def _split(
     path: Path,
-    starts: tuple[tuple[int, str], ...],
+    collected: _Collected,
     streams: tuple[RawStream | None, RawStream | None, RawStream | None],
     tally: Tally,
 ) -> tuple[Run, ...]:
     """Cut the streams into runs where the bag says so; otherwise a bag is one run."""
-    names = [name for _, name in starts] or [run_name(path)]
-    edges = np.array([start for start, _ in starts][1:], dtype=np.int64) / 1e9
+    names = [name for _, name in collected.runs] or [run_name(path)]
     runs = []
     for number, name in enumerate(names):
         commands, wheels, poses = (
-            stream and stream.select(np.searchsorted(edges, stream.t, side="right") == number)
-            for stream in streams
+            stream and stream.select(stream.in_run(number, collected.starts)) for stream in streams
         )
         runs.append(
             Run(

@@ -41,13 +41,11 @@ def with_gyro(runs: tuple[Run, ...], stream: RawStream, starts: Floats) -> tuple
         stream: stamps [s] and rates [rad/s] in its column gyro_z.
         starts: when each run but the first begins [s].
     """
-    number = np.searchsorted(starts, stream.t, side="right")
     found = []
-    for place, run in enumerate(runs):
-        own = np.flatnonzero(number == place)
-        own = own[np.argsort(stream.t[own], kind="stable")]
-        columns = {"t": stream.t[own], _COLUMN: stream.columns[_COLUMN][own]}
-        found.append(replace(run, extra={**run.extra, **columns}) if len(own) else run)
+    for number, run in enumerate(runs):
+        own = stream.in_time(stream.in_run(number, starts))
+        columns = {"t": own.t, _COLUMN: own.columns[_COLUMN]}
+        found.append(replace(run, extra={**run.extra, **columns}) if len(own.t) else run)
     return tuple(found)
 
 

@@ -35,13 +35,17 @@ class RawStream:
     optional: frozenset[str] = field(default_factory=frozenset)
     course: bool = False  # of positions: the yaw is the direction of the path
 
-    def taken(self, places: Ints) -> RawStream:
-        """Return the samples at some places, in their order."""
-        columns = {name: values[places] for name, values in self.columns.items()}
-        return replace(self, t=self.t[places], columns=columns, rows=self.rows[places])
+    def in_time(self, keep: Bools) -> RawStream:
+        """Return the samples where `keep` [N] is true in the order of their stamps."""
+        own = np.flatnonzero(keep)
+        return self.select(own[np.argsort(self.t[own], kind="stable")])
 
-    def select(self, keep: Bools) -> RawStream:
-        """Return the samples where `keep` [N] is true."""
+    def in_run(self, number: int, starts: Floats) -> Bools:
+        """Return which samples came in a run, [N]; every run but the first starts at one of `starts` [s]."""
+        return np.asarray(np.searchsorted(starts, self.t, side="right") == number)
+
+    def select(self, keep: Bools | Ints) -> RawStream:
+        """Return the samples where `keep` [N] is true, or at these places."""
         columns = {name: values[keep] for name, values in self.columns.items()}
         return replace(self, t=self.t[keep], columns=columns, rows=self.rows[keep])
 

@@ -230,8 +230,7 @@ def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally
 def _by_source(whole: RawStream, number: Ints, count: int) -> Iterator[RawStream]:
     """Yield what each source measured, in the order of its stamps: sources may come late."""
     for i in range(count):
-        own = np.flatnonzero(number == i)
-        stream = whole.taken(own[np.argsort(whole.t[own], kind="stable")])
+        stream = whole.in_time(number == i)
         if "yaw" in stream.columns and np.isnan(stream.columns["yaw"]).all():
             stream = replace(stream, columns={n: v for n, v in stream.columns.items() if n != "yaw"})
         yield stream

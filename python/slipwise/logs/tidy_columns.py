@@ -56,7 +56,6 @@ USED = frozenset(
 ) | frozenset(OPTIONAL_POSE_COLUMNS)
 KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
 POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", "source", *OPTIONAL_POSE_COLUMNS))
-LAYOUT_PREFIXES = ("wheel_", "steer_")  # of columns, before the names of wheels and steering joints
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this

@@ -6,11 +6,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from slipwise import _core
 from slipwise.number_text import estimate_text
 
 if TYPE_CHECKING:
@@ -22,33 +24,12 @@ Frame = Literal["body", "world"]
 _FAR = {1: 9.0, 2: 11.83, 3: 14.16, 4: 16.25}
 
 
-@dataclass(frozen=True)
-class _Term:
-    """Where a part of the force stands: parameters by name, and the sign of what a positive force does."""
-
-    part: str
-    sign: float
-
-
-_TERMS = {
-    "body": {
-        "lon.abs(V)": _Term("ahead", 1.0),
-        "lon.abs(w)": _Term("ahead", 1.0),
-        "lat.abs(V)": _Term("left", 1.0),
-        "lat.abs(w)": _Term("left", 1.0),
-        "ang.abs(V)": _Term("turn", 1.0),
-        "ang.abs(w)": _Term("turn", 1.0),
-    },
-    "world": {
-        "lon.abs(V)*cos(yaw)": _Term("x", 1.0),
-        "lon.abs(w)*cos(yaw)": _Term("x", 1.0),
-        "lat.abs(V)*sin(yaw)": _Term("x", -1.0),
-        "lat.abs(w)*sin(yaw)": _Term("x", -1.0),
-        "lon.abs(V)*sin(yaw)": _Term("y", 1.0),
-        "lon.abs(w)*sin(yaw)": _Term("y", 1.0),
-        "lat.abs(V)*cos(yaw)": _Term("y", 1.0),
-        "lat.abs(w)*cos(yaw)": _Term("y", 1.0),
-    },
+_PARTS = {
+    _core.ForceAxis.Ahead: "ahead",
+    _core.ForceAxis.Left: "left",
+    _core.ForceAxis.Moment: "turn",
+    _core.ForceAxis.WorldX: "x",
+    _core.ForceAxis.WorldY: "y",
 }
 _WORDS = {
     "ahead": "ahead (+) or back (-)",
@@ -82,7 +63,16 @@ class ForcePart:
 
 def force_names(frame: Frame) -> tuple[str, ...]:
     """Return the names of the parameters that are a force's."""
-    return tuple(_TERMS[frame])
+    return tuple(_terms(frame))
+
+
+@cache
+def _terms(frame: Frame) -> dict[str, _core.ForceTerm]:
+    """The terms of a force by the names of their parameters, as the core has them."""
+    fixed_to = _core.ForceFrame.Body if frame == "body" else _core.ForceFrame.World
+    basis = _core.with_force(_core.Basis("none", [], [], []), fixed_to)
+    names = [info.name for info in _core.MotionModel(basis, False, False).parameters]
+    return {names[term.place]: term for term in _core.force_terms(basis)}
 
 
 def force_parts(
@@ -101,9 +91,10 @@ def force_parts(
         covariance: of these.
         identifiable: whether the drive told more of each than was known before.
     """
-    terms, parts = _TERMS[frame], []
-    for part in dict.fromkeys(term.part for term in terms.values()):
-        places = [i for i, name in enumerate(names) if name in terms and terms[name].part == part]
+    terms, parts = _terms(frame), []
+    for axis in dict.fromkeys(term.axis for term in terms.values()):
+        part = _PARTS[axis]
+        places = [i for i, name in enumerate(names) if name in terms and terms[name].axis == axis]
         seen = [i for i in places if identifiable[i]]
         driven = [i for i in seen if "abs(V)" in names[i]]
         if not driven:

@@ -27,7 +27,4 @@ struct FilterState {
   }
 };
 
-/// Covariance of a segment's measured chart under the noise model alone.
-Eigen::Matrix3d expected_noise(const SegmentLinearization& at, const Segment& segment, const MotionNoise& noise);
-
 }  // namespace slipwise

@@ -58,8 +58,8 @@ class CarStream {
   Pose2 sensor_;
   InputBuffer given_;
   CarCurveFilter filter_;
-  std::optional<CarCurves> held_;           ///< of a model as it is; not saved, since what is saved learns
-  std::optional<CarCurveFilter> follower_;  ///< of the car by those
+  /// Of the car by the curves of a model as it is; not saved, since what is saved learns.
+  std::optional<CarCurveFilter> follower_;
   std::deque<KnownCurves> known_;
   std::deque<KnownMotion> motions_;
   std::optional<MeasuredPose> since_;  ///< where the twist begins that is being measured

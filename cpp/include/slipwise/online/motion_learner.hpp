@@ -203,6 +203,7 @@ class MotionLearner {
   void take_in();
   bool work();
   void learn_source();
+  void count(const Rejected& rejected);
   void finish_sources();
   void prepare_prediction();
   void work_until(double t);

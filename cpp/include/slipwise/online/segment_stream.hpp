@@ -155,6 +155,7 @@ class SegmentStream {
   void process_other(PoseSource& source, const GatedPoses& gated, double known_at);
   void emit_other(const PoseSource& source, const SegmentCut& cut, double known_at);
   void process_accepted(const GatedPoses& gated);
+  void reject_gated(const GatedPoses& gated);
   std::optional<TimedPose> headed(TimedPose timed, ChordFinder& chords) const;
   void emit_learned(const std::vector<SegmentCut>& cuts);
   void emit_slip(const std::vector<SegmentCut>& cuts);
