@@ -41,27 +41,6 @@ def excite(
     output: Annotated[
         Path, typer.Option("-o", "--output", metavar="STEM", help="Files STEM.csv, STEM.mcap and STEM.html.")
     ] = Path("excite"),
-    drive: Annotated[
-        bool, typer.Option("--drive", help="THE ROBOT DRIVES BY ITSELF, while a dead man's button is held.")
-    ] = False,
-    dead_man: Annotated[
-        str | None, optional("TOPIC", "std_msgs/Bool or sensor_msgs/Joy, true while it may drive.")
-    ] = None,
-    button: Annotated[int, typer.Option("--dead-man-button", metavar="N", help="Of a Joy, from 0.")] = 0,
-    pose_topic: Annotated[
-        str | None, optional("TOPIC", "Odometry, PoseStamped or PoseWithCovarianceStamped.")
-    ] = None,
-    rate: Annotated[float, typer.Option(metavar="HZ", help="Commands a second.")] = 20.0,
-    countdown: Annotated[float, typer.Option(metavar="SECONDS", help="Before the robot moves.")] = 5.0,
-    transport: Annotated[
-        str | None,
-        optional("NAME", "ros (the default), rclpy, cyclonedds, zenoh, rospy, stdin or udp, as `live` has."),
-    ] = None,
-    domain: Annotated[int | None, optional("N", "ROS domain; default ROS_DOMAIN_ID, else 0.")] = None,
-    network: Annotated[bool, typer.Option("--network", help="Reach beyond this host.")] = False,
-    address: Annotated[
-        str | None, optional("HOST:PORT", "Where --transport udp listens, or where Zenoh's router is.")
-    ] = None,
     json: Json = None,
 ) -> int:
     """Find the held commands after which the robot's worst prediction is surest, inside an area.
@@ -69,8 +48,6 @@ def excite(
     The drive ends where it began and does to the right what it does to the left. It was tried on 10 000
     robots with slip, lag and delay a quarter more varied than is likely: all stay inside. Nothing is sent to
     any robot: a person plays the bag, with the stop button in hand, and records poses meanwhile.
-    With --drive the robot drives by itself, no faster than --speed, while a dead man's button is held and
-    poses come from inside the area; commands and poses are written as STEM-driven.csv, to calibrate on.
 
     \b
     Examples:
@@ -78,7 +55,6 @@ def excite(
       slipwise excite --area 20x10 --minutes 2 --speed 1.5 --yaw-rate 1 --radius 0.7 -o first
       slipwise excite --area 8x8 --vehicle husky --model model.yaml -o second
       slipwise excite --area 8x8 --vehicle husky --prior fleet/fleet.yaml
-      slipwise excite --vehicle husky --speed 0.5 --drive --dead-man /joy --pose-topic /odometry/filtered
     """  # noqa: D301
     from dataclasses import replace
 
@@ -92,18 +68,7 @@ def excite(
 
     out = Output(json)
     files = {kind: output.with_name(f"{output.name}.{kind}") for kind in ("csv", "mcap", "html")}
-    driven = None
-    if drive:
-        from slipwise.cli.excite_drive import SelfDriveOptions, drive_by_itself
-
-        driven = SelfDriveOptions(
-            output.with_name(f"{output.name}-driven.csv"), speed, dead_man, button, pose_topic,
-            topic, stamped, rate, countdown, transport, domain, network, address,
-        )  # fmt: skip
-        driven.check()
-    refuse_unwritable(
-        *files.values(), None if driven is None else driven.log, out.written_file, inputs=[model, prior]
-    )
+    refuse_unwritable(*files.values(), out.written_file, inputs=[model, prior])
     robot = _vehicle(vehicle)
     given = {"speed": speed, "yaw_rate": yaw_rate, "lateral": lateral}
     space, knowledge = _known((model, prior), robot, given)
@@ -117,12 +82,9 @@ def excite(
     lessons = lessons_of(designed)
     _write(files, designed, lessons, (topic, stamped))
     document = _document(designed, lessons, files)
-    if driven is None or driven.transport != "stdin":  # there, commands are what is printed
-        for sentence in summary(designed, lessons):
-            out.line(sentence)
-        show_files(out, files)
-    if driven is not None:
-        document |= drive_by_itself(designed, driven)
+    for sentence in summary(designed, lessons):
+        out.line(sentence)
+    show_files(out, files)
     out.document(document)
     return int(document["exit_code"])
 
