@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Installs the wheel of a folder into an empty environment and learns a model with it."""
+"""Installs the wheel of a folder into an empty environment, learns a model with it and replays a log live."""
 
 from __future__ import annotations
 
@@ -87,6 +87,7 @@ def try_wheel(wheel: Path, folder: Path) -> str:
     write_log(folder / "drive.csv")
     said([slipwise, "calibrate", "drive.csv", "-o", "model.yaml"], folder)
     said([slipwise, "show", "model.yaml"], folder)
+    said([slipwise, "live", "--replay", "drive.csv", "--rate", "0", "-q"], folder)
     return version
 
 
@@ -100,9 +101,9 @@ def main(folder: Path) -> int:
         except (OSError, ValueError, subprocess.CalledProcessError) as error:
             print(f"error: the wheel does not work: {error}", file=sys.stderr)
             return 1
-    seconds = time.monotonic() - start
-    size = wheel.stat().st_size / 1e6
-    print(f"{wheel.name} ({size:.1f} MB): {version} installs, imports and learns a model ({seconds:.0f} s)")
+    seconds, size = time.monotonic() - start, wheel.stat().st_size / 1e6
+    done = "installs, imports, learns a model and replays a log live"
+    print(f"{wheel.name} ({size:.1f} MB): {version} {done} ({seconds:.0f} s)")
     return 0
 
 

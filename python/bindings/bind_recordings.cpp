@@ -7,6 +7,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -23,8 +24,7 @@ namespace slipwise::bindings {
 namespace {
 
 Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-                    const Rows& gyro) {
-  check_columns(gyro, 2, "gyro");
+                    const std::optional<Rows>& gyro) {
   check_columns(attitudes, 3, "attitudes");
   const bool with_source = poses.cols() >= 9;
   const bool with_std = poses.cols() != 5;
@@ -51,8 +51,11 @@ Recording recording(const Rows& commands, const Rows& wheels, const Rows& attitu
                          .fix = with_source ? pose_fix(static_cast<std::size_t>(row[8])) : PoseFix::Unknown,
                          .position = std::isnan(row[3])});
   }
-  for (const auto& row : gyro.rowwise()) {
-    run.gyro.push_back({row[0], row[1]});
+  if (gyro) {
+    check_columns(*gyro, 2, "gyro");
+    for (const auto& row : gyro->rowwise()) {
+      run.gyro.push_back({row[0], row[1]});
+    }
   }
   return run;
 }
@@ -73,8 +76,10 @@ void bind_recordings(nb::module_& m) {
       .def(
           "__init__",
           [](Recording* self, const Rows& commands, const Rows& wheels, const Rows& attitudes, const Rows& poses,
-             const Rows& gyro) { new (self) Recording(recording(commands, wheels, attitudes, poses, gyro)); },
-          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = Rows(0, 2),
+             const std::optional<Rows>& gyro) {
+            new (self) Recording(recording(commands, wheels, attitudes, poses, gyro));
+          },
+          "commands"_a, "wheels"_a, "attitudes"_a, "poses"_a, "gyro"_a = nb::none(),
           "Rows of (t, v, vy, omega) [s, m/s, m/s, rad/s], the same of the wheels, (t, roll, pitch) [s, rad, rad] and "
           "(t, x, y, yaw, frame, std_xy, std_yaw) [s, m, m, rad, -, m, rad], of which the last two are 0 where "
           "unknown, or both left away; then the numbers of the source and of the fix may follow, and after these known "
