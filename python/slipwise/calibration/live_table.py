@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Name = Annotated[str, Field(min_length=1, max_length=64, pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 Seconds = Annotated[float, Field(gt=0.0, le=1e6)]
-Transports = Literal["ros", "rclpy", "cyclonedds", "zenoh", "rospy", "stdin", "udp"]
+Transports = Literal["ros", "rclpy", "cyclonedds", "stdin", "udp"]
 ApplyMode = Literal["off", "manual", "auto"]
 TARGET_NODES = {  # whose parameters are set where none is named
     "diff-drive": "/diff_drive_controller",
@@ -51,8 +51,8 @@ class LiveTable(_Table):
     vehicle: Annotated[str, Field(min_length=1, max_length=64)] = "robot"
     transport: Transports | None = None  # None: the first ROS that is there
     domain: Annotated[int, Field(ge=0, le=232)] | None = None  # None: ROS_DOMAIN_ID, else 0
-    network: bool = False  # DDS and Zenoh reach beyond this host
-    address: str | None = None  # Zenoh's router, or where UDP is listened for, as host:port
+    network: bool = False  # DDS reaches beyond this host
+    address: str | None = None  # where UDP is listened for, as host:port
     override_topic: str | None = None  # std_msgs/Bool: an operator drives
     input: Literal["command", "wheel"] | None = None
     positions: bool = False  # poses are positions without a heading; a replayed log and ROS topics say so

@@ -37,9 +37,7 @@ def fleet(
     workers: Annotated[int | None, optional("N", "Processes; by default one per processor.")] = None,
     scheduler: Annotated[
         str | None,
-        optional(
-            "ADDRESS", "Of Dask (tcp://host:8786) or Ray (ray://host:10001, or ray) in place of processes."
-        ),
+        optional("ADDRESS", "Of a Dask cluster (tcp://host:8786) in place of processes."),
     ] = None,
     json: Json = None,
 ) -> int:
@@ -99,10 +97,6 @@ def _scheduler(address: str | None, workers: int | None) -> Scheduler:
 
     if address is None:
         return ProcessScheduler(workers)
-    if address.partition(":")[0] == "ray":
-        from slipwise.fleet.ray_scheduler import RayScheduler
-
-        return RayScheduler(address)
     from slipwise.fleet.dask_scheduler import DaskScheduler
 
     return DaskScheduler(address)

@@ -37,8 +37,7 @@ def live(
         str | None,
         optional(
             "NAME",
-            "ros (the default: the first of rclpy, cyclonedds, zenoh, rospy that is there), one of these, "
-            "stdin or udp.",
+            "ros (the default: rclpy, or cyclonedds where there is no rclpy), one of these, stdin or udp.",
         ),
     ] = None,
     replay: Annotated[Path | None, optional("LOG", "Take the samples of a log.")] = None,
@@ -56,9 +55,7 @@ def live(
     vehicle: Annotated[str | None, optional("NAME", "Whose model it is; the cache goes by it.")] = None,
     domain: Annotated[int | None, optional("N", "ROS domain; default ROS_DOMAIN_ID, else 0.")] = None,
     network: Annotated[bool, typer.Option("--network", help="Reach beyond this host.")] = False,
-    address: Annotated[
-        str | None, optional("HOST:PORT", "Where --transport udp listens, or where Zenoh's router is.")
-    ] = None,
+    address: Annotated[str | None, optional("HOST:PORT", "Where --transport udp listens.")] = None,
     override_topic: Annotated[
         str | None,
         optional("TOPIC", "std_msgs/Bool, true while an operator drives past the commands."),

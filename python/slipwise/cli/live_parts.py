@@ -6,7 +6,7 @@ from __future__ import annotations
 import contextlib
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -170,9 +170,9 @@ def _ros(table: LiveTable, options: LogOptions, say: Callable[[str], None]) -> R
     from slipwise.live.wires.make_wire import make_wire
     from slipwise.live.wires.options import WireOptions
 
-    named = WireOptions(node_name=table.name, domain=table.domain, network=table.network)
     if table.address is not None:
-        named = replace(named, router=f"tcp/{table.address}")
+        raise SettingsError("only UDP listens at an address", where="address", advice="give --transport udp")
+    named = WireOptions(node_name=table.name, domain=table.domain, network=table.network)
     wire = make_wire(None if table.transport in (None, "ros") else table.transport, named)
     try:
         roles = find_roles(wire, options, say, own=f"/{table.name}")

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What carries ROS messages: rclpy, Cyclone DDS, Zenoh, rospy."""
+"""What carries ROS messages: rclpy, Cyclone DDS."""

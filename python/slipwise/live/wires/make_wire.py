@@ -13,9 +13,7 @@ from slipwise.live.wires.wire import RosWire
 # Name, what has to be importable, where the wire is, how to get what it needs. The first one wins.
 _WIRES = (
     ("rclpy", "rclpy", "rclpy_wire:RclpyWire", "source ROS 2's setup.bash in the shell that starts slipwise"),
-    ("cyclonedds", "cyclonedds", "cyclone_wire:CycloneWire", "pip install 'slipwise[ros2]'"),
-    ("zenoh", "zenoh", "zenoh_wire:ZenohWire", "pip install 'slipwise[zenoh]'"),
-    ("rospy", "rospy", "rospy_wire:RospyWire", "source ROS 1's setup.bash, or apt install python3-rospy"),
+    ("cyclonedds", "cyclonedds", "cyclone_wire:CycloneWire", "pip install 'cyclonedds>=11'"),
 )
 
 #: What may be asked for.
@@ -41,7 +39,7 @@ def make_wire(name: str | None, options: WireOptions) -> RosWire:
         raise SettingsError(f'there is no transport "{name}"', advice=f"ROS comes by {', '.join(WIRE_NAMES)}")
     at_hand = wires_at_hand()
     if name is None and not at_hand:
-        ways = "; ".join(way for _, _, _, way in _WIRES[:3])
+        ways = "; ".join(way for *_, way in _WIRES)
         raise SettingsError("nothing that speaks ROS is installed", advice=f"one of: {ways}")
     chosen = name or at_hand[0]
     place, way = next((place, way) for known, _, place, way in _WIRES if known == chosen)

@@ -20,7 +20,6 @@ class WireOptions:
     network: bool = (
         False  # talk to other hosts, by multicast where the middleware does; otherwise to this one alone
     )
-    router: str = "tcp/localhost:7447"  # of Zenoh: the router or peer to connect to
 
     def domain_number(self) -> int:
         """Return the domain, from the environment where none is given.

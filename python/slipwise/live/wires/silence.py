@@ -13,7 +13,7 @@ PATIENCE = 3.0
 
 _WAYS_OUT = (
     "ways out: start slipwise where ROS 2 is sourced, so that rclpy is used; or set "
-    "fastdds.type_propagation=disabled in the robot's Fast DDS profile; or use Zenoh on both sides"
+    "fastdds.type_propagation=disabled in the robot's Fast DDS profile"
 )
 
 

@@ -20,14 +20,14 @@ class WireTopic:
 
 
 class RosWire(Protocol):
-    """Messages are CDR with its header of 4 bytes (rosbags' `serialize_cdr`); ROS 1's wire converts.
+    """Messages are CDR with its header of 4 bytes (rosbags' `serialize_cdr`).
 
     Callbacks come from threads of the wire. Names of topics and services are absolute ("/odom").
     """
 
     @property
     def name(self) -> str:
-        """What carries the messages: "rclpy", "cyclonedds", "zenoh" or "rospy"."""
+        """What carries the messages: "rclpy" or "cyclonedds"."""
 
     def topics(self) -> list[WireTopic]:
         """Return what is published by others now."""
