@@ -22,8 +22,8 @@ import numpy as np
 
 import slipwise
 from slipwise import _core
+from slipwise.calibration.judgement import judgement_of
 from slipwise.calibration.learner import STRUCTURES
-from slipwise.calibration.verdict import judge
 from slipwise.logs.log import Inputs, Log, Source
 from slipwise.simulation.known_robot import KnownRobot, known_run
 
@@ -99,7 +99,7 @@ def harm(case: Case) -> Harm:
     evaluation = slipwise.evaluate(log_of(case), input=case.input, options=options)
     scores = [score for score in evaluation.scores if score.method == "auto"]
     none, auto = ([p for p in evaluation.predictions if p.method == name] for name in options.methods or ())
-    judged = [judge(learned, plain) for learned, plain in zip(auto, none, strict=True)]
+    judged = [judgement_of(learned, plain) for learned, plain in zip(auto, none, strict=True)]
     return Harm(
         case,
         max(each.position_ratio[0] for each in judged),

@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from slipwise.calibration.estimator_run import run_estimator
-from slipwise.calibration.force_words import force_words
-from slipwise.calibration.judgement import Judgement
+from slipwise.calibration.judge import Judged, Sensors, judge, to_judge
+from slipwise.calibration.judgement import Judgement, too_short
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, LearnedLog, learn_log
 from slipwise.calibration.learner import Progress
-from slipwise.calibration.limit_words import advice_on_limits
-from slipwise.calibration.model_content import Judged, Learned, ModelFacts, judgement_of, model_content
+from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictors import Predictor, final_student, predict_all, predictions_of, student_of
 from slipwise.calibration.prepared_run import (
@@ -30,7 +30,7 @@ from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.shortage import shortage_advice
 from slipwise.calibration.sloping_ground import for_the_ground_of
 from slipwise.calibration.smoothing import smooth as smooth_windows
-from slipwise.calibration.verdict import LogFacts, give_verdict, identified
+from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import LogError, ModelError, SettingsError
 from slipwise.logs.contradiction import Contradiction
 from slipwise.logs.contradictions import contradictions
@@ -131,12 +131,14 @@ def judged_content(
 ) -> tuple[Judged, schema.ModelFile]:
     """Judge what was learned; also what its model file holds."""
     log, input_name, settings = given
-    judged = judged_on(learned, windows, given, found)
+    sensors = Sensors(has_wheels(windows.drive), log.advice.get("wheel", ""), gyro_alone(log.runs))
+    facts = _facts(learned, windows, given, found)
+    judged = judge(to_judge(learned, settings, sensors, positions=facts.positions), facts)
     segments, seconds = len(windows), float(np.sum(windows.end - windows.start))
     if learned.sources:  # windows are those of the first source alone
         segments = sum(source.segments for source in learned.sources)
         seconds = windows.length * segments
-    facts = ModelFacts(
+    origin = ModelFacts(
         input_name=input_name,
         settings=settings,
         logs=[schema.LogReference(path=source.path, sha256=source.sha256) for source in log.sources],
@@ -144,7 +146,7 @@ def judged_content(
         seconds=seconds,
         segments=segments,
     )
-    return judged, model_content(learned, judged, facts)
+    return judged, model_content(learned, judged, origin)
 
 
 def _by_learner(settings: Settings, windows: WindowSet, progress: Progress | None) -> Learned:
@@ -232,37 +234,16 @@ def model_of(content: schema.ModelFile, log: Log, found: tuple[Contradiction, ..
         ) from problem
 
 
-def judged_on(
-    learned: Learned,
-    windows: WindowSet,
-    given: tuple[Log, str, Settings],
-    found: tuple[Contradiction, ...],
-) -> Judged:
-    """Judge what is known causally on held-out windows, at the longest horizon with enough of them.
-
-    The predictions are those that `evaluate` makes of the same method, so that one error stands in the
-    verdict, the model file, the report and the scores.
-    """
+def _facts(
+    learned: Learned, windows: WindowSet, given: tuple[Log, str, Settings], found: tuple[Contradiction, ...]
+) -> LogFacts:
+    """What the log says about a verdict."""
     log, input_name, settings = given
-    judgement = judgement_of(learned)
     shortage: tuple[str, ...] = ()
-    if judgement.too_short:
+    if too_short(len(learned.predictions[learned.judged])):
         shortest = collect_windows(windows.drive, JUDGING_HORIZONS[0], settings.rules())
         shortage = shortage_advice(log, input_name, shortest, settings)
-    known = identified(
-        learned.identifiable,
-        wheels_logged=has_wheels(windows.drive),
-        wheels_advice=log.advice.get("wheel", ""),
-        positions=has_course(log.runs),
-        gyro_alone=gyro_alone(log.runs),
-    )
-    known = replace(known, force=force_words(learned.identifiable, settings))
-    verdict = give_verdict(judgement, known, LogFacts(found, shortage, input_name, has_course(log.runs)))
-    if not any(each.spoils for each in found):
-        kept, wheels = learned.kept.limits is not None, has_wheels(windows.drive)
-        limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=wheels)
-        verdict = replace(verdict, advice=(*verdict.advice, *limits))
-    return Judged(judgement, verdict)
+    return LogFacts(found, shortage, input_name, has_course(log.runs))
 
 
 def _range(drive: tuple[PreparedRun, ...]) -> schema.Range:

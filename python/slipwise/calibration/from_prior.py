@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, calibrate, calibrate_by, learned_by
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.learned_log import Keep, learn_with, new_learner
 from slipwise.calibration.learner import STRUCTURES, Progress
 from slipwise.calibration.log_knowledge import LogKnowledge, knowledge_of, robot_model
-from slipwise.calibration.model_content import Learned
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, choose_input, has_wheels
 from slipwise.calibration.result import Calibration

@@ -71,7 +71,7 @@ class Judgement:
         return {"position": _or_one(self.position_ratio), "heading": _or_one(self.heading_ratio)}
 
 
-def judge(learned: Predictions, baseline: Predictions) -> Judgement:
+def judgement_of(learned: Predictions, baseline: Predictions) -> Judgement:
     """Compare a method with the kinematic baseline on the second half of the segments."""
     half = held_out_half(len(learned))
     held_out = HeldOut(
@@ -90,6 +90,12 @@ def judge(learned: Predictions, baseline: Predictions) -> Judgement:
         ratio_of_means(learned.heading_error[half], baseline.heading_error[half]),
         consistency_of(learned),
     )
+
+
+def too_short(count: int) -> bool:
+    """Say whether the held-out half of `count` predictions is too few segments to judge."""
+    half = held_out_half(count)
+    return bool(half.stop - half.start < FEWEST_WINDOWS)
 
 
 def _mean(values: np.ndarray) -> float:

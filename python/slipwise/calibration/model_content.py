@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -11,39 +10,13 @@ from importlib.metadata import version
 import numpy as np
 
 from slipwise import _core
-from slipwise.calibration.judgement import FEWEST_WINDOWS, Judgement, judge
+from slipwise.calibration.judge import Judged
+from slipwise.calibration.learned import Learned
 from slipwise.calibration.learner import Posterior
-from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.result import History, Verdict
 from slipwise.calibration.settings import Settings
-from slipwise.calibration.source_knowledge import LearnedSource
 from slipwise.models import schema
 from slipwise.models.car import car_section
 from slipwise.models.limits import limits_section
-
-
-@dataclass(frozen=True, eq=False)
-class Learned:
-    """What learning gave."""
-
-    kept: Posterior
-    identifiable: Posterior  # the same; of the next best where the baseline is kept, which has no parameters
-    predictions: tuple[Predictions, ...]  # causal, of the horizons that are judged
-    baseline: tuple[Predictions, ...]  # the kinematic baseline's, of the same segments
-    students: dict[float, schema.StudentT]
-    history: History | None
-    bases: tuple[str, ...]
-    limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
-    car: _core.CarCurves | None = None  # where commands are throttle and steering
-    sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
-
-
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """What goes into a model file beside what was learned."""
-
-    judgement: Judgement
-    verdict: Verdict
 
 
 @dataclass(frozen=True)
@@ -56,19 +29,6 @@ class ModelFacts:
     range: schema.Range
     seconds: float  # of all segments learned
     segments: int
-
-
-def judged_horizon(counts: Sequence[int]) -> int:
-    """Return which horizon is judged, of `counts` predictions each: the longest one with enough of them."""
-    enough = [k for k, count in enumerate(counts) if count >= 2 * FEWEST_WINDOWS]
-    some = [k for k, count in enumerate(counts) if count]
-    return enough[-1] if enough else (some or [0])[0]
-
-
-def judgement_of(learned: Learned) -> Judgement:
-    """Judge the predictions at the longest horizon with enough of them."""
-    chosen = judged_horizon([len(p) for p in learned.predictions])
-    return judge(learned.predictions[chosen], learned.baseline[chosen])
 
 
 def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema.ModelFile:

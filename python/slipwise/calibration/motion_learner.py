@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,21 +12,14 @@ from numpy.typing import ArrayLike
 from slipwise import _core
 from slipwise.calibration.calibrate import JUDGING_HORIZONS, model_of, model_of_log
 from slipwise.calibration.core_settings import car_of, core_settings
-from slipwise.calibration.force_words import force_words
+from slipwise.calibration.judge import Sensors, judge, to_judge
 from slipwise.calibration.judgement import Judgement
+from slipwise.calibration.learned import Learned, judged_horizon
 from slipwise.calibration.learned_log import found_limits, kept_posterior, predictions_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
-from slipwise.calibration.limit_words import advice_on_limits
 from slipwise.calibration.measurements import Measurements
-from slipwise.calibration.model_content import (
-    Judged,
-    Learned,
-    ModelFacts,
-    judged_horizon,
-    judgement_of,
-    model_content,
-)
+from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
 from slipwise.calibration.predictors import student_of
 from slipwise.calibration.remembered_surfaces import RememberedSurfaces
@@ -35,7 +27,7 @@ from slipwise.calibration.settings import Settings, make_settings
 from slipwise.calibration.sloping_ground import with_gravity
 from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_sections import with_memory
-from slipwise.calibration.verdict import LogFacts, give_verdict, identified
+from slipwise.calibration.verdict import LogFacts
 from slipwise.errors import SettingsError
 from slipwise.logs.log import Log
 from slipwise.models import Model, parse_model
@@ -242,20 +234,11 @@ class MotionLearner(Measurements, RememberedSurfaces):
         if log is not None:
             made, judgement = model_of_log(learned, log, self._input, self._settings)
             return model_of(self._remembered(made.content, learned), log, ()), judgement
-        judgement = judgement_of(learned)
-        known = identified(
-            learned.identifiable,
-            wheels_logged=self._wheels,
-            positions=self._positions,
-            gyro_alone=self._gyro_alone,
-        )
-        known = replace(known, force=force_words(learned.identifiable, self._settings))
-        verdict = give_verdict(judgement, known, LogFacts(input_name=self._input, positions=self._positions))
-        kept = learned.kept.limits is not None
-        of_limits = advice_on_limits(learned.limits, kept=kept, wheels_logged=self._wheels)
-        verdict = replace(verdict, advice=(*verdict.advice, *of_limits))
+        sensors = Sensors(self._wheels, "", self._gyro_alone)
+        facts = LogFacts((), (), self._input, self._positions)
+        judged = judge(to_judge(learned, self._settings, sensors, positions=self._positions), facts)
         slowest, fastest, right, left = model.range
-        facts = ModelFacts(
+        origin = ModelFacts(
             input_name=self._input,
             settings=self._settings,
             logs=[],
@@ -263,8 +246,8 @@ class MotionLearner(Measurements, RememberedSurfaces):
             seconds=model.seconds,
             segments=model.segments,
         )
-        content = self._remembered(model_content(learned, Judged(judgement, verdict), facts), learned)
-        return model_of(content, Log(()), ()), judgement
+        content = self._remembered(model_content(learned, judged, origin), learned)
+        return model_of(content, Log(()), ()), judged.judgement
 
     def _remembered(self, content: ModelFile, learned: Learned) -> ModelFile:
         """Return the content with the surfaces, where these are remembered."""

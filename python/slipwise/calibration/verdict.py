@@ -47,12 +47,12 @@ class Identified:
 
 @dataclass(frozen=True)
 class LogFacts:
-    """What the log itself says about a verdict."""
+    """What the measurements themselves say about a verdict; whoever judges has to know all of it."""
 
-    contradictions: tuple[Contradiction, ...] = ()
-    shortage: tuple[str, ...] = ()  # why there are so few segments, and what to do, where they are too few
-    input_name: str = "command"
-    positions: bool = False  # only positions were measured
+    contradictions: tuple[Contradiction, ...]
+    shortage: tuple[str, ...]  # why there are so few segments, and what to do, where they are too few
+    input_name: str
+    positions: bool  # only positions were measured
 
 
 def identified(

@@ -29,15 +29,15 @@ def verdict_on(evaluation: Evaluation, source: Calibration | Model | None) -> Ve
         evaluation: with `none` among its methods.
         source: what says which parameters are not identifiable: the calibration, or the model judged.
     """
-    from slipwise.calibration.judgement import judge
-    from slipwise.calibration.verdict import LogFacts, give_verdict
+    from slipwise.calibration.judge import ToJudge, judge
+    from slipwise.calibration.verdict import LogFacts
 
     method = judged_method(evaluation.methods, evaluation.models)
     if method is None or source is None:
         return None
     longest = {p.method: p for p in evaluation.predictions if p.horizon == max(evaluation.horizons)}
     facts = LogFacts(evaluation.contradictions, _SHORTAGE, evaluation.input, evaluation.positions)
-    verdict = give_verdict(judge(longest[method], longest["none"]), _identified(source), facts)
+    verdict = judge(ToJudge(longest[method], longest["none"], _identified(source), ()), facts).verdict
     return replace(verdict, advice=tuple(dict.fromkeys((*verdict.advice, *_more_advice(evaluation, method)))))
 
 

@@ -146,8 +146,8 @@ def test_a_log_that_no_model_can_hold_is_an_error_that_names_the_cause() -> None
         model_of(content, Log(runs=()), ())
 
 
-def facts(**given: object) -> LogFacts:
-    return LogFacts(**given)  # type: ignore[arg-type]
+def facts(contradictions: tuple[Contradiction, ...] = ()) -> LogFacts:
+    return LogFacts(contradictions, (), "command", positions=False)
 
 
 def test_a_verdict_against_its_own_figures_says_why() -> None:
