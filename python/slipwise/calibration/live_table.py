@@ -40,7 +40,7 @@ class ApplyTable(_Table):
     nodes: dict[str, str] = {}  # target: the node's name, where it is not the usual one
     interval: Seconds = 10.0  # s between two times at least
     threshold: Annotated[float, Field(ge=0.0, le=10.0)] = 0.02  # prior sd that a parameter moved, at least
-    within: Annotated[float, Field(gt=0.0, le=10.0)] = 1.0  # prior sd about the start, at most
+    within: Annotated[float, Field(gt=0.0, le=10.0)] = 1.0  # prior sd beyond what is certain, at most
     rate: Annotated[float, Field(gt=0.0, le=10.0)] = 0.01  # prior sd a second, at most
 
 

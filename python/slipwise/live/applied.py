@@ -11,8 +11,12 @@ import numpy as np
 from slipwise.calibration.live_table import ApplyTable
 from slipwise.live.outputs import Floats, Validity
 from slipwise.models import Model
+from slipwise.models.schema import Parameter
+from slipwise.number_text import estimate_texts, number_text
 
 LONGEST_STEP = 5.0  # s that one step counts; judgements are no farther apart while the robot drives
+CERTAIN = 3.0  # of its own standard deviations, beyond which a change from the start is no chance
+FARTHEST = 4.0  # times `within`, beyond which nothing is followed, however certain: no robot is that far
 
 
 class AppliedModel:
@@ -21,6 +25,9 @@ class AppliedModel:
     A slip term that the start does not have starts at zero. A lag or delay that it does not have starts at
     what was learned: no number stands for none.
 
+    `within` bounds how far a value may be from what is certain, not from the start: a robot that is known to
+    be far from the start is followed, since what holds it back would be a wrong model for ever.
+
     Args:
         rules: how far and how fast.
         start: the off-line model; None: the kinematic baseline.
@@ -28,8 +35,9 @@ class AppliedModel:
 
     def __init__(self, rules: ApplyTable, start: Model | None) -> None:
         self._rules = rules
-        self.start = _values(start)
+        self.start = values_of(start)
         self.values: dict[str, float] = dict(self.start)
+        self.held: dict[str, str] = {}  # by parameter: what holds its value back
         self._handed: dict[str, float] = {}
         self._last = -math.inf  # s, when they were handed on
         self._then = -math.inf  # s, of the last step
@@ -91,17 +99,39 @@ class AppliedModel:
         """Name, clipped goal and prior sd of the parameters that may move; new ones get their start."""
         found = []
         for p in model.content.parameters if model is not None else ():
-            begin = p.value if p.name.startswith("log_") else 0.0
-            start = self.start.setdefault(p.name, begin)
+            start = self.start.setdefault(p.name, start_value(p))
             self.values.setdefault(p.name, start)
-            reach = self._rules.within * p.prior_std
+            self.held.pop(p.name, None)
             if validity(p.name) == "estimated":
-                found.append((p.name, min(max(p.value, start - reach), start + reach), p.prior_std))
+                reach = self._reach(p, start)
+                goal = min(max(p.value, start - reach), start + reach)
+                found.append((p.name, goal, p.prior_std))
+                if goal != p.value:
+                    self.held[p.name] = self._why_held(p, goal, start)
         return found
 
+    def _reach(self, p: Parameter, start: float) -> float:
+        """How far from its start a parameter is followed."""
+        certain = max(0.0, abs(p.value - start) - CERTAIN * p.std)
+        within = self._rules.within * p.prior_std
+        return min(certain + within, FARTHEST * within)
 
-def _values(model: Model | None) -> dict[str, float]:
+    def _why_held(self, p: Parameter, goal: float, start: float) -> str:
+        learned = " +- ".join(estimate_texts(p.value, p.std))
+        return (
+            f"{p.name} is held at {number_text(goal, 3)}: {learned} was learned, too far from the start"
+            f" {number_text(start, 3)} for within = {self._rules.within:g}"
+        )
+
+
+def values_of(model: Model | None) -> dict[str, float]:
+    """Return a model's parameters as the model file has them; none of no model."""
     return {} if model is None else {p.name: p.value for p in model.content.parameters}
+
+
+def start_value(p: Parameter) -> float:
+    """Return where a parameter begins that the start does not have, when it is seen first."""
+    return p.value if p.name.startswith("log_") else 0.0
 
 
 def physical(name: str, values: Mapping[str, float]) -> float | None:

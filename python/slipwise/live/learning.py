@@ -9,6 +9,7 @@ from slipwise.calibration.judgement import Judgement
 from slipwise.calibration.learner_answers import Event
 from slipwise.calibration.motion_learner import MotionLearner
 from slipwise.errors import SlipwiseError
+from slipwise.live.applied import start_value, values_of
 from slipwise.live.outputs import Validity
 from slipwise.live.said import Said
 from slipwise.live.validity import ModelValidity
@@ -31,6 +32,7 @@ class Learning:
 
     def __init__(self, learner: MotionLearner, start: Model | None, valid: Model | None, said: Said) -> None:
         self.learner, self.start, self.valid = learner, start, valid
+        self.start_values = values_of(start)  # of the parameters by their names
         self.validity = ModelValidity()
         self.model: Model | None = None  # the newest, valid or not
         self.judgement: Judgement | None = None
@@ -69,6 +71,8 @@ class Learning:
             self._said.begins(t, "no model", str(problem))
             return False
         self._said.ends(t, "no model")
+        for p in self.model.content.parameters:
+            self.start_values.setdefault(p.name, start_value(p))
         self.validity.take(self.model, self.judgement)
         if self.validity.whole == "estimated" and self.model.content.verdict.good:
             self.valid = self.model

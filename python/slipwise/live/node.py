@@ -180,6 +180,7 @@ class LiveNode:
         if parts.applied is not None:
             valid = parts.learning.valid_now
             parts.applied.step(t, valid, parts.learning.validity.of)
+            self._say_held(t, parts.applied)
             if parts.who.apply == "auto" and valid is not None and parts.applied.due(t, valid):
                 self._hand_on(t)
         if model is None or (model, which) == self._given:
@@ -188,6 +189,15 @@ class LiveNode:
         parts.intake.surfaces.look_again()
         text = f"# slipwise live, {parts.who.vehicle}, stamp {t:.3f} s: {which}\n{model.to_yaml()}"
         self._publish(ModelText(t, text))
+
+    def _say_held(self, t: float, applied: AppliedModel) -> None:
+        said = self._parts.said
+        for name in applied.values:
+            why = applied.held.get(name)
+            if why is None:
+                said.ends(t, f"held {name}", f"{name} is held back no longer")
+            else:
+                said.begins(t, f"held {name}", why)
 
     def _hand_on(self, t: float) -> None:
         parts = self._parts

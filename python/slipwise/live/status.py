@@ -128,7 +128,7 @@ def parameters_now(learning: Learning, applied: AppliedModel | None) -> tuple[Pa
         if prior is None:
             continue  # a limit of the drive
         logarithm = prior.name != name
-        start = None if applied is None else physical(name, applied.start)
+        start = physical(name, learning.start_values)
         rows.append(
             ParameterNow(
                 name=name,

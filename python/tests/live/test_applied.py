@@ -10,7 +10,7 @@ import pytest
 from sample_models import make_model, named
 
 from slipwise.calibration.live_table import ApplyTable
-from slipwise.live.applied import LONGEST_STEP, AppliedModel, physical
+from slipwise.live.applied import FARTHEST, LONGEST_STEP, AppliedModel, physical
 from slipwise.live.outputs import Validity
 from slipwise.models import Model
 
@@ -41,12 +41,35 @@ def test_it_never_moves_faster_than_stated_and_arrives() -> None:
     assert all(applied.values[name] == pytest.approx(0.02) for name in NAMES)
 
 
-def test_it_stays_within_its_range_about_the_start() -> None:
-    applied, goal = AppliedModel(ApplyTable(rate=10.0, within=0.5), START), learned(1e3)
+def arrived(rules: ApplyTable, goal: Model) -> AppliedModel:
+    applied = AppliedModel(rules, START)
     for k in range(2000):
         applied.step(float(k), goal, estimated)
+    return applied
+
+
+def test_a_skid_steer_that_is_known_well_is_followed_all_the_way() -> None:
+    goal = make_model(replace(named("edd-2"), values={"ang.w": -0.43}))  # +- 0.01, the prior's is 0.3
+    applied = arrived(ApplyTable(), goal)
+    assert applied.values["ang.w"] == pytest.approx(-0.43)
+    assert applied.held == {}
+
+
+def test_what_is_not_certain_is_held_within_its_range_about_the_start_and_that_is_said() -> None:
+    goal = make_model(replace(named("edd-2"), values={"ang.w": -0.43}, std=0.2))
+    prior = {p.name: p.prior_std for p in goal.content.parameters}
+    applied = arrived(ApplyTable(), goal)
+    assert applied.values["ang.w"] == pytest.approx(-prior["ang.w"])
+    assert applied.held.keys() == {"ang.w"}
+    assert "ang.w is held at -0.3" in applied.held["ang.w"]
+
+
+def test_nothing_is_followed_beyond_what_a_robot_can_be() -> None:
+    goal = learned(1e3)
+    applied = arrived(ApplyTable(rate=10.0, within=0.5), goal)
     for p in goal.content.parameters:
-        assert applied.values[p.name] == pytest.approx(0.5 * p.prior_std)
+        assert applied.values[p.name] == pytest.approx(0.5 * FARTHEST * p.prior_std)
+    assert applied.held.keys() == set(NAMES)
 
 
 def test_nothing_moves_while_the_model_or_the_parameter_is_not_valid() -> None:

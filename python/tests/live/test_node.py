@@ -60,6 +60,16 @@ def test_the_last_valid_model_is_published_once_while_nothing_newer_is_valid(
     assert transport.statuses[-1].given == "the last valid one; the model is invalid now"
 
 
+def test_the_column_at_start_holds_start_values_where_nothing_is_handed_on() -> None:
+    _, transport = run_node(driven())
+    rows = transport.statuses[-1].parameters
+    slip = [row for row in rows if row.name.partition(".")[0] in {"lon", "lat", "ang"}]
+    assert slip
+    assert all(row.start == 0.0 for row in slip)
+    assert any(abs(row.value) > 3.0 * row.std for row in slip)
+    assert all(row.applied is None for row in rows)
+
+
 @pytest.mark.parametrize("attitude", [False, True])
 def test_terms_of_gravity_are_tried_where_poses_are_said_to_have_an_attitude(attitude: bool) -> None:
     (run,) = prepare_run(hilly_log(1, Hills(seconds=60.0)), "command")
