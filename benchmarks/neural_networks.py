@@ -14,6 +14,7 @@ from pathlib import Path
 
 from data_sets import DataSet, data_sets, input_names, required_folder
 from log_score import LogScore, geometric_mean, log_score
+from neural import add_networks
 
 import slipwise
 
@@ -25,6 +26,7 @@ ALLOWED = 1.02  # times the better network's error, on one log
 
 def score_log(data: DataSet) -> list[LogScore]:
     """Evaluate `auto` and the networks on one log, with every input that the log has."""
+    add_networks()
     log = slipwise.open_log(data.path)
     options = slipwise.EvaluationOptions(horizons=(data.horizon,), methods=METHODS)
     scores = []

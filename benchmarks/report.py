@@ -74,7 +74,7 @@ def _machine_table(machine: Provenance, loads: tuple[float, float]) -> list[str]
 
 
 def _section(section: Section) -> list[str]:
-    raw = f" Raw figures: [{section.raw}]({section.raw})." if section.raw else ""
+    raw = f" It writes {section.raw}." if section.raw else ""
     failed = " **It failed.**" if section.failed else ""
     return [
         f"## {section.title}",

@@ -50,8 +50,8 @@ def evaluate(
             "NAMES",
             "vendor, batch, model, auto, bases, single estimators (gradient-descent, ekf-thesis, iekf, "
             "delayed-state), slip-ratio-ekf or slip-ratio-smo, surfaces (surface-least-squares, "
-            "surface-gaussian-process, surface-bayesian), neural, neural-residual, separated by commas; "
-            "`none` always is. Default: all but estimators, slip ratios, surfaces and networks.",
+            "surface-gaussian-process, surface-bayesian), separated by commas; "
+            "`none` always is. Default: all but estimators, slip ratios and surfaces.",
         ),
     ] = None,
     vendor_wheel_separation_multiplier: Annotated[
@@ -90,7 +90,6 @@ def evaluate(
       slipwise evaluate drive.csv --input wheel --methods icr-3,slip-ratio-ekf,slip-ratio-smo,auto
       slipwise evaluate drive.csv --methods gradient-descent,ekf-thesis,iekf,delayed-state --basis drive-5
       slipwise evaluate drive.csv --methods surface-least-squares,surface-bayesian,auto
-      slipwise evaluate drive.csv --methods neural,neural-residual,auto
       slipwise evaluate drive.csv --vendor-wheel-separation-multiplier 1.875 --predictions predictions.csv
       slipwise evaluate --memory sand.csv asphalt.csv sand2.csv --predictions predictions.csv
       slipwise evaluate --memory --model monday.yaml tuesday.csv --terrain sand

@@ -16,7 +16,6 @@ from slipwise.calibration.prepared_run import WindowSet, collect_windows
 from slipwise.calibration.settings import AVERAGE, Settings
 from slipwise.calibration.sloping_ground import SIDEWAYS_BASES, SLOPE_BASES
 from slipwise.errors import SettingsError
-from slipwise.evaluation.neural import neural, neural_residual
 from slipwise.evaluation.slip_ratios import slip_ratio_filter, slip_ratio_observer
 from slipwise.evaluation.slip_surfaces import surface_predictor
 from slipwise.models.model import Model
@@ -42,6 +41,14 @@ class MethodInfo:
 
     predict: Callable[[str, Contest], tuple[Predictions, ...]]  # one for each set of targets
     description: str
+
+
+_ADDED: dict[str, MethodInfo] = {}
+
+
+def add_method(name: str, info: MethodInfo) -> None:
+    """Let evaluations of this process compare one method more, by its name."""
+    _ADDED[name] = info
 
 
 def method_names(contest: Contest) -> tuple[str, ...]:
@@ -70,7 +77,7 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
         "none": MethodInfo(_plain, "the kinematic baseline: no slip, no lag"),
         "vendor": MethodInfo(_by(_vendor), "a vendor's wheel-separation multiplier"),
         "model": MethodInfo(_model, "the model file as it is"),
-        "auto": MethodInfo(_learned, "average of several bases by how well they predict"),
+        "auto": MethodInfo(learned, "average of several bases by how well they predict"),
         "slip-ratio-ekf": MethodInfo(
             _by(lambda _, c: slip_ratio_filter(c.input_name, c.settings, c.windows)),
             "slip ratios and slip angle (thesis 2.5 to 2.7) by an EKF, from wheel speeds",
@@ -87,18 +94,15 @@ def method_info(name: str, models: Collection[str] = ()) -> MethodInfo:
         "surface-bayesian": MethodInfo(
             _by(_surface), "slip surface by Bayesian linear regression (thesis 5.13)"
         ),
-        "neural": MethodInfo(_neural, "neural networks from inputs to motion, fitted again as windows come"),
-        "neural-residual": MethodInfo(
-            _neural_residual, "neural networks that correct the predictions of auto"
-        ),
-        "custom": MethodInfo(_learned, "the terms of the settings file"),
+        "custom": MethodInfo(learned, "the terms of the settings file"),
+        **_ADDED,
     }
     if name in models:
         return special["model"]
     if name in special:
         return special[name]
     if name in _core.basis_names():
-        return MethodInfo(_learned, f"the basis {name}, learned causally")
+        return MethodInfo(learned, f"the basis {name}, learned causally")
     if name in _core.estimator_names():
         off_line = ", fitted to the whole log, the windows judged included"
         about = off_line if _core.fits_all_segments(name) else ""
@@ -128,8 +132,8 @@ def _by(make: Callable[[str, Contest], Predictor]) -> Callable[[str, Contest], t
     return predict
 
 
-def _learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
-    """Push the log through the learner: predictions are made on the way."""
+def learned(name: str, contest: Contest) -> tuple[Predictions, ...]:
+    """Push the log through a learner with the basis `name`, which predicts on the way."""
     settings = contest.settings.model_copy(update={"basis": name, "estimator": AVERAGE})
     horizons = [targets.length for targets in contest.targets]
     learned = learn_log(contest.windows.drive, settings, horizons)
@@ -162,16 +166,6 @@ def _plain(_: str, contest: Contest) -> tuple[Predictions, ...]:
         return predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
     horizons = [targets.length for targets in contest.targets]
     return learn_log(drive, contest.settings, horizons).baseline
-
-
-def _neural(_: str, contest: Contest) -> tuple[Predictions, ...]:
-    baseline = predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
-    return tuple(neural(*pair) for pair in zip(contest.targets, baseline, strict=True))
-
-
-def _neural_residual(_: str, contest: Contest) -> tuple[Predictions, ...]:
-    own = _learned("auto", contest)
-    return tuple(neural_residual(*pair) for pair in zip(contest.targets, own, strict=True))
 
 
 def _estimator(name: str, contest: Contest) -> Predictor:

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from neural import FIRST, add_networks, last_known, neural_residual
 from python.tests.evaluation.test_causality import cut_off
 from sample_logs import Drive, simulated_log
 
@@ -17,10 +18,11 @@ from slipwise.calibration.learned_log import learn_log
 from slipwise.calibration.predictions import Predictions
 from slipwise.calibration.prepared_run import WindowSet, collect_windows, prepare_run
 from slipwise.evaluation import Evaluation, EvaluationOptions, evaluate
-from slipwise.evaluation.neural import FIRST, last_known, neural_residual
 from slipwise.logs import Log
 
 pytest.importorskip("sklearn", reason="neural networks need scikit-learn")
+
+add_networks()
 
 HORIZON = 2.0
 SLIP = _core.named_basis("full-linear-6")

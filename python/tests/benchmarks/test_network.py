@@ -5,9 +5,9 @@ import sys
 
 import numpy as np
 import pytest
+from network import NetworkOptions, fit_network
 
 from slipwise.errors import SettingsError
-from slipwise.evaluation.network import NetworkOptions, fit_network
 
 SMALL = NetworkOptions(hidden=(12,), members=2, weight_decays=(0.01, 1.0), iterations=100)
 CAUTIOUS = NetworkOptions(hidden=(12,), members=2, weight_decays=(0.01, 1.0), iterations=60, may_abstain=True)
@@ -58,5 +58,5 @@ def test_inputs_that_never_vary_teach_nothing() -> None:
 
 def test_without_scikit_learn_the_error_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "sklearn.neural_network", None)
-    with pytest.raises(SettingsError, match=r"slipwise\[neural\]"):
+    with pytest.raises(SettingsError, match=r"pip install 'scikit-learn"):
         fit_network(*examples(20, noise=0.1, curve=1.0), SMALL)

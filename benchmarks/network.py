@@ -112,6 +112,6 @@ def regressor_class() -> Any:
         from sklearn.neural_network import MLPRegressor
     except ImportError as problem:
         raise SettingsError(
-            "neural networks need scikit-learn", advice="install it with: pip install 'slipwise[neural]'"
+            "neural networks need scikit-learn", advice="pip install 'scikit-learn>=1.4'"
         ) from problem
     return MLPRegressor

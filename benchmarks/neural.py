@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Neural networks as causal methods: a forward model of their own, or a correction of what auto predicts."""
+"""Neural networks as causal methods: a forward model, or a correction of what auto predicts."""
 
 from __future__ import annotations
 
@@ -8,14 +8,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from network import Network, NetworkOptions, fit_network, regressor_class
 from numpy.typing import NDArray
+from window_inputs import beside, chords, poses_of, unwrapped_motion, window_inputs
 
 from slipwise.calibration.learner import JOINT
+from slipwise.calibration.plain import baseline_predictor
 from slipwise.calibration.predictions import Predictions
-from slipwise.calibration.predictors import ProposedPoses, known_windows, scored_predictions
+from slipwise.calibration.predictors import ProposedPoses, known_windows, predict_all, scored_predictions
 from slipwise.calibration.prepared_run import WindowSet
-from slipwise.evaluation.network import Network, NetworkOptions, fit_network, regressor_class
-from slipwise.evaluation.window_inputs import beside, chords, poses_of, unwrapped_motion, window_inputs
+from slipwise.evaluation.methods import Contest, MethodInfo, add_method, learned
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -44,6 +46,22 @@ class _Outputs:
     in_sample: Floats  # [N, 3] by the first fit that had learned it
     fitted: NDArray[np.bool_]  # [N] whether there was a network yet
     spread: Floats  # [N, 3, 3] second moment of the errors on the last quarter of the examples
+
+
+def add_networks() -> None:
+    """Let evaluations of this process compare `neural` and `neural-residual`."""
+    add_method("neural", MethodInfo(_forward, "networks from inputs to motion, fitted again as windows come"))
+    add_method("neural-residual", MethodInfo(_residual, "networks that correct the predictions of auto"))
+
+
+def _forward(_: str, contest: Contest) -> tuple[Predictions, ...]:
+    baseline = predict_all(baseline_predictor(contest.settings), contest.windows, contest.targets)
+    return tuple(neural(*pair) for pair in zip(contest.targets, baseline, strict=True))
+
+
+def _residual(_: str, contest: Contest) -> tuple[Predictions, ...]:
+    own = learned("auto", contest)
+    return tuple(neural_residual(*pair) for pair in zip(contest.targets, own, strict=True))
 
 
 def neural(targets: WindowSet, baseline: Predictions) -> Predictions:
