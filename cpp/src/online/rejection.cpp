@@ -16,7 +16,7 @@ constexpr std::array<Words, kReasons> kWords{{
     {.name = "duplicate-stamp", .text = "the stamp is that of the one before"},
     {.name = "backward-stamp", .text = "the stamp goes backward"},
     {.name = "too-late", .text = "it arrived later than the latency allowed between streams"},
-    {.name = "absurd-speed", .text = "faster than any robot, all at once"},
+    {.name = "absurd-speed", .text = "far beyond all speeds before, all at once"},
     {.name = "pose-outlier", .text = "poses far from their neighbours"},
     {.name = "pose-jump", .text = "steps between poses that jump; poses after are in a frame of their own"},
     {.name = "late-pose", .text = "the pose comes after a gap and is late by an unknown time"},

@@ -104,7 +104,9 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
     return;
   }
   auto& gates = speeds_[index(stream)];
-  const std::array plausible{gates[0].plausible(v), gates[1].plausible(vy), gates[2].plausible(omega)};
+  const bool measured = stream == Stream::Wheels;
+  const std::array plausible{gates[0].plausible(v, measured), gates[1].plausible(vy, measured),
+                             gates[2].plausible(omega, measured)};
   if (!std::ranges::all_of(plausible, std::identity{})) {
     reject(stream, Reason::AbsurdSpeed, sample.t);
     return;

@@ -38,7 +38,21 @@ TEST_CASE("a speed that no robot has is not believed alone, and above 100 not at
   CHECK(slow.plausible(1.0));
   CHECK(!slow.plausible(60.0));
   CHECK(slow.plausible(62.0));   // not one: it comes twice in a row
-  CHECK(slow.plausible(300.0));  // within ten times what was believed
+  CHECK(slow.plausible(300.0));  // within fifteen times what was believed
+}
+
+TEST_CASE("a spike of wheels goes by what the stream holds, not by what robots can drive") {
+  SpeedGate turning;
+  CHECK(turning.plausible(17.9, true));  // nothing is known at the first, and it says nothing of the next
+  for (const double rate : {0.0, 0.3, 0.9, -0.9}) {
+    CHECK(turning.plausible(rate, true));
+    CHECK(!turning.plausible(18.5, true));
+    CHECK(turning.plausible(rate, true));
+  }
+  CHECK(turning.plausible(4.9, true));
+  SpeedGate commanded;
+  CHECK(commanded.plausible(0.0));
+  CHECK(commanded.plausible(18.5));  // a command may step
 }
 
 }  // namespace slipwise

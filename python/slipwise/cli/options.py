@@ -156,7 +156,11 @@ _LOG_OPTIONS: dict[str, tuple[Any, str, str]] = {
     ),
     "start": (float, "SECONDS", "Leave out what is before, counted from the log's start."),
     "end": (float, "SECONDS", "Leave out what is after, counted from the log's start."),
-    "columns": (str, "NAMES", "Columns of a table under other names, such as t=time,cmd_v=vx."),
+    "columns": (
+        str,
+        "NAMES",
+        "Columns of a table under other names, such as t=time,cmd_v=vx, or by number from 0: t=0,cmd_v=1.",
+    ),
 }
 _FACTORS = ("command_scale", "wheel_scale")
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import listed, place_of
 from slipwise.logs.gpx import is_gpx, read_gpx
 from slipwise.logs.kitti import read_kitti
 from slipwise.logs.left_out import Tally
@@ -22,6 +23,7 @@ from slipwise.logs.remote import local_file, shown
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
 from slipwise.logs.table import Table, read_csv, read_parquet
+from slipwise.logs.tidy_columns import POSE_COLUMNS
 
 _KNOWN = (
     "give TUM (t x y z qx qy qz qw), KITTI with times.txt, a CSV or Parquet table with t, x, y, yaw, GPX, "
@@ -32,6 +34,15 @@ _QUATERNION = ("qx", "qy", "qz", "qw")
 _TUM, _KITTI = 8, 12  # numbers in a line
 _NANOSECONDS = 1e16  # stamps beyond this count nanoseconds, not seconds
 _RECEIVERS = (("ppk", is_ppk, read_ppk), ("gpx", is_gpx, read_gpx), ("nmea", is_nmea, read_nmea))
+_CALLED = {
+    "tum": "a TUM pose file",
+    "kitti": "a KITTI pose file",
+    "gpx": "a GPX file",
+    "nmea": "an NMEA file",
+    "ppk": "an RTKLIB .pos file",
+}
+_START = 1 << 16  # bytes by which a format is known
+_UNIT = 0.02  # how far a quaternion or a rotation may be from one
 _BAGS = (b"\x89MCAP", b"SQLit", b"#ROSB")
 
 
@@ -78,6 +89,49 @@ def read_pose_file(path: Path, columns: Mapping[str, str], tally: Tally) -> Pose
     return PoseFile(stream, kind, hashlib.sha256(content).hexdigest(), (*notes, *scaled))
 
 
+def pose_format(path: Path) -> str | None:
+    """Return the format of a file that holds poses alone, by its first lines; None for anything else."""
+    with path.open("rb") as file:
+        start = file.read(_START)
+    lines, end = start.rpartition(b"\n")[0] or start, len(start) < _START
+    text = (start if end else lines).decode("utf-8-sig", errors="replace")
+    kind = next((kind for kind, is_kind, _ in _RECEIVERS if is_kind(text)), None)
+    if kind is not None:
+        return _CALLED[kind]
+    rows = [line.replace(",", " ").split() for line in _rows(text)]
+    if len({len(row) for row in rows}) != 1 or len(rows[0]) not in (_TUM, _KITTI):
+        return None
+    try:
+        values = np.array(rows, dtype=np.float64)
+    except ValueError:
+        return None
+    if len(rows[0]) == _KITTI:
+        turn = values.reshape(-1, 3, 4)[:, :, :3]
+        return _CALLED["kitti"] if _are_rotations(turn) else None
+    return _CALLED["tum"] if np.allclose(np.sum(values[:, 4:] ** 2, axis=1), 1.0, atol=_UNIT) else None
+
+
+def refuse_poses_alone(path: Path) -> None:
+    """Raise LogError where a file that is read as a log holds poses alone."""
+    kind = pose_format(path)
+    if kind is not None:
+        raise LogError(
+            f"this is {kind}: it holds poses, and no commands or wheel speeds",
+            where=str(path),
+            advice=f"give the log that goes with it, and this file beside it: LOG --poses {path.name}",
+        )
+
+
+def _rows(text: str) -> list[str]:
+    """Return the lines that are neither empty nor comments."""
+    return [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+
+
+def _are_rotations(turn: Floats) -> bool:
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.abs(turn.transpose(0, 2, 1) @ turn - np.eye(3)).max() < _UNIT)
+
+
 _Found = tuple[RawStream, str, tuple[str, ...]]  # the poses, the format, what was worked out
 
 
@@ -94,15 +148,13 @@ def _read(path: Path, file: Path, content: bytes, columns: Mapping[str, str], ta
         if is_kind(text):
             stream, notes = read_kind(path, text, tally)
             return stream, kind, notes
-    first = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    first = next(iter(_rows(text)), "")
     count = _numbers_in(first)
     if count == _TUM:
         return _tum_poses(path, text, tally), "tum", ()
     if count == _KITTI:
         stream, notes = read_kitti(path, text)
         return stream, "kitti", notes
-    if count:
-        raise LogError(f"{count} numbers in a line are no pose", where=str(path), advice=_KNOWN)
     return _table_poses(path, _csv(file, tally), columns, tally), "csv", ()
 
 
@@ -151,12 +203,16 @@ def _tum_poses(path: Path, text: str, tally: Tally) -> RawStream:
 
 
 def _table_poses(path: Path, table: Table, columns: Mapping[str, str], tally: Tally) -> RawStream:
-    table = replace(table, path=path, arrow=table.arrow.rename_columns(_tidy_names(table.names, columns)))
+    own = table.names
+    table = replace(table, path=path, arrow=table.arrow.rename_columns(_tidy_names(own, columns)))
     names = table.names
     turned = "yaw" in names or set(_QUATERNION) <= set(names)
     missing = [name for name in ("t", "x", "y") if name not in names]
+    if missing and not table.named:
+        what = f"{len(own)} numbers in a line are no pose"
+        raise LogError(what, where=str(path), advice=f"{_KNOWN}; or --columns t=0,x=1,y=2,yaw=3, by number")
     if missing:
-        found = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
+        found = listed(names)
         advice = f"found {found}; say which is which, such as --columns t=time,x=east"
         raise LogError(f"missing columns: {'; '.join(missing)}", where=str(path), advice=advice)
     wanted = ("x", "y", "yaw", *OPTIONAL_POSE_COLUMNS)
@@ -172,7 +228,8 @@ def _table_poses(path: Path, table: Table, columns: Mapping[str, str], tally: Ta
 
 def _tidy_names(names: Sequence[str], columns: Mapping[str, str]) -> list[str]:
     """Return the names of a tidy log for those that were given, or that other programs use."""
-    given = {own: tidy for tidy, own in columns.items() if own in names}
+    poses = {tidy: own for tidy, own in columns.items() if tidy == "t" or tidy in POSE_COLUMNS}
+    given = {names[place]: tidy for tidy, own in poses.items() if (place := place_of(own, names)) is not None}
     taken = {*names, *given.values()}
     return [
         given.get(name) or (name if _ALIASES.get(name, name) in taken else _ALIASES[name]) for name in names

@@ -120,13 +120,13 @@ def without_fix(stream: RawStream, tally: Tally) -> RawStream:
 def _without_absurd_speeds(stream: RawStream, tally: Tally) -> RawStream:
     absurd = np.zeros(len(stream.t), bool)
     for values in stream.columns.values():
-        absurd |= absurd_speeds(values)
+        absurd |= absurd_speeds(values, measured=stream.name == "wheels")
     count = int(absurd.sum())
     if count > 3 and count > _TOO_MANY_ABSURD * len(absurd):
         what = f"{count} of {len(absurd)} {stream.name} are faster than {FASTEST:g} m/s or rad/s"
         where = stream.place(int(stream.rows[np.argmax(absurd)]))
         raise LogError(what, where=where, advice="convert speeds to m/s and yaw rates to rad/s")
-    return _keep(stream, ~absurd, tally, "absurd-speed", "faster than any robot, all at once")
+    return _keep(stream, ~absurd, tally, "absurd-speed", "far beyond all speeds before, all at once")
 
 
 def _without_impossible_stamps(stream: RawStream, tally: Tally) -> RawStream:

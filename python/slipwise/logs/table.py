@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import contextlib
-import csv
 import hashlib
 import re
 from collections.abc import Collection, Iterator, Mapping
@@ -19,6 +18,7 @@ from slipwise.errors import LogError
 from slipwise.logs.column_names import renamed
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import ABSURD, Floats
+from slipwise.logs.table_text import TableText, refuse_twice, table_text
 from slipwise.logs.unpacking import most_bytes, too_large
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 EMPTY_CELLS = ["", "NA", "N/A", "#N/A", "null", "NULL", "None"]  # no measurement; "nan" is a faulty one
 _BLOCK = 1 << 20  # bytes
-_LINE_END = re.compile(rb"\r\n|\n|\r")
 
 
 @dataclass(frozen=True)
@@ -38,6 +37,8 @@ class Table:
     sha256: str
     arrow: pa.Table
     first_line: int  # number of the first row in the user's eyes
+    named: bool = True  # false: the names are numbers, from 0
+    comment: str = ""  # the last line above the rows that is a comment
 
     @property
     def names(self) -> list[str]:
@@ -119,9 +120,8 @@ def read_csv(
     sha256 = hashlib.sha256(raw).hexdigest()
     packed = raw[:2].to_pybytes() == b"\x1f\x8b"
     content = _unpack(raw, path) if packed else raw
-    header, skip = _header(content, path)
-    content = _as_utf8(content, tally, path.name)
-    header = renamed(header, columns, path)
+    lines = table_text(content, path)
+    header = renamed(lines.names, columns, path)
     types: dict[str, Any] = {name: pa.float64() for name in header if name in numeric}
     types |= {name: pa.dictionary(pa.int32(), pa.string()) for name in header if name in text}
     broken: list[int] = []
@@ -135,10 +135,11 @@ def read_csv(
     )
     parse = arrow_csv.ParseOptions(invalid_row_handler=skip_row)
     # A thread of Arrow that still holds `skip_row` when Python ends, as after an error, would abort it.
-    read = arrow_csv.ReadOptions(column_names=header, skip_rows=skip, use_threads=False)
+    read = arrow_csv.ReadOptions(column_names=header, use_threads=False)
+    rows = _as_utf8(lines, tally, path.name)
     try:
         arrow = arrow_csv.read_csv(
-            pa.BufferReader(content), read_options=read, parse_options=parse, convert_options=convert
+            pa.BufferReader(rows), read_options=read, parse_options=parse, convert_options=convert
         )
     except pa.ArrowException as error:
         advice = "every cell of a measurement must be a number or empty, and text UTF-8"
@@ -147,7 +148,15 @@ def read_csv(
         ) from error
     reason = f"rows that do not have {len(header)} cells"
     tally.add("broken-row", reason, count=len(broken), where=path.name)
-    return Table(path, "csv.gz" if packed else "csv", sha256, arrow.unify_dictionaries(), first_line=skip + 1)
+    return Table(
+        path,
+        "csv.gz" if packed else "csv",
+        sha256,
+        arrow.unify_dictionaries(),
+        lines.first_line,
+        lines.named,
+        lines.comment,
+    )
 
 
 def read_parquet(path: Path, *, columns: Mapping[str, str]) -> Table:
@@ -162,7 +171,7 @@ def read_parquet(path: Path, *, columns: Mapping[str, str]) -> Table:
     raw = _mapped(path)
     try:
         file = parquet.ParquetFile(pa.BufferReader(raw))
-        _refuse_twice(file.schema_arrow.names, str(path))
+        refuse_twice(file.schema_arrow.names, str(path))
         groups = [file.metadata.row_group(i).total_byte_size for i in range(file.num_row_groups)]
         left, batches = most_bytes(), []
         if sum(groups) > left:
@@ -188,10 +197,11 @@ def _mapped(path: Path) -> pa.Buffer:
     return pa.memory_map(str(path)).read_buffer()
 
 
-def _as_utf8(content: pa.Buffer, tally: Tally, name: str) -> pa.Buffer:
-    """Return the content with a mark in place of each byte that is no UTF-8; Arrow skips such rows."""
+def _as_utf8(lines: TableText, tally: Tally, name: str) -> pa.Buffer:
+    """Return the rows with a mark in place of each byte that is no UTF-8; Arrow skips such rows."""
     import pyarrow as pa
 
+    content = lines.content
     view = memoryview(content)
     blocks = (view[at : at + _BLOCK] for at in range(0, len(view), _BLOCK))
     if all(bytes(block).isascii() for block in blocks):
@@ -201,7 +211,7 @@ def _as_utf8(content: pa.Buffer, tally: Tally, name: str) -> pa.Buffer:
         data.decode("utf-8")
     except UnicodeDecodeError as error:
         text = data.decode("utf-8", errors="replace")
-        place = f"{name}, line {data[: error.start].count(10) + 1}"
+        place = f"{name}, line {data[: error.start].count(10) + lines.first_line}"
         tally.add("bad-text", "bytes that are not UTF-8", count=text.count("\ufffd"), where=place)
         return pa.py_buffer(text.encode())
     return content
@@ -232,32 +242,6 @@ def _column_errors(what: str, path: Path, advice: str) -> Iterator[None]:
         yield
     except (pa.ArrowException, ValueError, TypeError, KeyError, NotImplementedError, OverflowError) as error:
         raise LogError(what, where=str(path), advice=advice) from error
-
-
-def _refuse_twice(names: list[str], where: str) -> None:
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise LogError(f"column {twice[0]} is there twice", where=where, advice="rename one of them")
-
-
-def _header(content: pa.Buffer, path: Path) -> tuple[list[str], int]:
-    """Return the column names and the number of lines that they take."""
-    start = content[: 1 << 16].to_pybytes()
-    if b"\0" in start:
-        raise LogError("not a text file", where=str(path), advice="give a CSV, Parquet or bag file")
-    try:
-        line = _LINE_END.split(start, maxsplit=1)[0].decode("utf-8-sig").strip()
-        names = [name.strip() for name in next(csv.reader([line]), [])]
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise LogError(
-            "not a text file", where=str(path), advice="give a CSV, Parquet or bag file"
-        ) from error
-    if len(names) < 2 and (";" in line or "\t" in line):
-        raise LogError(
-            "the columns are not separated by commas", where=str(path), advice="save it as plain CSV"
-        )
-    _refuse_twice(names, f"{path}, line 1")
-    return names, 1
 
 
 def _named_column(error: Exception, header: list[str]) -> str:

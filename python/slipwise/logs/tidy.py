@@ -29,6 +29,7 @@ from slipwise.logs.log import (
 )
 from slipwise.logs.navsat import with_course
 from slipwise.logs.options import LogOptions
+from slipwise.logs.pose_file import refuse_poses_alone
 from slipwise.logs.run_name import run_name
 from slipwise.logs.streams import RawStream, clean_stream, order_codes, to_inputs, to_poses, without_fix
 from slipwise.logs.table import Table, read_csv, read_parquet
@@ -79,7 +80,7 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
     """Read a table by what its first bytes say, its columns under the names of a tidy log.
 
     Raises:
-        LogError: the file cannot be read, or has no column of a name that was given.
+        LogError: the file cannot be read, holds poses alone, or has no column of a name that was given.
         SettingsError: `options.columns` names something that is no column of a tidy log.
     """
     check_columns(options.columns, KNOWN)
@@ -90,6 +91,8 @@ def load_table(path: Path, options: LogOptions, tally: Tally) -> Table:
         parquet = file.read(4) == b"PAR1"
     if parquet:
         return read_parquet(path, columns=columns)
+    if not columns:
+        refuse_poses_alone(path)
     return read_csv(path, numeric=NUMERIC, text=TEXT, columns=columns, tally=tally)
 
 

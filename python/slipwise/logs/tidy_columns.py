@@ -10,6 +10,7 @@ from typing import NoReturn
 import numpy as np
 
 from slipwise.errors import LogError
+from slipwise.logs.column_names import listed
 from slipwise.logs.kinematics import omega_from_curvature, omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Floats
@@ -58,6 +59,7 @@ KNOWN = (*NUMERIC, *TEXT, "pose_new")  # names of a tidy log
 POSE_COLUMNS = frozenset(("x", "y", "yaw", "pose_new", "frame", "source", *OPTIONAL_POSE_COLUMNS))
 _SIZES = "--wheel-radius and --wheel-separation"
 _AN_INPUT = "cmd_v and cmd_omega, or odo_v and odo_omega"
+_NUMBERED = "t=0,odo_v=1,odo_omega=2"
 _SAME_SPEED = 1e-6  # [m/s] cmd_vx and cmd_v are the same column under two names below this
 
 
@@ -89,16 +91,26 @@ def require_columns(table: Table, *, poses: bool, described: bool = False, car: 
     missing = [name for name in ("t", *(("x", "y") if poses else ())) if name not in names]
     commands = "cmd_v" in names or "cmd_vx" in names or (car and {*CAR} <= set(names))
     wheels = "odo_v" in names or ("wheel_left" in names and "wheel_right" in names)
-    if not commands and not wheels and not described:
+    driven = commands or wheels or described
+    if not driven:
         alone = "cmd_curvature" in names  # without a speed it is no motion
         missing.append("cmd_v, the speed that cmd_curvature is driven at" if alone else _AN_INPUT)
+    positions = not driven and any({*pair} <= set(names) for pair in (("x", "y"), ("tx", "ty")))
+    if missing and not table.named:
+        raise LogError(
+            f"a table of {len(names)} columns of numbers without names",
+            where=str(table.path),
+            advice=f"say which is which by number, from 0 to {len(names) - 1}, such as --columns {_NUMBERED}"
+            + (", and x, y, yaw, or give --poses FILE" if poses else "")
+            + (f"; the comment above them is: {table.comment}" if table.comment else ""),
+        )
     if missing:
-        found = ", ".join(names[:12]) + (", ..." if len(names) > 12 else "")
         raise LogError(
             f"missing columns: {'; '.join(missing)}",
             where=str(table.path),
-            advice=f"found {found}; say which is which, such as --columns t=time,cmd_v=vx"
-            + (", or give --poses FILE" if poses and "x" in missing else ""),
+            advice=f"found {listed(names)}; say which is which, such as --columns t=time,cmd_v=vx"
+            + (", or give --poses FILE" if poses and "x" in missing else "")
+            + (f"; poses alone go beside a log: LOG --poses {table.path.name}" if positions else ""),
         )
 
 

@@ -27,8 +27,22 @@ def test_a_spike_of_a_few_times_what_is_usual_stays(spike: float) -> None:
     assert not absurd_speeds(np.array([1.0, 1.5, spike, 1.5])).any()
 
 
-def test_a_spike_within_ten_times_the_fastest_before_it_stays() -> None:
+def test_a_spike_within_fifteen_times_the_fastest_before_it_stays() -> None:
     assert not absurd_speeds(np.array([0.0, 15.0, 140.0, 12.0])).any()
+
+
+@pytest.mark.parametrize("spike", [6.0, -12.5, 18.5, 31.0, 1e3])
+@pytest.mark.parametrize("place", range(1, len(USUAL_DRIVE)))
+def test_a_spike_of_wheels_goes_by_what_the_stream_holds(spike: float, place: int) -> None:
+    values = 0.2 * USUAL_DRIVE
+    values[place] = spike
+    assert np.flatnonzero(absurd_speeds(values, measured=True)).tolist() == [place]
+
+
+def test_wheels_that_turn_when_the_log_begins_lose_nothing_and_their_first_sample_proves_nothing() -> None:
+    assert not absurd_speeds(np.full(50, 8.0), measured=True).any()
+    spikes = absurd_speeds(np.array([18.0, 0.3, 18.0, 0.3, 18.0]), measured=True)
+    assert spikes.tolist() == [False, False, True, False, True]
 
 
 def test_a_log_that_starts_at_full_speed_loses_one_sample() -> None:
@@ -44,10 +58,11 @@ def test_what_is_faster_than_any_robot_is_absurd_however_often_it_comes() -> Non
     assert absurd_speeds(np.array([1.0, 1e6, 1e6, 1e6, 1.0])).tolist() == [False, True, True, True, False]
 
 
-@given(st.lists(st.floats(-1e4, 1e4), max_size=30), st.integers(0, 30))
-def test_no_sample_is_judged_by_a_later_one(values: list[float], cut: int) -> None:
-    whole = absurd_speeds(np.array(values, dtype=float))
-    assert absurd_speeds(np.array(values[:cut], dtype=float)).tolist() == whole[:cut].tolist()
+@given(st.lists(st.floats(-1e4, 1e4), max_size=30), st.integers(0, 30), st.booleans())
+def test_no_sample_is_judged_by_a_later_one(values: list[float], cut: int, measured: bool) -> None:
+    whole = absurd_speeds(np.array(values, dtype=float), measured=measured)
+    part = absurd_speeds(np.array(values[:cut], dtype=float), measured=measured)
+    assert part.tolist() == whole[:cut].tolist()
 
 
 @given(st.lists(st.floats(-NOMINAL, NOMINAL)))
@@ -70,7 +85,7 @@ def test_an_absurd_cell_leaves_its_sample_out_and_is_counted() -> None:
     assert np.array_equal(inputs.t, np.delete(np.arange(100) * 0.05, 40))
     (entry,) = tally.result()
     assert (entry.kind, entry.count, entry.where) == ("absurd-speed", 1, "line 40")
-    assert entry.reason == "wheels faster than any robot, all at once"
+    assert entry.reason == "wheels far beyond all speeds before, all at once"
 
 
 def test_a_stream_in_other_units_is_refused_with_what_to_do() -> None:

@@ -163,7 +163,7 @@ def test_missing_columns_are_named_with_those_found(tmp_path: Path) -> None:
     ("content", "expected"),
     [
         (b"", "the file is empty"),
-        (b"t;x;y\n0;1;2\n", "not separated by commas"),
+        (b"t;x;y\n0,5;1;2\n", "not separated by commas"),
         (b"\x00\x01\x02\x03binary", "not a text file"),
         (HEADER.encode() + b"\n", "no rows"),
         (b"t,t,x,y,yaw,cmd_v,cmd_omega\n0,0,0,0,0,0,0\n", "column t is there twice"),

@@ -32,11 +32,12 @@ class StampGate {
 };
 
 /// Speeds that no ground robot can have, judged by the samples before them alone: more than 20 m/s or rad/s, more than
-/// ten times the fastest that was accepted, and either above 100 or alone.
+/// fifteen times the fastest that was accepted, and either above 100 or alone. Wheels do not step as commands may: for
+/// them 5 stands in the place of 20, after the first sample.
 class SpeedGate {
  public:
-  /// Whether the speed [m/s or rad/s] is accepted.
-  bool plausible(double value);
+  /// Whether the speed [m/s or rad/s] is accepted: of wheels that are `measured`, or commanded.
+  bool plausible(double value, bool measured = false);
 
   /// Names what is saved.
   template <class Self, class Archive>
@@ -45,8 +46,8 @@ class SpeedGate {
   }
 
  private:
-  double before_ = 0.0;   ///< the last one, accepted or not
-  double fastest_ = 0.0;  ///< that was accepted
+  double before_ = 0.0;    ///< the last one, accepted or not
+  double fastest_ = -1.0;  ///< that was accepted; negative: none yet; the first counts where the next confirms it
 };
 
 }  // namespace slipwise
