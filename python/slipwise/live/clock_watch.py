@@ -7,13 +7,11 @@ import math
 from enum import Enum
 
 from slipwise.live.samples import Command, Gyro, Override, Pose, Wheels
+from slipwise.logs.clock_steps import AGREE, BACK, ENOUGH
 
 Stamped = Command | Wheels | Pose | Gyro | Override
 
-BACK = 1.0  # s behind the newest stamp; streams are late by less, and delayed ones are never set back
 AHEAD = 60.0  # s ahead of it, after which one stamp alone is doubted
-AGREE = 1.0  # s within which stamps confirm each other
-ENOUGH = 5  # stamps in a row that are behind: the clock was set back
 
 
 class Clock(Enum):
@@ -30,6 +28,8 @@ class ClockWatch:
         self.newest = -math.inf
         self._ahead: Stamped | None = None  # far ahead of all others, not confirmed yet
         self._behind: list[Stamped] = []
+        self._last: dict[type, float] = {}  # s, newest stamp of each sort of sample
+        self.set_back_by = 0.0  # s, when the clock was set back last
         self.dropped = 0  # stamps that no other agreed with
 
     def take(self, sample: Stamped) -> tuple[Clock, list[Stamped]]:
@@ -48,11 +48,12 @@ class ClockWatch:
             self.dropped += 1
             self._ahead = None
         self.newest = max(self.newest, t)
+        self._last[type(sample)] = t
         return Clock.GOES_ON, [sample]
 
     def restart(self) -> None:
         """Another recording begins: stamps may start anywhere."""
-        self.newest, self._ahead, self._behind = -math.inf, None, []
+        self.newest, self._ahead, self._behind, self._last = -math.inf, None, [], {}
 
     def _take_behind(self, sample: Stamped) -> tuple[Clock, list[Stamped]]:
         """Several in a row that agree with each other are a clock that was set back."""
@@ -63,6 +64,9 @@ class ClockWatch:
         if len(self._behind) < ENOUGH:
             return Clock.GOES_ON, []
         kept, self._behind = self._behind, []
+        first = {type(each): each.t for each in reversed(kept)}
+        self.set_back_by = max(self._last.get(sort, self.newest) - t for sort, t in first.items())
+        self._last = {type(each): each.t for each in kept}
         self.newest = max(each.t for each in kept)
         return Clock.SET_BACK, kept
 

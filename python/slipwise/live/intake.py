@@ -13,6 +13,7 @@ from slipwise.live.move_adviser import Turning
 from slipwise.live.said import Said
 from slipwise.live.samples import Command, DriveStart, Gyro, Pose, SurfaceCue, Twist, Wheels
 from slipwise.live.surface_watch import SurfaceWatch
+from slipwise.logs.clock_steps import set_back_words
 
 
 class Intake:
@@ -50,16 +51,12 @@ class Intake:
 
     def take(self, sample: Stamped) -> None:
         """Take one sample in the order in which it came."""
-        before = self._clock.newest
         clock, taken = self._clock.take(sample)
         if self._clock.dropped:
             self._said.count("a stamp that no other agrees with", number=self._clock.dropped)
             self._clock.dropped = 0
         if clock is Clock.SET_BACK:
-            self._said.note(
-                self._clock.newest,
-                f"the clock was set back by {before - self._clock.newest:.1f} s: a new run begins",
-            )
+            self._said.note(self._clock.newest, set_back_words(self._clock.set_back_by))
             self._said.count("the clock was set back")
             self._gates.restart()
             self.surfaces.start_run(f"after the clock was set at {self._clock.newest:.3f} s")

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,12 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.bag_file import BagFile, bag_files, files_sha256
+from slipwise.logs.bag_parts import Collected, parts_of
 from slipwise.logs.bag_streams import (
     BagContext,
     command_stream,
     fix_stream,
     gyro_stream,
-    needs_receipt,
     pose_stream,
     wheel_stream,
     with_tilts,
@@ -26,7 +26,7 @@ from slipwise.logs.foxglove_file import open_bag
 from slipwise.logs.gyro import with_gyro
 from slipwise.logs.joints import SideMotion, sides_text
 from slipwise.logs.left_out import Tally
-from slipwise.logs.log import Floats, Ints, Log, Run, Source, empty_poses
+from slipwise.logs.log import Ints, Log, Run, Source, empty_poses
 from slipwise.logs.messages import (
     COMMAND_VALUES,
     GYRO_VALUES,
@@ -40,6 +40,7 @@ from slipwise.logs.messages import (
     WRONG_CONTENT,
     SampleCollector,
     Samples,
+    time_of,
 )
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import Topic
@@ -58,24 +59,12 @@ from slipwise.logs.wheel_readings import JointReadings
 
 RUN_TOPIC = "/slipwise/run"  # std_msgs/String: a new run of this name starts here
 RUN_TYPE = "std_msgs/msg/String"
+CLOCK_TOPIC = "/clock"
+CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
 
 _OTHER = "pose of "  # begins the role of a further source of poses, before its topic
 
 Consumer = Callable[[Any, int], None]
-
-
-@dataclass(frozen=True)
-class _Collected:
-    """Everything taken out of a bag."""
-
-    samples: dict[str, Samples]  # by role: command, wheel, pose, imu
-    transforms: TransformCollector
-    runs: tuple[tuple[int, str], ...]  # start [ns] and name
-
-    @property
-    def starts(self) -> Floats:
-        """When each run but the first begins [s]."""
-        return np.array([start for start, _ in self.runs][1:], dtype=np.int64) / 1e9
 
 
 def read_bag(path: Path, options: LogOptions) -> Log:
@@ -97,13 +86,14 @@ def read_bag(path: Path, options: LogOptions) -> Log:
             roles = choose_topics(bag.topics, options, source)
             collected = _collect(bag, roles, transforms, options)
             advice = {role: _with_joints(bag, text, options) for role, text in roles.advice.items()}
-            notes = [*roles.guessed, *advice.values()]
-            runs = _runs(path, roles, collected, BagContext(path.name, options, tally, False, notes))
+            notes = [*roles.guessed, *advice.values(), *bag.missing]
+            context = BagContext(path.name, options, tally, notes)
+            runs = _runs_of_parts(path, roles, collected, context, file_missing=bool(bag.missing))
         except LogError as error:
             raise _told_of_bag(error, path, bag.topics, tally) from error
         count = sum(topic.count for topic in bag.topics)
         file = Source(str(path), files_sha256(files), bag.format, count)
-    return Log(runs, (file,), tally.result(), tuple(notes), advice)
+    return Log(runs, (file,), tally.result(), tuple(dict.fromkeys(notes)), advice)
 
 
 def collect_transforms(bag: BagFile, options: LogOptions) -> TransformCollector:
@@ -153,7 +143,7 @@ def _told_of_bag(error: LogError, path: Path, topics: Sequence[Topic], tally: Ta
     return error if error.where else LogError(error.what, where=str(path), advice=error.advice)
 
 
-def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options: LogOptions) -> _Collected:
+def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options: LogOptions) -> Collected:
     """Decode the messages of the chosen topics, each once."""
     consumers: dict[str, list[Consumer]] = {}
     collectors: dict[str, SampleCollector] = {}
@@ -164,6 +154,11 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
         consumers.setdefault(topic.name, []).append(collector.add)
     if any(topic.name == RUN_TOPIC and topic.type == RUN_TYPE for topic in bag.topics):
         consumers[RUN_TOPIC] = [lambda message, received_ns: starts.append((received_ns, str(message.data)))]
+    ticks: list[tuple[int, int]] = []
+    if any(topic.name == CLOCK_TOPIC and topic.type == CLOCK_TYPE for topic in bag.topics):
+        consumers[CLOCK_TOPIC] = [
+            lambda message, received_ns: ticks.append((received_ns, time_of(message.clock)))
+        ]
     for message in bag.messages(set(consumers)):
         decoded = bag.decode(message)
         if decoded is None:
@@ -173,10 +168,11 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
                 consume(decoded, message.received_ns)
             except WRONG_CONTENT as error:
                 bag.count_bad(message, error)
-    return _Collected(
+    return Collected(
         {role: collector.result() for role, collector in collectors.items()},
         transforms,
         tuple(sorted(starts)),
+        (np.array(ticks, dtype=np.int64)[:, 0], np.array(ticks, dtype=np.int64)[:, 1]) if ticks else None,
     )
 
 
@@ -206,30 +202,40 @@ def joint_values(options: LogOptions) -> Callable[[Any], tuple[float, ...]]:
     return SideMotion(options) if options.wheels is None else JointReadings(options.wheels)
 
 
-def _runs(path: Path, roles: Roles, collected: _Collected, context: BagContext) -> tuple[Run, ...]:
+def _runs_of_parts(
+    path: Path, roles: Roles, collected: Collected, context: BagContext, *, file_missing: bool
+) -> tuple[Run, ...]:
+    """Make runs of each part of the bag; a clock that was set back or a missing file begins another."""
+    if roles.pose is not None and roles.pose.type != TF and len(collected.samples["pose"].values) == 0:
+        raise LogError(f"no pose could be read from {roles.pose.name}", advice="give --pose-topic")
+    parts, begins = parts_of(collected, file_missing=file_missing)
+    context.notes.extend(begins)
+    runs: list[Run] = []
+    for number, part in enumerate(parts, start=1):
+        found = _runs(path, roles, part, context)
+        runs += found if number == 1 else [replace(run, name=f"{run.name}, part {number}") for run in found]
+    return tuple(run for run in runs if len(parts) == 1 or len(run.poses))
+
+
+def _runs(path: Path, roles: Roles, collected: Collected, context: BagContext) -> tuple[Run, ...]:
     samples, notes = dict(collected.samples), context.notes
     if roles.pose is not None and roles.pose.type == TF:
         samples["pose"] = _transform_samples(roles.pose, collected.transforms, context)
-    if needs_receipt(list(samples.values())):
-        notes.append(
-            "header stamps are on another clock than the bag: everything is dated by the time of receipt"
-        )
-        context = replace(context, by_receipt=True)
-    elif roles.command is not None and roles.command.type == TWIST:
-        notes.append(f"{roles.command.name} has no header: its commands are dated by the time of receipt")
+    clocks = replace(collected, samples=samples).compared_clocks(roles.pose.name if roles.pose else None)
+    context = replace(context, clocks=clocks)
+    unstamped = [each.topic for each in samples.values() if not each.has_header and len(each.values)]
+    notes.extend(clocks.sentences(unstamped))
     commands = wheels = poses = None
-    if roles.pose is not None and len(samples["pose"].values) == 0:
-        raise LogError(f"no pose could be read from {roles.pose.name}", advice="give --pose-topic")
     if roles.command is not None and len(samples["command"].values):
         commands = command_stream(context, samples["command"], roles.command.type)
     if roles.wheel is not None and len(samples["wheel"].values):
         wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
-    if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
+    if roles.pose is not None and roles.pose.type == NAV_SAT_FIX and len(samples["pose"].values):
         inputs = next(
             (to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None
         )
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
-    elif roles.pose is not None:
+    elif roles.pose is not None and len(samples["pose"].values):
         poses = with_tilts(context, pose_stream(context, samples["pose"]), samples.get("imu"))
     others = _other_streams(roles, samples, context, (wheels, commands))
     runs = _split(path, collected, (commands, wheels, poses), context.tally)
@@ -258,7 +264,7 @@ def _other_streams(
 
 def _with_others(
     runs: tuple[Run, ...],
-    collected: _Collected,
+    collected: Collected,
     others: dict[str, RawStream],
     roles: Roles,
     tally: Tally,
@@ -276,7 +282,7 @@ def _with_others(
 
 def _split(
     path: Path,
-    collected: _Collected,
+    collected: Collected,
     streams: tuple[RawStream | None, RawStream | None, RawStream | None],
     tally: Tally,
 ) -> tuple[Run, ...]:
@@ -304,7 +310,8 @@ def _transform_samples(pose: Topic, transforms: TransformCollector, context: Bag
     if frames is None:
         advice = f"give --pose-frame and --child-frame; it has {known_edges(edges)}"
         raise LogError("no usual frames in TF", advice=advice)
-    stamps, values = chain_poses(edges, *frames)
+    found = chain_poses(edges, *frames)
     context.notes.append(f"poses are the transform {frames[0]} -> {frames[1]}")
-    frame: Ints = np.zeros(len(stamps), np.int64)
-    return Samples(pose.name, stamps, stamps, values, ("",), frame, has_header=True)
+    context.notes.extend(found.notes)
+    frame: Ints = np.zeros(len(found.stamps), np.int64)
+    return Samples(pose.name, found.stamps, found.received, found.values, ("",), frame, has_header=True)

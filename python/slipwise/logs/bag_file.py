@@ -59,6 +59,7 @@ class BagFile:
         self._packed = False  # each message is compressed by itself
         bound_bag_readers()
         self._seconds = 0.0
+        self.missing = missing_files(path, files) if path.is_dir() else ()  # sentences
         try:
             if not (path.is_dir() and self._open_folder(path, files)):
                 for file in files:
@@ -246,6 +247,29 @@ def bag_files(path: Path) -> list[Path]:
     for file in files:
         refuse_irregular(file, error=LogError)
     return sorted(files, key=_split_number)
+
+
+def missing_files(path: Path, files: Sequence[Path]) -> tuple[str, ...]:
+    """Name the files that a rosbag2 folder lacks: its metadata list them, or their numbers imply them."""
+    from slipwise.models.yaml_file import read_yaml
+
+    found = {file.name for file in files}
+    listed: list[str] = []
+    with contextlib.suppress(Exception):  # damaged metadata may hold anything
+        information = read_yaml(path / "metadata.yaml", error=LogError)["rosbag2_bagfile_information"]
+        listed = [Path(str(name)).name for name in information["relative_file_paths"]]
+    lost = [name for name in listed if name not in found]
+    gone = "is not there: its part of the drive is missing"
+    said = [f"{name}, listed in metadata.yaml, {gone}" for name in lost]
+    numbers = {(stem, ending): number for stem, number, ending in map(_split_number, files) if number >= 0}
+    for (stem, ending), last in numbers.items():
+        names = [f"{stem}_{k}{ending}" for k in range(last)]
+        said += [
+            f"{name}, which comes before {stem}_{last}{ending}, {gone}"
+            for name in names
+            if name not in found and name not in lost
+        ]
+    return tuple(said)
 
 
 def files_sha256(files: Sequence[Path]) -> str:

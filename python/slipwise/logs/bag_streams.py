@@ -9,6 +9,7 @@ import numpy as np
 
 from slipwise.errors import LogError
 from slipwise.logs.fixes import status_codes
+from slipwise.logs.header_clock import BagClocks
 from slipwise.logs.joints import speeds_from_angles
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
@@ -21,8 +22,10 @@ from slipwise.logs.streams import RawStream
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
-_CLOCKS_APART = 10.0  # [s] header stamps this far from the time of receipt are on a clock of their own
 _TINY = 1e-12  # heights and tilts below this were never measured
+
+
+_NO_CLOCKS = BagClocks(None, {})
 
 
 @dataclass(frozen=True)
@@ -32,22 +35,25 @@ class BagContext:
     file: str
     options: LogOptions
     tally: Tally
-    by_receipt: bool  # date everything by when it was received
     notes: list[str]  # sentences about what was worked out
+    clocks: BagClocks = _NO_CLOCKS  # how headers and receipt go together
 
     def seconds(self, samples: Samples, role: str) -> Floats:
-        """Return the stamps [N] in s: of the headers where there are any, else of receipt."""
-        if self.by_receipt or not samples.has_header:
-            return samples.received_ns / 1e9
+        """Return the stamps [N] in s: of the headers where there are any, else by the time of receipt."""
+        received = samples.received_ns / 1e9
+        if not samples.has_header:
+            return self.clocks.by_receipt(received)
+        stamps = self.clocks.dates(samples.topic, received, samples.stamp_ns / 1e9)
         zero = samples.stamp_ns == 0
-        if zero.any() and (samples.received_ns[zero] != 0).any():
-            self.tally.add(
-                "zero-stamp",
-                f"{role} stamps that are zero, replaced by the time of receipt",
-                count=int(zero.sum()),
-                where=f"{self.file}, {samples.topic} message {int(np.argmax(zero)) + 1}",
-            )
-        return np.where(zero, samples.received_ns, samples.stamp_ns) / 1e9
+        if not zero.any() or not (samples.received_ns[zero] != 0).any():
+            return stamps
+        self.tally.add(
+            "zero-stamp",
+            f"{role} stamps that are zero, replaced by the time of receipt",
+            count=int(zero.sum()),
+            where=f"{self.file}, {samples.topic} message {int(np.argmax(zero)) + 1}",
+        )
+        return np.where(zero, self.clocks.by_receipt(received), stamps)
 
     def stream(
         self, role: str, samples: Samples, columns: dict[str, Floats], keep: Bools | None = None
@@ -64,19 +70,6 @@ class BagContext:
             frozenset(OPTIONAL_POSE_COLUMNS),
         )
         return whole if keep is None else whole.select(keep)
-
-
-def needs_receipt(streams: list[Samples]) -> bool:
-    """Say whether headers run on another clock than the bag while some messages have no header."""
-    if all(samples.has_header for samples in streams):
-        return False
-    for samples in streams:
-        dated = samples.stamp_ns != 0
-        if dated.any():
-            apart = np.median(np.abs((samples.received_ns - samples.stamp_ns)[dated])) / 1e9
-            if apart > _CLOCKS_APART:
-                return True
-    return False
 
 
 def command_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:

@@ -5,12 +5,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from slipwise.logs.log import Floats, Ints
+from slipwise.logs.log import Bools, Floats, Ints
 
 Values = tuple[float, ...]
 
@@ -126,10 +126,30 @@ def stamp_of(header: Any) -> int:
     """
     if not isinstance(header.frame_id, str):
         raise TypeError("a frame's name is a text")
-    stamp = int(header.stamp.sec) * 1_000_000_000 + int(header.stamp.nanosec)
-    if abs(stamp) >= 1 << 63:
+    return time_of(header.stamp)
+
+
+def time_of(stamp: Any) -> int:
+    """Return a time in ns.
+
+    Raises:
+        Exception: one of `WRONG_CONTENT`.
+    """
+    time = int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
+    if abs(time) >= 1 << 63:
         raise OverflowError("an impossible stamp")
-    return stamp
+    return time
+
+
+def select(samples: Samples, keep: Bools) -> Samples:
+    """Return the messages where `keep` [N] is true."""
+    return replace(
+        samples,
+        stamp_ns=samples.stamp_ns[keep],
+        received_ns=samples.received_ns[keep],
+        values=samples.values[keep],
+        frame=samples.frame[keep],
+    )
 
 
 class SampleCollector:

@@ -28,7 +28,7 @@ def forward_stamps(t: Floats) -> tuple[Bools, Bools, Bools]:
     if (step > 0).all():
         none = np.zeros(len(t), bool)
         return ~none, none, none.copy()
-    spike = _spikes(t, step)
+    spike = lone_spikes(t)
     steady = np.where(spike, -np.inf, t)
     latest = np.concatenate([[-np.inf], np.maximum.accumulate(steady)[:-1]])
     keep = ~spike & (t > latest)
@@ -44,7 +44,9 @@ def unit_advice(stamp: float) -> str:
     return "stamps must be in seconds; these are no time in any unit, so record or convert the log again"
 
 
-def _spikes(t: Floats, step: Floats) -> Bools:
+def lone_spikes(t: Floats) -> Bools:
+    """Say which stamps [N], finite and as they came, are far ahead and taken back by the next one."""
+    step = np.diff(t)
     usual = np.median(np.abs(step[step != 0.0])) if (step != 0.0).any() else 0.0
     spike = np.zeros(len(t), bool)
     if len(t) > 2:

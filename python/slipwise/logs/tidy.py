@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from slipwise.errors import LogError
+from slipwise.logs.clock_steps import TOGETHER, Arrivals, clock_steps
 from slipwise.logs.column_names import check_columns
 from slipwise.logs.fixes import fix_codes
 from slipwise.logs.left_out import Tally
@@ -104,7 +106,11 @@ def _log(table: Table, options: LogOptions, tally: Tally) -> Log:
     if len(table) == 0:
         raise LogError("the table has no rows", where=str(table.path), advice="record the log again")
     rows = _rows(table, options, tally, notes)
-    runs = tuple(_run(name, rows, index, table, tally) for name, index in _split_by_run(table))
+    runs = tuple(
+        _run(part, rows, own, table, tally)
+        for name, index in _split_by_run(table)
+        for part, own in _split_by_clock(name, index, rows, notes)
+    )
     source = Source(str(table.path), table.sha256, table.format, len(table))
     return Log(runs, (source,), tally.result(), tuple(notes), missing_input(table, rows.wheels))
 
@@ -202,6 +208,27 @@ def _split_by_run(table: Table) -> Iterator[tuple[str, slice | Ints]]:
     edges = np.searchsorted(codes[order], np.arange(len(labels) + 1))
     for label, start, stop in zip(labels, edges[:-1], edges[1:], strict=True):
         yield label, order[start:stop].astype(np.int64)
+
+
+def _split_by_clock(
+    name: str, index: slice | Ints, rows: _Rows, notes: list[str]
+) -> Iterator[tuple[str, slice | Ints]]:
+    """Yield the parts of a run before and after its clock was set back, which is noted; mostly one."""
+    numbers = np.arange(len(rows.t))[index]
+    t = rows.t[numbers]
+    if not (np.diff(t[np.isfinite(t)]) < 0.0).any():
+        yield name, index
+        return
+    source = np.zeros(len(t), np.int64) if rows.source is None else rows.source[0][numbers]
+    held = [np.isfinite(c.v[numbers]) for c in (rows.commands, rows.wheels) if c is not None]
+    held += [rows.fresh[numbers] & (source == each) for each in np.unique(source).tolist() if each >= 0]
+    streams = [Arrivals(np.flatnonzero(there).astype(np.float64), t[there]) for there in held if there.any()]
+    usual = float(np.median(np.abs(np.diff(t[np.isfinite(t)])))) or 1.0
+    steps = clock_steps(streams, together=TOGETHER / usual)
+    notes += [f"{step.sentence()} ({name})" for step in steps]
+    edges = [0, *(int(step.order) for step in steps), len(t)]
+    for number, (start, stop) in enumerate(itertools.pairwise(edges), start=1):
+        yield name if number == 1 else f"{name}, part {number}", numbers[start:stop]
 
 
 def _run(name: str, rows: _Rows, index: slice | Ints, table: Table, tally: Tally) -> Run:

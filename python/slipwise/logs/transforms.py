@@ -10,15 +10,43 @@ from typing import Any
 import numpy as np
 
 from slipwise.errors import LogError
-from slipwise.logs.log import Floats, Ints
+from slipwise.logs.header_clock import AHEAD, compare_clocks
+from slipwise.logs.log import Bools, Floats, Ints
 from slipwise.logs.messages import stamp_of
 from slipwise.logs.rotation import product, rotate
 
 _FIXED = ("map", "world", "mocap", "utm")
 _ROBOT = ("base_link", "base_footprint")
-_OFTEN = 0.5  # of all poses; a localiser that corrects less often leaves the rest to odometry
+_POSTDATED = AHEAD  # s; a correction that is stamped so much later than received is post-dated on purpose
+_TOLD = 0.95  # quantile of these times: the least delayed corrections tell it best
 
 Edge = tuple[str, str]  # parent, child
+
+
+@dataclass(frozen=True, eq=False)
+class Moves:
+    """The transforms of one edge, in the order of their stamps."""
+
+    stamps: Ints  # [N] ns
+    rows: Floats  # [N, 7] x, y, z, qx, qy, qz, qw
+    received: Ints  # [N] ns
+
+    def select(self, keep: Bools | Ints | slice) -> Moves:
+        """Return some of them."""
+        return Moves(self.stamps[keep], self.rows[keep], self.received[keep])
+
+
+Edges = Mapping[Edge, Moves]
+
+
+@dataclass(frozen=True, eq=False)
+class ChainPoses:
+    """Poses of the robot from a chain of transforms."""
+
+    stamps: Ints  # [N] ns
+    received: Ints  # [N] ns
+    values: Floats  # [N, 7] x, y, z, qx, qy, qz, qw
+    notes: tuple[str, ...] = ()  # how they are dated, and which are used
 
 
 @dataclass(frozen=True)
@@ -37,7 +65,7 @@ class TransformCollector:
     """Collects all transforms of TF topics by parent and child."""
 
     def __init__(self) -> None:
-        self._edges: dict[Edge, list[tuple[int, tuple[float, ...]]]] = {}
+        self._edges: dict[Edge, list[tuple[int, int, tuple[float, ...]]]] = {}
         self._static: set[Edge] = set()
 
     def add(self, message: Any, received_ns: int, *, static: bool) -> None:
@@ -52,46 +80,61 @@ class TransformCollector:
             p, q = transform.transform.translation, transform.transform.rotation
             x, y, z, qx, qy, qz, qw = map(float, (p.x, p.y, p.z, q.x, q.y, q.z, q.w))
             row = (x, y, z, qx, qy, qz, qw)
-            self._edges.setdefault(edge, []).append((stamp or received_ns, row))
+            self._edges.setdefault(edge, []).append((stamp or received_ns, received_ns, row))
             if static:
                 self._static.add(edge)
 
-    def edges(self) -> Mapping[Edge, tuple[Ints, Floats]]:
-        """Return stamps [N] in ns and (x, y, z, qx, qy, qz, qw) [N, 7] of each edge, sorted by stamp."""
-        sorted_edges = {}
-        for edge, samples in self._edges.items():
-            stamps = np.array([stamp for stamp, _ in samples], dtype=np.int64)
-            rows = np.array([row for _, row in samples], dtype=np.float64)
+    def edges(self) -> Edges:
+        """Return the transforms of each edge, sorted by stamp."""
+        found = {}
+        for edge, moves in self.arrived().items():
             if edge in self._static:
-                stamps, rows = stamps[-1:], rows[-1:]
-            order = np.argsort(stamps, kind="stable")
-            sorted_edges[edge] = (stamps[order], rows[order])
-        return sorted_edges
+                moves = moves.select(slice(-1, None))
+            found[edge] = moves.select(np.argsort(moves.stamps, kind="stable"))
+        return found
+
+    def arrived(self) -> Edges:
+        """Return the transforms of each edge in the order in which they were received."""
+        return {
+            edge: Moves(
+                np.array([stamp for stamp, _, _ in samples], dtype=np.int64),
+                np.array([row for _, _, row in samples], dtype=np.float64),
+                np.array([received for _, received, _ in samples], dtype=np.int64),
+            )
+            for edge, samples in self._edges.items()
+        }
+
+    def part(self, keep: Mapping[Edge, Bools]) -> TransformCollector:
+        """Return a collector of some transforms, in the order of `arrived`; all of an edge not named."""
+        part = TransformCollector()
+        part._static = self._static
+        for edge, samples in self._edges.items():
+            kept = keep.get(edge)
+            own = samples if kept is None else [samples[i] for i in np.flatnonzero(kept).tolist()]
+            if own:
+                part._edges[edge] = own
+        return part
+
+    def is_static(self, edge: Edge) -> bool:
+        """Say whether an edge never moves."""
+        return edge in self._static
 
 
-def describe_transforms(
-    name: str, edges: Mapping[Edge, tuple[Ints, Floats]], fixed: str | None, robot: str | None
-) -> TransformSource:
+def describe_transforms(name: str, edges: Edges, fixed: str | None, robot: str | None) -> TransformSource:
     """Say what the transforms of topic `name` know of the robot, between frames given or usual."""
     frames = choose_frames(edges, fixed, robot)
     if frames is None:
         return TransformSource(name, None, 0, False, f"it has no usual frames, but {known_edges(edges)}")
     try:
         chain = _chain(edges, *frames)
-        samples = len(chain_poses(edges, *frames)[0])
+        samples = len(chain_poses(edges, *frames).stamps)
     except LogError as broken:
         return TransformSource(name, frames, 0, False, f"{broken.what}; it has {known_edges(edges)}")
-    changes = {edge: _changes(edges[edge][1]) for edge in chain}
-    moving = [edge for edge in chain if changes[edge]]
+    moving = [edge for edge in chain if _changes(edges[edge].rows).any()]
     alone = bool(moving) and all("odom" in parent for parent, _ in moving)
     warning = ""
     if alone:
         warning = f"{name} moves by {' -> '.join(moving[0])} alone: odometry cannot show its own slip"
-    elif len(moving) > 1 and changes[moving[0]] < _OFTEN * samples:
-        warning = (
-            f"{' -> '.join(moving[0])} changes {changes[moving[0]]} times in {samples} poses; "
-            "between these the poses are odometry, which cannot show its own slip"
-        )
     return TransformSource(name, frames, samples, alone, warning=warning)
 
 
@@ -101,48 +144,102 @@ def known_edges(edges: Mapping[Edge, object]) -> str:
     return shown + (", ..." if len(edges) > 8 else "") or "no transforms"
 
 
-def _changes(rows: Floats) -> int:
-    """Count how often a transform [N, 7] differs from the one before."""
-    return int((rows[1:] != rows[:-1]).any(axis=1).sum())
+def _changes(rows: Floats) -> Bools:
+    """Say which transforms [N, 7] differ from the one before, [N]; the first does not."""
+    changed = np.zeros(len(rows), bool)
+    changed[1:] = (rows[1:] != rows[:-1]).any(axis=1)
+    return changed
 
 
 def choose_frames(
     edges: Mapping[Edge, object], fixed: str | None, robot: str | None
 ) -> tuple[str, str] | None:
-    """Return the fixed frame and the robot's frame, given or usual; None if there are none."""
+    """Return the fixed frame and the robot's, given or usual; None if there are none, or of several robots.
+
+    Frames of a robot among others have its name before them, such as tb3/base_link.
+    """
     names = {name for edge in edges for name in edge}
-    fixed = fixed or next((name for name in _FIXED if name in names), None)
-    robot = robot or next((name for name in _ROBOT if name in names), None)
-    return (fixed, robot) if fixed and robot else None
+    robot = robot or _usual(names, _ROBOT)
+    if robot is None:
+        return None
+    above = _ancestors(edges, robot)
+    fixed = fixed or _usual(above, _FIXED) or _usual(names, _FIXED)
+    return (fixed, robot) if fixed else None
 
 
-def chain_poses(edges: Mapping[Edge, tuple[Ints, Floats]], fixed: str, robot: str) -> tuple[Ints, Floats]:
+def _usual(names: set[str], usual: tuple[str, ...]) -> str | None:
+    """Return the first frame with a usual name, else the only one with such a name after a prefix."""
+    for name in usual:
+        if name in names:
+            return name
+        prefixed = [each for each in names if each.rpartition("/")[2] == name]
+        if len(prefixed) == 1:
+            return prefixed[0]
+    return None
+
+
+def _ancestors(edges: Mapping[Edge, object], frame: str) -> set[str]:
+    parent_of, found = {child: parent for parent, child in edges}, set[str]()
+    while (parent := parent_of.get(frame)) is not None and parent not in found:
+        found.add(parent)
+        frame = parent
+    return found
+
+
+def chain_poses(edges: Edges, fixed: str, robot: str) -> ChainPoses:
     """Compose the transforms from `fixed` down to `robot`.
 
     Of several moving transforms the one nearest to the fixed frame is the localiser's: it gives the stamps,
-    and the others are interpolated there.
-
-    Returns:
-        stamps [N] in ns and (x, y, z, qx, qy, qz, qw) [N, 7].
+    and the others are interpolated there. One that is stamped later than it is received was computed from
+    odometry of before, by which it is dated; where it stays as it was, the pose is odometry and is left out.
 
     Raises:
         LogError: no chain connects the two frames.
     """
     chain = _chain(edges, fixed, robot)
-    moving = [edge for edge in chain if len(edges[edge][0]) > 1]
+    moving = [edge for edge in chain if len(edges[edge].stamps) > 1]
     lead = moving[0] if moving else chain[0]
-    stamps = edges[lead][0]
+    lower = [edge for edge in moving[1:] if _changes(edges[edge].rows).any()]
+    corrections, notes = edges[lead], list[str]()
+    if lower:
+        corrections, notes = _dated(corrections, edges[lower[-1]], " -> ".join(lead))
+    stamps = corrections.stamps
     position, rotation = np.zeros((len(stamps), 3)), np.tile([0.0, 0.0, 0.0, 1.0], (len(stamps), 1))
     covered = np.ones(len(stamps), bool)
     for edge in chain:
-        edge_stamps, rows = edges[edge]
-        if len(edge_stamps) > 1:
-            covered &= (stamps >= edge_stamps[0]) & (stamps <= edge_stamps[-1])
+        own = corrections if edge == lead else edges[edge]
+        if len(own.stamps) > 1:
+            covered &= (stamps >= own.stamps[0]) & (stamps <= own.stamps[-1])
         with np.errstate(invalid="ignore", over="ignore"):  # such poses are left out with those of no number
-            at = _interpolate(stamps, edge_stamps, rows)
+            at = _interpolate(stamps, own.stamps, own.rows)
             position = position + rotate(rotation, at[:, :3])
             rotation = product(rotation, at[:, 3:])
-    return stamps[covered], np.concatenate([position, rotation], axis=1)[covered]
+    values = np.concatenate([position, rotation], axis=1)
+    return ChainPoses(stamps[covered], corrections.received[covered], values[covered], tuple(notes))
+
+
+def _dated(corrections: Moves, odometry: Moves, name: str) -> tuple[Moves, list[str]]:
+    """Return the corrections dated by the odometry that they came from, without those that repeat."""
+    notes = []
+    clock = compare_clocks(odometry.received / 1e9, odometry.stamps / 1e9)
+    if clock is not None:
+        ahead = corrections.stamps / 1e9 - clock.at(corrections.received / 1e9)
+        late = float(np.quantile(ahead, _TOLD))
+        if late > _POSTDATED:
+            earlier = corrections.stamps - round(late * 1e9)
+            corrections = Moves(earlier, corrections.rows, corrections.received)
+            notes.append(
+                f"{name} is stamped {late:.2f} s later than it is received (a transform tolerance): each "
+                "correction is dated by the odometry that it was computed from"
+            )
+    changed = _changes(corrections.rows)
+    if changed.any() and not changed[1:].all():
+        notes.append(
+            f"{name} changes {int(changed.sum())} times in {len(changed)} transforms: between corrections "
+            "the poses are the odometry, so only those at corrections are used"
+        )
+        corrections = corrections.select(changed)
+    return corrections, notes
 
 
 def _chain(edges: Mapping[Edge, object], fixed: str, robot: str) -> list[Edge]:

@@ -144,7 +144,7 @@ def test_headers_on_another_clock_are_not_mixed_with_the_time_of_receipt(tmp_pat
     assert any("another clock" in note for note in log.notes)
     run = log.runs[0]
     assert run.commands is not None
-    np.testing.assert_array_equal(run.poses.t, run.commands.t)
+    np.testing.assert_allclose(run.poses.t, run.commands.t, atol=1e-6)
 
 
 def test_a_bad_quaternion_is_left_out_and_counted(tmp_path: Path) -> None:
