@@ -10,6 +10,7 @@ from slipwise.models.channel_words import response_sentences
 from slipwise.models.model import Model
 from slipwise.models.parameter_table import PhysicalParameter, physical_parameters
 from slipwise.models.schema import HeldOut
+from slipwise.models.sensor_look import sensor_sentences
 from slipwise.models.slip_words import slip_sentences
 from slipwise.number_text import estimate_text, number_text
 
@@ -47,6 +48,7 @@ def summarise(model: Model) -> Summary:
         *response_sentences(model, parameters),
         *_limit_sentences(parameters),
         *_offset_sentences(parameters),
+        *sensor_sentences(model),
         *_prediction_sentences(model),
     ]
     return Summary(tuple(sentences), parameters)

@@ -14,6 +14,7 @@ from slipwise.calibration import Calibration, calibrate, make_settings
 from slipwise.errors import SettingsError
 from slipwise.evaluation import EvaluationOptions, evaluate
 from slipwise.logs import Log
+from slipwise.models.sensor_look import sensor_look, sensor_sentences
 
 SENSOR = (1.2, -0.3, 0.15)
 SLIP = (-0.08, -0.3)  # lon.V, ang.w
@@ -106,3 +107,23 @@ def test_a_lever_and_a_slip_that_confounded_are_both_left_open(log: Log) -> None
 def test_a_sensor_far_from_any_robot_is_refused() -> None:
     with pytest.raises(SettingsError, match=r"sensor_extrinsics\.x"):
         make_settings({"sensor_extrinsics": {"x": 1500.0}})
+
+
+@pytest.mark.parametrize("source", ["wheel", "command"])
+def test_slip_that_looks_like_a_sensor_names_its_place(log: Log, source: str) -> None:
+    unknown = calibrated(log, {}, basis="full-linear-6", source=source).model
+    look = sensor_look(unknown)
+    for axis, true in enumerate(SENSOR):
+        assert abs(look.pose[axis] - true) < 3.0 * look.std[axis] + 0.01, axis
+    (sentence,) = sensor_sentences(unknown)
+    assert "m ahead of and" in sentence
+    assert "m right of the centre of turning" in sentence
+    given = dict(zip(("x", "y", "yaw"), SENSOR, strict=True))
+    assert not sensor_sentences(calibrated(log, given, basis="full-linear-6", source=source).model)
+    learned = calibrated(log, {"learn": True}, basis="full-linear-6", source=source).model
+    assert not sensor_sentences(learned)
+
+
+def test_a_sensor_at_the_centre_of_turning_is_not_spoken_of() -> None:
+    log = seen_by_sensor(simulated_log(DRIVE), (0.02, 0.01, 0.01))
+    assert not sensor_sentences(calibrated(log, {}, basis="full-linear-6").model)

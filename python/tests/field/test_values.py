@@ -123,3 +123,20 @@ def test_spikes_of_a_yaw_that_wrapped_go_by_what_the_stream_holds(
     assert {entry["kind"]: entry["count"] for entry in document["left_out"]}["absurd-speed"] == 4
     assert_true(document)
     assert document["held_out"]["heading"] < 0.05  # rad after 5 s; with the spikes 0.28
+
+
+# A sensor away from the centre of turning
+
+
+def test_an_antenna_away_from_the_centre_of_turning_is_named_with_its_place(
+    slipwise: Slipwise, field_log: FieldLog, folder: Path
+) -> None:
+    log = (field_log("antenna_with_imu.mcap"), "--input", "wheel")
+    document = learned(slipwise, *log)
+    (said,) = (sentence for sentence in document["summary"] if "looks like a pose sensor" in sentence)
+    assert "[sensor_extrinsics] x = 0.45, y = 0.10 in the settings" in said
+    assert said in slipwise("show", document["files"]["model"]).out
+    (folder / "robot.toml").write_text("[sensor_extrinsics]\nx = 0.45\ny = 0.10\n")
+    known = learned(slipwise, *log, "--settings", "robot.toml")
+    assert not any("looks like" in sentence for sentence in known["summary"])
+    assert_true(known)

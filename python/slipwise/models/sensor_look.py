@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Where a pose sensor would sit whose place looks like the slip of a model (derivations/pose-sensor.md)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from slipwise.models.body_gains import BodyTwists, body_twists, straight_line
+from slipwise.models.model import Model
+from slipwise.models.parameter_table import IDENTIFIED_FRACTION
+from slipwise.number_text import estimate_text
+
+_FAR = 0.05  # [m] nearer to the centre of turning, a sensor hardly matters
+_TURNED = 0.05  # [rad] the same of its heading
+_SIGNIFICANT = 3.0  # standard deviations
+_TERMS = ("lat.w", "lon.w", "lat.V")  # that x, y and yaw look like
+_PLACES = ((0, "ahead of", "behind"), (1, "left of", "right of"))
+
+
+@dataclass(frozen=True)
+class SensorLook:
+    """The pose of a sensor in the frame of the robot whose centre of turning is its origin; NaN: unknown."""
+
+    pose: tuple[float, float, float]  # m ahead, m to the left, rad to the left
+    std: tuple[float, float, float]
+
+    def clear(self, axis: int) -> bool:
+        """Whether an axis (0 x, 1 y, 2 yaw) is known well, and not about zero."""
+        size, std = abs(self.pose[axis]), self.std[axis]
+        least = _TURNED if axis == 2 else _FAR
+        return size > least and size > _SIGNIFICANT * std and std <= IDENTIFIED_FRACTION * size
+
+
+def sensor_look(model: Model) -> SensorLook:
+    """Return the place of a sensor, on a robot that turns about its origin, that would look like the slip.
+
+    A robot that drives v and turns w moves such a sensor at R(-yaw) (v - w y, w x). The slip is taken as
+    straight lines through v and w over the range of the log.
+    """
+    body = body_twists(model)
+    yaw_gain = straight_line(body.w[:, None], body.mean[:, 2], body.features[:, 2])[0][0]
+    ahead, left = (_along(body, axis) for axis in (0, 1))  # [v, w]
+    if not (yaw_gain > 0.0 and ahead[0][0] > 0.0):
+        return SensorLook((math.nan,) * 3, (math.nan,) * 3)
+    covariance = model.covariance[: model.motion.slip_size, : model.motion.slip_size]
+    gains = np.array([ahead[0], left[0]])  # [2 axes, (v, w)]
+    by_slip = np.array([ahead[1], left[1]])  # [2, 2, slip parameters]
+    yaw = -math.atan2(gains[1, 0], gains[0, 0])
+    yaw_std = _std(by_slip[1, 0] / gains[0, 0], covariance)
+    clear = abs(yaw) > max(_TURNED, _SIGNIFICANT * yaw_std)
+    turn = yaw if clear else 0.0
+    rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
+    arm = rotation @ gains[:, 1] / yaw_gain  # (-y, x)
+    by_arm = rotation @ by_slip[:, 1] / yaw_gain
+    return SensorLook(
+        (float(arm[1]), float(-arm[0]), yaw),
+        (_std(by_arm[1], covariance), _std(by_arm[0], covariance), yaw_std),
+    )
+
+
+def sensor_sentences(model: Model) -> list[str]:
+    """Say where a sensor would sit that looks like the slip, and which settings say so."""
+    if model.motion.slip_size == 0 or model.motion.sensor_extrinsics:
+        return []
+    look = sensor_look(model)
+    seen = [axis for axis in range(3) if look.clear(axis)]
+    if not seen:
+        return []
+    said = [
+        f"{estimate_text(abs(look.pose[axis]), look.std[axis])} m {plus if look.pose[axis] > 0.0 else minus}"
+        for axis, plus, minus in _PLACES
+        if axis in seen
+    ]
+    place = f"{' and '.join(said)} the centre of turning" if said else ""
+    if 2 in seen:
+        side = "left" if look.pose[2] > 0.0 else "right"
+        degrees = estimate_text(math.degrees(abs(look.pose[2])), math.degrees(look.std[2]))
+        place += f"{', ' if place else ''}turned by {degrees} deg to the {side}"
+    settings = model.content.provenance.settings.get("sensor_extrinsics")
+    given = settings if isinstance(settings, dict) else {}
+    numbers = ", ".join(
+        f"{name} = {float(given.get(name, 0.0)) + look.pose[axis]:.2f}"
+        for axis, name in enumerate(("x", "y", "yaw"))
+        if axis in seen
+    )
+    terms = ", ".join(_TERMS[axis] for axis in seen)
+    look_like = f"The learned slip ({terms}) looks like a pose sensor {place}"
+    return [f"{look_like}: if it sits there, give [sensor_extrinsics] {numbers} in the settings."]
+
+
+def _along(body: BodyTwists, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    return straight_line(np.column_stack((body.v, body.w)), body.mean[:, axis], body.features[:, axis])
+
+
+def _std(derivative: np.ndarray, covariance: np.ndarray) -> float:
+    return float(np.sqrt(max(derivative @ covariance @ derivative, 0.0)))
