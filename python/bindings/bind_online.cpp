@@ -113,6 +113,12 @@ void bind_results(nb::module_& m) {
                      return limits.posterior ? std::optional(*limits.posterior) : std::nullopt;
                    })
       .def_ro("score", &ActuatorLimits::score);
+  nb::class_<MeasuredRates>(m, "MeasuredRates", "Rates of the body that 99 % of the motion stayed below.")
+      .def_ro("speed", &MeasuredRates::speed)
+      .def_ro("yaw_rate", &MeasuredRates::yaw_rate)
+      .def_ro("acceleration", &MeasuredRates::acceleration)
+      .def_ro("turning", &MeasuredRates::turning)
+      .def_ro("seconds", &MeasuredRates::seconds);
   nb::class_<LearnedModel>(m, "LearnedModel", "What was learned so far.")
       .def_prop_ro("motion", [](const LearnedModel& model) { return *model.known.motion; })
       .def_prop_ro("slip", [](const LearnedModel& model) { return *model.known.slip; })
@@ -121,6 +127,8 @@ void bind_results(nb::module_& m) {
       .def_ro("held_out", &LearnedModel::held_out)
       .def_ro("weights", &LearnedModel::weights)
       .def_ro("range", &LearnedModel::range)
+      .def_ro("rates", &LearnedModel::rates)
+      .def_ro("held", &LearnedModel::held)
       .def_ro("steepest", &LearnedModel::steepest)
       .def_ro("seconds", &LearnedModel::seconds)
       .def_ro("segments", &LearnedModel::segments)

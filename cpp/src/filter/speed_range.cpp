@@ -34,4 +34,6 @@ double SpeedRange::quantile(double fraction, double floor) const {
   return floor;
 }
 
+double SpeedRange::upper(double fraction) const { return quantile(fraction, 0.0) * std::exp(0.5 * kLogWidth); }
+
 }  // namespace slipwise

@@ -121,6 +121,8 @@ LearnedModel MotionLearner::model() const {
                        .held_out = complete.held_out_,
                        .weights = complete.hypotheses_.weights(),
                        .range = complete.stream_.range(),
+                       .rates = complete.stream_.rates(),
+                       .held = complete.stream_.held(),
                        .steepest = complete.steepest_,
                        .seconds = complete.seconds_,
                        .segments = complete.hypotheses_.count(),

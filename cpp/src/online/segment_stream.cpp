@@ -39,6 +39,8 @@ SegmentStream::SegmentStream(const StreamSettings& settings)
       commands_(settings.unknown_after),
       wheels_(settings.unknown_after),
       range_{kNever, -kNever, kNever, -kNever},
+      rates_(settings.sensor),
+      held_(settings.unknown_after),
       now_(-kNever),
       learned_(settings.segment_length, settings.rules, settings.whole_frames, settings.stride),
       slip_(kSlipLength, settings.rules, true),
@@ -81,6 +83,8 @@ void SegmentStream::end_run() {
   process_accepted(gate_.finish(gate_inputs(now_)));
   finish_others();
   finish_cutters();
+  rates_.restart();
+  held_.restart();
 }
 
 /// Whether a measurement may be used; says why not.
@@ -115,6 +119,7 @@ void SegmentStream::push_input(Stream stream, const InputSample& sample) {
   history.push(sample);
   if (&history == &inputs()) {
     range_ = {std::min(range_[0], v), std::max(range_[1], v), std::min(range_[2], omega), std::max(range_[3], omega)};
+    held_.push(sample);
   }
 }
 
@@ -263,6 +268,7 @@ void SegmentStream::process_accepted(const GatedPoses& gated) {
       continue;
     }
     heading_ = timed->pose.yaw;
+    rates_.push(timed->pose);
     if (pose.position) {
       gyro_.see_course(timed->pose);
     }

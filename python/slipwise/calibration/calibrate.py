@@ -173,6 +173,7 @@ def learned_by(learned: LearnedLog) -> Learned:
         learned.limits,
         learned.car,
         learned.sources,
+        learned.body,
     )
 
 

@@ -29,6 +29,7 @@ class Learned:
     limits: _core.LimitSearch | None = None  # what a search found, whether kept or not
     car: _core.CarCurves | None = None  # where commands are throttle and steering
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
+    body: schema.MeasuredBody | None = None  # what the poses show of its rates
 
     @property
     def judged(self) -> int:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from slipwise import _core
 from slipwise.calibration.core_settings import core_settings
 from slipwise.calibration.learner import LIMITS, STRUCTURES, Posterior, Progress, posterior_of
+from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.predictions import Predictions, residual
 from slipwise.calibration.prepared_run import PreparedRun
 from slipwise.calibration.result import History
@@ -20,6 +21,7 @@ from slipwise.calibration.source_knowledge import LearnedSource, learned_sources
 from slipwise.calibration.surface_course import course_of
 from slipwise.logs.gyro import gyro_alone
 from slipwise.logs.log import Run, has_course
+from slipwise.models.schema import MeasuredBody
 from slipwise.segments import car_prior, recording_of, source_names
 
 Floats = NDArray[np.float64]
@@ -43,6 +45,7 @@ class LearnedLog:
     limits: _core.LimitSearch | None = None  # what was found of the actuator's limits, where it was asked
     car: _core.CarCurves | None = None  # where commands are throttle and steering
     sources: tuple[LearnedSource, ...] = ()  # of poses, where there are several
+    body: MeasuredBody | None = None  # what the poses show of its rates
 
 
 @dataclass(frozen=True)
@@ -163,6 +166,7 @@ def learned_of(
         limits=None if found is None else found.search,
         car=model.car,
         sources=learned_sources(learner, source_names(run.run for run in drive)),
+        body=measured_body(model),
     )
 
 

@@ -51,7 +51,7 @@ def model_content(learned: Learned, judged: Judged, facts: ModelFacts) -> schema
         noise=_noise(learned, facts.settings),
         slip_disturbance=_slip_disturbance(learned.kept, facts.settings.segment_length(facts.input_name)),
         body_force=_body_force(motion, facts.settings),
-        range=facts.range,
+        range=facts.range.model_copy(update={"body": learned.body}),
         weights=dict(zip(learned.bases, map(float, learned.kept.weights), strict=False)),
         provenance=schema.Provenance(
             slipwise_version=_version(),

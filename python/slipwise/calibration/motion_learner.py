@@ -18,6 +18,7 @@ from slipwise.calibration.learned import Learned, judged_horizon
 from slipwise.calibration.learned_log import found_limits, kept_posterior, predictions_of
 from slipwise.calibration.learner import STRUCTURES, posterior_of
 from slipwise.calibration.learner_answers import Event, PredictedPath, event_of
+from slipwise.calibration.measured_body import measured_body
 from slipwise.calibration.measurements import Measurements
 from slipwise.calibration.model_content import ModelFacts, model_content
 from slipwise.calibration.odometry import MotionState, Odometry, odometry_of
@@ -273,6 +274,7 @@ class MotionLearner(Measurements, RememberedSurfaces):
             None if found is None else found.search,
             model.car,
             self.sources,
+            measured_body(model),
         )
 
     def save(self) -> bytes:

@@ -11,6 +11,7 @@ from slipwise.errors import ModelError, SettingsError
 from slipwise.models.model import Model
 from slipwise.models.schema import (
     LabelSection,
+    MeasuredBody,
     ModelFile,
     Range,
     SurfaceBasis,
@@ -118,6 +119,21 @@ def _wider(a: Range, b: Range) -> Range:
         speed=[min(a.speed[0], b.speed[0]), max(a.speed[1], b.speed[1])],
         yaw_rate=[min(a.yaw_rate[0], b.yaw_rate[0]), max(a.yaw_rate[1], b.yaw_rate[1])],
         slope=max(a.slope, b.slope),
+        body=a.body and b.body and _wider_body(a.body, b.body),
+    )
+
+
+def _wider_body(a: MeasuredBody, b: MeasuredBody) -> MeasuredBody:
+    def farther(one: list[float], other: list[float]) -> list[float]:
+        return [max(pair, key=abs) for pair in zip(one, other, strict=True)]
+
+    return MeasuredBody(
+        speed=farther(a.speed, b.speed),
+        yaw_rate=farther(a.yaw_rate, b.yaw_rate),
+        acceleration=farther(a.acceleration, b.acceleration),
+        yaw_acceleration=farther(a.yaw_acceleration, b.yaw_acceleration),
+        held=farther(a.held, b.held),
+        seconds=a.seconds + b.seconds,
     )
 
 

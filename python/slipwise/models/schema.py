@@ -29,6 +29,7 @@ NotNegative = Annotated[Number, Field(ge=0.0, le=LARGEST, allow_inf_nan=False)]
 Positive = Annotated[Number, Field(gt=0.0, le=LARGEST, allow_inf_nan=False)]
 Dof = Annotated[Number, Field(ge=LEAST_DOF, le=MOST_DOF, allow_inf_nan=False)]
 Triple = Annotated[list[NotNegative], Field(min_length=3, max_length=3)]
+Pair = Annotated[list[NotNegative], Field(min_length=2, max_length=2)]
 Span = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 InputName = Literal["command", "wheel"]
 
@@ -107,12 +108,24 @@ class BodyForceSection(_Section):
     std: Positive  # of the drift that it causes per distance driven [m/m], and of the turn [rad/m]
 
 
+class MeasuredBody(_Section):
+    """What the poses show of the body: rates that 99 % of its motion stayed below, 0 where none was seen."""
+
+    speed: Span  # backward (not above 0), forward [m/s]
+    yaw_rate: Span  # to the right (not above 0), to the left [rad/s]
+    acceleration: Pair  # away from standstill, towards it [m/s^2], means over half a second
+    yaw_acceleration: Pair  # the same [rad/s^2]
+    held: Pair  # for how long speeds and yaw rates were asked for, more than 90 % of the time [s]
+    seconds: NotNegative  # between the poses that show this; 0: they are too rare
+
+
 class Range(_Section):
     """What the robot did in the log; the model is not known to hold beyond it."""
 
-    speed: Span  # [m/s]
-    yaw_rate: Span  # [rad/s]
+    speed: Span  # of the inputs [m/s]
+    yaw_rate: Span  # of the inputs [rad/s]
     slope: NotNegative  # steepest roll or pitch [rad], 0 where it was not measured
+    body: MeasuredBody | None = None  # None: an older slipwise wrote the file, or another estimator learned
 
 
 class LogReference(_Section):

@@ -14,6 +14,8 @@ class SpeedRange {
   void add(double value, double seconds);
   /// The magnitude below which `fraction` of the moving time lies; `floor` where nothing moved yet.
   double quantile(double fraction, double floor) const;
+  /// A magnitude that no more than 1 - `fraction` of the moving time lies above; 0 where nothing moved yet.
+  double upper(double fraction) const;
 
   /// Names what is saved.
   template <class Self, class Archive>

@@ -10,9 +10,11 @@
 #include <vector>
 
 #include "slipwise/hypotheses/cascaded_model.hpp"
+#include "slipwise/online/body_rates.hpp"
 #include "slipwise/online/car_stream.hpp"
 #include "slipwise/online/chord_finder.hpp"
 #include "slipwise/online/gyro_buffer.hpp"
+#include "slipwise/online/held_inputs.hpp"
 #include "slipwise/online/input_buffer.hpp"
 #include "slipwise/online/pose_accuracy.hpp"
 #include "slipwise/online/pose_gate.hpp"
@@ -111,6 +113,10 @@ class SegmentStream {
   bool wheels_known() const { return wheels_ever_; }
   /// Least and greatest speed, then yaw rate, of the inputs that motion is predicted from, of all runs.
   const std::array<double, 4>& range() const { return range_; }
+  /// What the poses show of the body's rates, of all runs.
+  MeasuredRates rates() const { return rates_.found(); }
+  /// For how long the inputs that motion is predicted from were held, of all runs: speed, yaw rate [s].
+  std::array<double, 2> held() const { return held_.found(); }
   /// Median time between wheel speeds of late [s]; 0 where there were none.
   double wheel_interval() const { return wheel_timer_.interval(); }
 
@@ -132,7 +138,7 @@ class SegmentStream {
   template <class Self, class Archive>
   static void archive(Self& self, Archive& a) {
     a(self.settings_, self.keep_, self.newest_, self.stamps_, self.speeds_, self.commands_, self.wheels_,
-      self.wheels_ever_, self.range_);
+      self.wheels_ever_, self.range_, self.rates_, self.held_);
     a(self.tilts_, self.poses_, self.wheel_stamps_, self.now_, self.accuracy_, self.gate_, self.timer_,
       self.wheel_timer_, self.learned_, self.slip_);
     a(self.car_, self.wheel_cutter_, self.twists_, self.targets_, self.items_, self.rejected_, self.breaks_,
@@ -188,6 +194,8 @@ class SegmentStream {
   InputBuffer wheels_;
   bool wheels_ever_ = false;
   std::array<double, 4> range_;
+  BodyRates rates_;
+  HeldInputs held_;
   TiltBuffer tilts_;
   std::deque<MeasuredPose> poses_;   ///< not used yet
   std::deque<double> wheel_stamps_;  ///< not used yet
