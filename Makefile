@@ -107,9 +107,8 @@ fuzz: build $(STAMPS)/fuzz ## fuzz every reader; ARGS=60 for 60 s each
 bench: build $(STAMPS)/bench ## measure speed, and the score on logs in SLIPWISE_DATA
 	@$(PYTHON_IN) benchmarks/run_benchmark.py $(ARGS)
 
-thesis: $(STAMPS)/thesis ## make the thesis's figures and tables, and docs/thesis, again
+thesis: $(STAMPS)/thesis ## make the thesis's figures and tables: build/thesis/index.html
 	@$(VENV)/bin/slipwise reproduce thesis -o build/thesis $(ARGS)
-	@rm -rf docs/thesis && cp -r build/thesis/markdown docs/thesis
 
 # It is compiled from an empty environment too, so that what pyproject.toml names must do. Versions of pip differ in which
 # of the two variables holds for the tools of a build.

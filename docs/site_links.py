@@ -41,7 +41,7 @@ def for_site(text: str, page: str) -> str:
 
     Args:
         text: of the page, in Markdown.
-        page: its path in the site, as in "thesis/README.md".
+        page: its path in the site, as in "derivations/model.md".
     """
     folder = Path(in_repository(page)).parent
 

@@ -32,7 +32,7 @@ def merge_surfaces(first: Model, second: Model) -> tuple[Model, tuple[MergedSurf
     """Return the first model with the surfaces of both, and what became of those of the second.
 
     Surfaces whose predictive densities cannot be told apart are multiplied, the prior that both began from
-    counting once (derivations/surface-memory.md). The robot, and the surface that is driven on, are those of
+    counting once (derivations/surfaces.md). The robot, and the surface that is driven on, are those of
     the first model.
 
     Raises:

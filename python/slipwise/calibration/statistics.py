@@ -33,7 +33,7 @@ class ErrorSummary:
 
 
 def held_out_half(count: int) -> slice:
-    """The windows that are scored: the second half in time (derivations/judging.md)."""
+    """The windows that are scored: the second half in time (derivations/uncertainty.md)."""
     return slice(count // 2, count)
 
 

@@ -32,7 +32,7 @@ def learn_dynamics(
     """Learn the parameters of `dynamics` from one drive.
 
     The filter is an iterated extended Kalman filter of state and parameters; between measurements the state
-    is integrated with its derivatives (derivations/other-dynamics.md). Predictions are made from what was
+    is integrated with its derivatives (derivations/slopes-and-forces.md). Predictions are made from what was
     known before them, beside those of the parameters as they were given.
 
     Args:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""AMCL's alpha1 to alpha5 from the learned noise (derivations/noise-for-other-tools.md)."""
+"""AMCL's alpha1 to alpha5 from the learned noise (derivations/odometry.md)."""
 
 from __future__ import annotations
 

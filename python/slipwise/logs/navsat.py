@@ -72,7 +72,7 @@ def _near(t: Floats, imu_t: Floats) -> Bools:
 def course_of_path(t: Floats, x: Floats, y: Floats, inputs: Inputs | None) -> Floats:
     """Return a heading for each position [N]: that of the path, held and turned evenly where there is none.
 
-    It serves pictures and checks of a log; what learns takes courses of its own (derivations/course.md).
+    It serves pictures and checks of a log; what learns takes courses of its own (derivations/sensors.md).
     """
     yaw, known = heading_from_path(t, x, y, inputs)
     if not known.any():

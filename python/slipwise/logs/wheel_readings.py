@@ -87,7 +87,7 @@ def wheel_names(vehicle: VehicleDescription, found: Collection[str]) -> WheelNam
 def twists_of_wheels(
     vehicle: VehicleDescription, names: WheelNames, readings: dict[str, Floats], t: Floats
 ) -> WheelTwists:
-    """Return the twist of each row by least squares over all wheels (derivations/wheels.md).
+    """Return the twist of each row by least squares over all wheels (derivations/sensors.md).
 
     Args:
         vehicle: a vehicle with wheels.

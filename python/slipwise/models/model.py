@@ -290,7 +290,7 @@ class Model:
     def covariance_over(self, seconds: float) -> NDArray[np.float64]:
         """Covariance of the parameters' mean over `seconds`, the slip disturbance included.
 
-        Nothing recent is known of that slip (derivations/slip-disturbance.md). [parameters, parameters].
+        Nothing recent is known of that slip (derivations/uncertainty.md). [parameters, parameters].
         """
         covariance = _core.covariance_over(
             self.motion, self.covariance, self.disturbance, self.prior_std, seconds

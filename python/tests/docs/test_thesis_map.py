@@ -117,7 +117,7 @@ def test_figures_beyond_the_thesis_are_made() -> None:
 
 
 def test_every_erratum_is_linked_from_its_number() -> None:
-    text = (ROOT / "docs/derivations/errata.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/derivations/thesis.md").read_text(encoding="utf-8")
     notes = {row[0]: row[4] for row in ROWS}
     for where, *_ in table_rows(text, "| where | fault |"):
         for kind, number in re.findall(r"(Table )?(\d\.\d+)", where):
