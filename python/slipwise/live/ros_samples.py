@@ -27,11 +27,17 @@ from slipwise.logs.messages import (
     Values,
 )
 from slipwise.logs.navsat import ecef, in_tangent_plane
+from slipwise.logs.odometry_twist import always_zero, poses_move, twist_zero_words, twists_between
 from slipwise.logs.options import LogOptions
 from slipwise.logs.vehicle_description import VehicleDescription
 from slipwise.logs.wheel_readings import JointReadings, twists_of_wheels
 
 OLDEST_IMU = 0.2  # s; an older orientation says nothing of a fix
+
+
+def _nobody(_: str) -> None:
+    """Nobody listens."""
+
 
 ToCommand = Callable[[Any, float], Command | None]
 ToWheels = Callable[[Any, float], Wheels | None]
@@ -64,19 +70,23 @@ def to_command(kind: str, options: LogOptions) -> ToCommand:
     return steering
 
 
-def to_wheels(kind: str, options: LogOptions) -> ToWheels:
+def to_wheels(
+    kind: str, options: LogOptions, say: Callable[[str], None] = _nobody, topic: str = ""
+) -> ToWheels:
     """Return what makes a wheel twist of a message of type `kind` and its stamp [s].
+
+    `say` is told what is found of `topic`.
 
     Raises:
         SettingsError: joint states need the sizes of the robot.
     """
     scale_v, scale_omega = options.wheel_scale
     if kind != JOINT_STATE:
-        values = WHEEL_VALUES[kind]
+        odometry = _OdometryTwists(lambda: say(twist_zero_words(topic)))
 
         def twist(message: Any, t: float) -> Wheels:
-            v, vy, omega = values(message)
-            return Wheels(t, scale_v * v, scale_omega * omega, scale_v * vy)
+            held, v, vy, omega = odometry.take(WHEEL_VALUES[kind](message), t)
+            return Wheels(held, scale_v * v, scale_omega * omega, scale_v * vy)
 
         return twist
     if options.wheels is not None:
@@ -99,11 +109,37 @@ def to_wheels(kind: str, options: LogOptions) -> ToWheels:
     return joints
 
 
+class _OdometryTwists:
+    """Twists of an odometry; differences of its poses where these move and the twist was always zero."""
+
+    def __init__(self, say: Callable[[], None]) -> None:
+        self._say = say
+        self._measured = False  # a twist said that something moves
+        self._first: list[float] | None = None  # pose
+        self._last: tuple[float, list[float]] | None = None  # stamp [s] and pose
+        self._differences = False
+
+    def take(self, values: Values, t: float) -> tuple[float, float, float, float]:
+        """Return from when on [s] which twist (v, vy, omega) holds."""
+        twist, pose = list(values[:3]), list(values[3:])
+        self._measured = self._measured or not always_zero(np.array([twist]))
+        self._first = self._first or pose
+        last, self._last = self._last, (t, pose)
+        if not self._measured and not self._differences and poses_move(np.array([self._first, pose])):
+            self._differences = True
+            self._say()
+        if self._measured or not self._differences or last is None or not t > last[0]:
+            return (t, *values[:3])  # type: ignore[return-value]
+        v, vy, omega = twists_between(np.array([last[0], t]), np.array([last[1], pose]))[0].tolist()
+        return last[0], v, vy, omega
+
+
 def _layout_wheels(vehicle: VehicleDescription, scale: tuple[float, float]) -> ToWheels:
     """Return what makes a wheel twist of all wheels that the vehicle names."""
     read, last = JointReadings(vehicle), dict[str, float]()
 
     def joints(message: Any, t: float) -> Wheels | None:
+        read.check(message)
         values = dict(zip(read.names.all, read(message), strict=True))
         rows = {name: np.array([last.get(name, value), value]) for name, value in values.items()}
         found = twists_of_wheels(vehicle, read.names, rows, np.array([last.get("t", t), t]))
@@ -126,6 +162,7 @@ class _SideSpeeds:
         self._measured = False
 
     def take(self, message: Any, t: float) -> tuple[float, float]:
+        self._motion.check(message)
         left, right, *angles = self._motion(message)
         last, self._last = self._last, (t, angles[0], angles[1])
         self._measured = self._measured or (math.isfinite(left) and (left != 0.0 or right != 0.0))
@@ -143,7 +180,7 @@ def to_pose(kind: str, options: LogOptions) -> ToPose:
         qx, qy, qz, qw, var_x, var_y, var_yaw = rest
         angles = rotation_of(qx, qy, qz, qw)
         if angles is None:
-            return None
+            raise ValueError(f"the quaternion ({qx:g}, {qy:g}, {qz:g}, {qw:g}) is no rotation")
         roll, pitch, yaw = angles
         std_xy, std_yaw = deviation(var_x, var_y), deviation(var_yaw)
         tilt = (roll, pitch) if roll or pitch else (None, None)

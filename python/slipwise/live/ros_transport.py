@@ -169,7 +169,9 @@ class RosTransport:
         converters: list[tuple[str, str, ToSample]] = []
         if roles.wheel is not None:
             kind = roles.wheel.type
-            converters.append((roles.wheel.name, kind, to_wheels(kind, options)))
+            converters.append(
+                (roles.wheel.name, kind, to_wheels(kind, options, self._notices.put, roles.wheel.name))
+            )
         if roles.pose is not None and roles.pose.type == NAV_SAT_FIX:
             fixes = FixPoses(options, headed=roles.imu is not None)
             converters.append((roles.pose.name, NAV_SAT_FIX, fixes.take_fix))

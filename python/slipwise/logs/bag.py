@@ -148,7 +148,8 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
     consumers: dict[str, list[Consumer]] = {}
     collectors: dict[str, SampleCollector] = {}
     starts: list[tuple[int, str]] = []
-    for role, topic, values in _extractors(roles, options):
+    found = _extractors(roles, options)
+    for role, topic, values in found:
         collector = SampleCollector(topic.name, values, has_header=topic.type != TWIST)
         collectors[role] = collector
         consumers.setdefault(topic.name, []).append(collector.add)
@@ -168,6 +169,9 @@ def _collect(bag: BagFile, roles: Roles, transforms: TransformCollector, options
                 consume(decoded, message.received_ns)
             except WRONG_CONTENT as error:
                 bag.count_bad(message, error)
+    for _, _, values in found:
+        if isinstance(values, SideMotion | JointReadings):
+            values.refuse_none()
     return Collected(
         {role: collector.result() for role, collector in collectors.items()},
         transforms,
@@ -230,13 +234,11 @@ def _runs(path: Path, roles: Roles, collected: Collected, context: BagContext) -
         commands = command_stream(context, samples["command"], roles.command.type)
     if roles.wheel is not None and len(samples["wheel"].values):
         wheels = wheel_stream(context, samples["wheel"], roles.wheel.type)
+    inputs = next((to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None)
     if roles.pose is not None and roles.pose.type == NAV_SAT_FIX and len(samples["pose"].values):
-        inputs = next(
-            (to_inputs(stream, Tally()) for stream in (wheels, commands) if stream is not None), None
-        )
         poses = fix_stream(context, samples["pose"], samples.get("imu"), inputs)
     elif roles.pose is not None and len(samples["pose"].values):
-        poses = with_tilts(context, pose_stream(context, samples["pose"]), samples.get("imu"))
+        poses = with_tilts(context, pose_stream(context, samples["pose"], inputs), samples.get("imu"))
     others = _other_streams(roles, samples, context, (wheels, commands))
     runs = _split(path, collected, (commands, wheels, poses), context.tally)
     if roles.gyro is not None and (poses is None or poses.course):

@@ -14,8 +14,9 @@ from slipwise.logs.joints import speeds_from_angles
 from slipwise.logs.kinematics import omega_from_steering, twist_from_wheels
 from slipwise.logs.left_out import Tally
 from slipwise.logs.log import OPTIONAL_POSE_COLUMNS, Bools, Floats, Inputs
-from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples
+from slipwise.logs.messages import ACKERMANN, JOINT_STATE, Samples, select
 from slipwise.logs.navsat import course_of_path, east_north_up, heading_from_imu, tilt_from_imu
+from slipwise.logs.odometry_twist import always_zero, poses_move, twist_zero_words, twists_between
 from slipwise.logs.options import LogOptions
 from slipwise.logs.rotation import angles_of, unit_quaternions
 from slipwise.logs.streams import RawStream
@@ -100,7 +101,7 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
     if kind == JOINT_STATE and vehicle is not None:
         return _layout_stream(context, samples, vehicle)
     if kind != JOINT_STATE:
-        v, vy, omega = samples.values.T
+        v, vy, omega = _odometry_twists(context, samples).T
         return context.stream("wheels", samples, {"v": v, "vy": vy, "omega": omega})
     radius, wheel_separation = context.options.wheel_radius, context.options.wheel_separation
     if radius is None or wheel_separation is None:
@@ -109,17 +110,34 @@ def wheel_stream(context: BagContext, samples: Samples, kind: str) -> RawStream:
             where=samples.topic,
             advice="give --wheel-radius and --wheel-separation in metres",
         )
+    samples = _of_wheels(context, samples)
     left, right = _side_speeds(context, samples)
     v, omega = twist_from_wheels(left, right, wheel_radius=radius, wheel_separation=wheel_separation)
     return context.stream("wheels", samples, {"v": v, "omega": omega})
 
 
+def _odometry_twists(context: BagContext, samples: Samples) -> Floats:
+    """Return the twists [N, 3] of an odometry; of its poses where they move and the twist is always zero."""
+    twists, poses = samples.values[:, :3], samples.values[:, 3:]
+    if not always_zero(twists) or not poses_move(poses):
+        return twists
+    context.notes.append(twist_zero_words(samples.topic))
+    return twists_between(context.seconds(samples, "wheels"), poses)
+
+
 def _layout_stream(context: BagContext, samples: Samples, vehicle: VehicleDescription) -> RawStream:
-    names = JointReadings(vehicle).names
+    names, samples = JointReadings(vehicle).names, _of_wheels(context, samples)
     readings = dict(zip(names.all, samples.values.T, strict=True))
     found = twists_of_wheels(vehicle, names, readings, context.seconds(samples, "wheels"))
     context.notes.append(f"{samples.topic}: {found.note(str(context.options.vehicle))}")
     return context.stream("wheels", samples, {"v": found.v, "vy": found.vy, "omega": found.omega})
+
+
+def _of_wheels(context: BagContext, samples: Samples) -> Samples:
+    """Leave out, and count, joint states without wheels, such as those of an arm."""
+    there = np.asarray(np.isfinite(samples.values).any(axis=1))
+    _count(context, samples, ~there, "no-wheel-joint", f"messages of {samples.topic} without a wheel's joint")
+    return samples if there.all() else select(samples, there)
 
 
 def _side_speeds(context: BagContext, samples: Samples) -> Floats:
@@ -134,10 +152,16 @@ def _side_speeds(context: BagContext, samples: Samples) -> Floats:
     return np.asarray(speeds.T)
 
 
-def pose_stream(context: BagContext, samples: Samples) -> RawStream:
-    """Make the pose stream of (x, y, z, quaternion[, variances]) [N, 7 or 10]; counts bad quaternions."""
+def pose_stream(context: BagContext, samples: Samples, inputs: Inputs | None = None) -> RawStream:
+    """Make the pose stream of (x, y, z, quaternion[, variances]) [N, 7 or 10]; counts bad quaternions.
+
+    Where none is a rotation they are positions, whose heading is the direction of the path: `inputs` tell
+    which way the robot drove.
+    """
     values = samples.values
     q, good = unit_quaternions(values[:, 3:7])
+    if len(values) and not good.any() and np.isfinite(values[:, :2]).all(axis=1).any():
+        return _position_stream(context, samples, inputs)
     roll, pitch, yaw = angles_of(q)
     columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
     for name, column in (("z", values[:, 2]), ("roll", roll), ("pitch", pitch)):
@@ -149,6 +173,24 @@ def pose_stream(context: BagContext, samples: Samples) -> RawStream:
     finite = np.isfinite(values[:, 3:7]).all(axis=1)
     _count(context, samples, finite & ~good, "bad-quaternion", "poses whose quaternion is not a rotation")
     return context.stream("poses", samples, columns, good | ~finite)
+
+
+def _position_stream(context: BagContext, samples: Samples, inputs: Inputs | None) -> RawStream:
+    """Make the stream of the positions of poses, none of which has a rotation."""
+    values, t = samples.values, context.seconds(samples, "poses")
+    known = np.asarray(np.isfinite(values[:, :2]).all(axis=1))
+    yaw = np.full(len(values), np.nan)
+    order = np.flatnonzero(known)[np.argsort(t[known], kind="stable")]
+    yaw[order] = course_of_path(t[order], values[order, 0], values[order, 1], inputs)
+    first = ", ".join(f"{value:g}" for value in values[0, 3:7])
+    context.notes.append(
+        f"the quaternions of all {len(values)} poses of {samples.topic} are no rotations, such as ({first}): "
+        "only their positions are used, and headings are the direction of the path"
+    )
+    columns = {"x": values[:, 0], "y": values[:, 1], "yaw": yaw, "frame": samples.frame.astype(np.float64)}
+    if values.shape[1] > 7:
+        columns["std_xy"] = deviation_of(values[:, 7:9])
+    return replace(context.stream("poses", samples, columns, known), course=True)
 
 
 def with_tilts(context: BagContext, poses: RawStream, imu: Samples | None) -> RawStream:

@@ -23,34 +23,49 @@ _WHOLE_TURN = 2.0 * math.pi
 class SideMotion:
     """Takes the mean speed [rad/s] and angle [rad] of the left and of the right wheels from joint states.
 
-    Angles that jump by about a whole turn, from a joint that is kept within one, are followed on.
+    Angles that jump by about a whole turn, from a joint that is kept within one, are followed on. A message
+    without wheels of both sides, such as that of an arm, gives no numbers.
     """
 
     def __init__(self, options: LogOptions) -> None:
         self._options = options
-        self._names: tuple[str, ...] = ()
-        self._sides: tuple[list[int], list[int]] = ([], [])
+        self._sides: dict[tuple[str, ...], tuple[list[int], list[int]] | None] = {}  # by the joints' names
         self._angles: dict[str, tuple[float, float]] = {}  # of each joint: as measured, and followed on
 
     def __call__(self, message: Any) -> tuple[float, float, float, float]:
-        """Return the speeds (left, right) and angles (left, right); NaN where a message has none for a side.
-
-        Raises:
-            LogError: the names of the joints do not tell the sides apart.
-        """
+        """Return speeds (left, right) and angles (left, right); NaN where a message has none for a side."""
         names = tuple(message.name)
-        if names != self._names:
-            self._names, self._sides = names, sides_of(names, self._options)
-        speeds = self._means(message.velocity)
+        sides = self._of(names)
+        if sides is None:
+            return (math.nan, math.nan, math.nan, math.nan)
         angles = message.position
         followed = [self._follow(name, float(a)) for name, a in zip(names, angles, strict=False)]
-        return (*speeds, *self._means(followed))
+        return (*_means(names, sides, message.velocity), *_means(names, sides, followed))
 
-    def _means(self, values: Any) -> tuple[float, float]:
-        if len(values) != len(self._names) or not all(self._sides):
-            return (math.nan, math.nan)
-        left, right = (sum(float(values[i]) for i in side) / len(side) for side in self._sides)
-        return (left, right)
+    def refuse_none(self) -> None:
+        """Raise LogError where no message that came had wheels of both sides."""
+        if self._sides and not any(self._sides.values()):
+            sides_of(tuple(dict.fromkeys(name for names in self._sides for name in names)), self._options)
+            raise LogError(
+                "no message has joints of left and right wheels",
+                advice="give --left-joints and --right-joints of one publisher, or record it alone",
+            )
+
+    def check(self, message: Any) -> None:
+        """Raise LogError where a message has no wheels of both sides."""
+        names = tuple(message.name)
+        if self._of(names) is None:
+            raise LogError("a message has no joints of left and right wheels", advice=", ".join(names[:12]))
+
+    def _of(self, names: tuple[str, ...]) -> tuple[list[int], list[int]] | None:
+        if names not in self._sides:
+            try:
+                found = sides_of(names, self._options)
+            except LogError:
+                self._sides[names] = None
+            else:
+                self._sides[names] = found if all(found) else None
+        return self._sides[names]
 
     def _follow(self, name: str, angle: float) -> float:
         measured, followed = self._angles.get(name, (angle, angle))
@@ -61,6 +76,13 @@ class SideMotion:
             self._angles[name] = (angle, followed + step)
             return followed + step
         return math.nan
+
+
+def _means(names: tuple[str, ...], sides: tuple[list[int], list[int]], values: Any) -> tuple[float, float]:
+    if len(values) != len(names):
+        return (math.nan, math.nan)
+    left, right = (sum(float(values[i]) for i in side) / len(side) for side in sides)
+    return (left, right)
 
 
 def sides_of(names: tuple[str, ...], options: LogOptions) -> tuple[list[int], list[int]]:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from slipwise.logs.log import Bools, Floats, Ints
+from slipwise.logs.odometry_twist import twist_and_pose
 
 Values = tuple[float, ...]
 
@@ -108,7 +109,7 @@ POSE_VALUES: dict[str, Callable[[Any], Values]] = {
     NAV_SAT_FIX: _fix_values,
 }
 WHEEL_VALUES: dict[str, Callable[[Any], Values]] = {
-    ODOMETRY: lambda message: twist_values(message.twist.twist),
+    ODOMETRY: twist_and_pose,
 }
 IMU_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _imu_values}
 GYRO_VALUES: dict[str, Callable[[Any], Values]] = {IMU: _yaw_rate}

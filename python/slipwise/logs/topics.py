@@ -17,6 +17,7 @@ from slipwise.logs.messages import (
     TF,
     WHEEL_TYPES,
 )
+from slipwise.logs.namespaces import others_topics
 from slipwise.logs.options import LogOptions
 from slipwise.logs.role_choice import NONE, Role, RoleChoice, Topic, choose, listing
 from slipwise.logs.topic_names import (
@@ -132,11 +133,13 @@ def weigh_topics(
     topics: Sequence[Topic], options: LogOptions, transforms: TransformSource | None = None
 ) -> TopicRoles:
     """Choose the topics as `choose_topics` does, but say what is unclear instead of raising it."""
-    live = {topic.name: topic for topic in topics if topic.count > 0}
+    every = {topic.name: topic for topic in topics if topic.count > 0}
+    foreign = _others_topics(every, options)
+    live = {name: topic for name, topic in every.items() if name not in foreign}
     advice: dict[str, str] = {}
     pose = _choose_pose(live, options, transforms)
-    wheel = _choose_wheel(live, options, advice)
     command = choose(live, _COMMAND, options.command_topic)
+    wheel = _choose_wheel(_beside_the_pose(live, options), options, advice)
     shared = pose.topic is not None and pose.topic == wheel.topic
     only_by_type = shared and options.wheel_topic is None and not _says_wheels(wheel.topic)
     if only_by_type and command.topic is not None:
@@ -148,9 +151,63 @@ def weigh_topics(
     if imu.problem is not None and options.imu_topic is None:  # any of several orientations will do
         first = next(t for t in live.values() if t.type == IMU and t.name in imu.rejected)
         imu = RoleChoice(first, "the first of several", imu.rejected)
-    found = TopicRoles(pose, command, wheel, imu, None, (), advice)
-    problem = _problem(live, found, options, shared=shared)
-    return replace(found, problem=problem, guessed=_notes(found, options, transforms))
+    found = _with_foreign(TopicRoles(pose, command, wheel, imu, None, (), advice), every, foreign)
+    problem = _problem(every, found, options, shared=shared)
+    notes = _notes(found, options, transforms)
+    said = tuple(f"{name} is not used: {why}" for name, why in foreign.items())
+    for name, why in foreign.items():
+        if wheel.topic is None and every[name].type in _WHEEL.kinds:
+            advice.setdefault("wheel", f"{name} is not used, since {why}: else give --wheel-topic {name}")
+    return replace(found, problem=problem, guessed=(*notes, *said))
+
+
+def _others_topics(live: Mapping[str, Topic], options: LogOptions) -> dict[str, str]:
+    """Return the topics of other robots, and why."""
+    roles_given = {
+        "pose": options.pose_topic,
+        "command": options.command_topic,
+        "wheel": options.wheel_topic,
+        **{f"pose {k}": name for k, name in enumerate(options.other_pose_topics, start=2)},
+    }
+    given = {
+        role: name if name in live else f"/{name}"
+        for role, name in roles_given.items()
+        if name is not None and name != NONE
+    }
+    roles = {
+        role.name: [
+            topic.name
+            for topic in live.values()
+            if topic.type in role.kinds and score_of(topic.name, topic.type, role.names)[0] >= 0
+        ]
+        for role in (_POSE, _COMMAND, _WHEEL)
+    }
+    return others_topics(roles, given)
+
+
+def _with_foreign(found: TopicRoles, live: Mapping[str, Topic], foreign: Mapping[str, str]) -> TopicRoles:
+    """Say of each role which topics of other robots do not take it."""
+
+    def beside(choice: RoleChoice, kinds: Sequence[str]) -> RoleChoice:
+        lost = {name: why for name, why in foreign.items() if live[name].type in kinds}
+        return replace(choice, rejected={**choice.rejected, **lost})
+
+    return replace(
+        found,
+        pose=beside(found.pose, _POSE.kinds),
+        command=beside(found.command, _COMMAND.kinds),
+        wheel=beside(found.wheel, _WHEEL.kinds),
+    )
+
+
+def _beside_the_pose(live: Mapping[str, Topic], options: LogOptions) -> Mapping[str, Topic]:
+    """Leave out the topic that is named as the pose: it is no wheel candidate where there is another."""
+    pose = options.pose_topic
+    if pose is None or options.wheel_topic is not None:
+        return live
+    others = {name: topic for name, topic in live.items() if name not in (pose, f"/{pose}")}
+    found = _choose_wheel(others, options, {})
+    return live if found.topic is None and found.problem is None else others
 
 
 def _choose_pose(

@@ -150,24 +150,44 @@ class JointReadings:
 
     def __init__(self, vehicle: VehicleDescription) -> None:
         self._vehicle = vehicle
-        self._joints: tuple[str, ...] = ()
-        self._places: tuple[tuple[bool, int], ...] = ()
+        self._places: dict[tuple[str, ...], tuple[tuple[bool, int], ...] | None] = {}  # by the joints' names
         self.names: WheelNames = wheel_names(vehicle, _every_name(vehicle))
 
     def __call__(self, message: Any) -> tuple[float, ...]:
         """Return one number for each of `names.all`: speeds [rad/s] and angles [rad]; NaN where it has none.
 
+        A message without any of the joints, such as that of an arm, gives no numbers.
+
         Raises:
-            LogError: a joint is missing.
+            LogError: some of the joints are missing.
         """
         joints = tuple(message.name)
-        if joints != self._joints:
+        if joints not in self._places:
+            self._places[joints] = self._places_in(joints)
+        places = self._places[joints]
+        if places is None:
+            return (math.nan,) * len(self.names.all)
+        return tuple(_at(message.velocity if speed else message.position, place) for speed, place in places)
+
+    def refuse_none(self) -> None:
+        """Raise LogError where no message that came had any of the joints."""
+        if self._places and not any(self._places.values()):
+            wheel_names(self._vehicle, tuple(dict.fromkeys(name for names in self._places for name in names)))
+
+    def check(self, message: Any) -> None:
+        """Raise LogError where a message has none of the joints."""
+        if all(map(math.isnan, self(message))):
+            raise LogError("a message has no joints of wheels", advice=", ".join(tuple(message.name)[:12]))
+
+    def _places_in(self, joints: tuple[str, ...]) -> tuple[tuple[bool, int], ...] | None:
+        try:
             found = wheel_names(self._vehicle, joints)
-            self._places = tuple((name in found.speeds, joints.index(name)) for name in found.all)
-            self._joints = joints
-        return tuple(
-            _at(message.velocity if speed else message.position, place) for speed, place in self._places
-        )
+        except LogError:
+            own = {name for each in _every_name(self._vehicle) for name in (each, each.partition("_")[2])}
+            if own.isdisjoint(joints):
+                return None
+            raise
+        return tuple((name in found.speeds, joints.index(name)) for name in found.all)
 
 
 def _every_name(vehicle: VehicleDescription) -> list[str]:

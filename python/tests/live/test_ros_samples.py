@@ -61,10 +61,11 @@ def test_an_odometry_is_wheels_or_a_pose_with_its_deviations() -> None:
     assert unknown.std_xy is None
 
 
-def test_a_pose_without_a_rotation_is_none() -> None:
+def test_a_pose_without_a_rotation_is_said() -> None:
     wrong = Made(header=header(), pose=pose(1.0, 2.0, 0.5))
     wrong.pose.orientation.w = 7.0
-    assert to_pose(POSE_STAMPED, LogOptions())(wrong, 2.0) is None
+    with pytest.raises(ValueError, match=r"the quaternion \(0, 0, 0.247404, 7\) is no rotation"):
+        to_pose(POSE_STAMPED, LogOptions())(wrong, 2.0)
 
 
 def test_joint_states_become_a_twist_by_the_sizes_of_the_robot() -> None:

@@ -88,5 +88,16 @@ def test_angles_are_followed_over_whole_turns_and_no_further() -> None:
 
 def test_names_that_do_not_tell_the_sides_ask_for_them() -> None:
     assert "give --left-joints and --right-joints; joints: a, b" in sides_text(("a", "b"), LogOptions())
+    motion = SideMotion(LogOptions())
+    motion(State(["a", "b"], [], []))
     with pytest.raises(LogError, match="--left-joints"):
-        SideMotion(LogOptions())(State(["a", "b"], [], []))
+        motion.refuse_none()
+
+
+def test_messages_without_wheels_are_no_reason_to_refuse_those_with_them() -> None:
+    motion = SideMotion(LogOptions())
+    assert np.isnan(motion(State(["shoulder_pan_joint"], [0.1], [0.2]))).all()
+    assert motion(State(WHEELS, [1.0, 2.0], [3.0, 4.0])) == (3.0, 4.0, 1.0, 2.0)
+    motion.refuse_none()
+    with pytest.raises(LogError, match="no joints of left and right wheels: shoulder_pan_joint"):
+        motion.check(State(["shoulder_pan_joint"], [0.1], [0.2]))

@@ -91,8 +91,13 @@ def test_joint_states_are_read_by_the_names_of_wheels_live_too() -> None:
 
 
 def test_a_joint_state_without_a_wheel_is_refused() -> None:
+    read = JointReadings(load_vehicle("dingo-omni"))
+    assert np.isnan(read(SimpleNamespace(name=["a"], velocity=[1.0], position=[0.0]))).all()
     with pytest.raises(LogError, match="front_left_wheel_joint"):
-        JointReadings(load_vehicle("dingo-omni"))(SimpleNamespace(name=["a"], velocity=[1.0], position=[0.0]))
+        read.refuse_none()
+    some = SimpleNamespace(name=["front_left_wheel_joint"], velocity=[1.0], position=[0.0])
+    with pytest.raises(LogError, match="front_right_wheel_joint"):
+        read(some)
 
 
 ARTICULATED = """vehicle:
